@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
+from numeric.pinball.sampling import Growth
 
 Array = NDArray[np.float64]
 
@@ -64,8 +65,9 @@ def advanced(map: PinballMap, particles: PhasePoints, bounces: int) -> Advanced:
     """The particles `bounces` bounces later: the kernel's own time, nothing recorded."""
     if particles.size == 0 or bounces < 1:
         return Advanced(particles, np.zeros(particles.size, dtype=np.int64))
-    end = map.exponents(particles.theta, particles.phi, 1, bounces - 1, particles.component)
-    return Advanced(PhasePoints(end.component, end.theta, end.phi), end.code)
+    growth = Growth(map, particles.theta, particles.phi, particles.component)
+    growth.skip(bounces)
+    return Advanced(PhasePoints(growth.component, growth.theta, growth.phi), growth.code)
 
 
 def embedded(map: PinballMap, particles: PhasePoints) -> Array:

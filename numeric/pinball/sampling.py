@@ -15,6 +15,7 @@ start, so differences between two moments are the growth between them, and nothi
 """
 
 from collections.abc import Sequence
+from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -44,6 +45,10 @@ class Starts(NamedTuple):
     phi: Array
     x: Array
     y: Array
+
+    def only(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "Starts":
+        """Some of them."""
+        return Starts(*(row[which] for row in self))  # type: ignore[arg-type]  # rows keep their kinds
 
 
 class Grid(NamedTuple):
@@ -204,27 +209,51 @@ class Growth:
         with np.errstate(divide="ignore"):
             return np.zeros_like(self.lam) if self.law == FORMULA else elementary.log(self.lam)
 
+    def only(self, which: NDArray[np.int64]) -> "Growth":
+        """Some of the particles, on their way as they are.
+
+        >>> from numeric import PinballMap
+        >>> growth = Growth(PinballMap("cardioid", lam=0.5), [0.5, 1.0], 0.1)
+        >>> growth.advance(3)
+        >>> alone = growth.only(np.array([1]))
+        >>> growth.advance(3), alone.advance(3)
+        (None, None)
+        >>> bool(alone.theta[0] == growth.theta[1]), bool(alone.stretch[0] == growth.stretch[1])
+        (True, True)
+        """
+        some = copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                setattr(some, name, value[which])
+        some.own, some.tangent = [row[which] for row in self.own], [row[which] for row in self.tangent]
+        return some
+
     def began(self) -> None:
-        """Starts the sums anew, with the generic vector."""
+        """Starts the sums anew; the vectors are made when they are needed."""
+        self.tangent: list[Array] = []
+        self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
+
+    def _vectors(self) -> list[Array]:
+        """The generic vector at each particle."""
         self.speed, curvature = self.map.states.bending(self.component, self.theta)
         ds, dphi = (1.0, 0.0) if self.law == SLAP else GENERIC
         self.n0 = self.map.states.departure(self.own, self.law)
         omega = curvature * ds + dphi
-        self.tangent = starting(self.n0 * (ds / self.speed), omega, self.n0)
-        self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
+        return starting(self.n0 * (ds / self.speed), omega, self.n0)
 
     def skip(self, bounces: int, threads: int | None = None) -> None:
         """Moves the particles alone, and starts the sums where they arrive; these bounces do not count."""
-        if bounces:
+        if bounces and self.theta.size:
             self._run(KernelSpec(self.law), bounces, (), threads)
             self.began()
 
     def advance(self, bounces: int, threads: int | None = None) -> None:
         """Moves particles and vectors on."""
-        if not bounces:
+        if not bounces or not self.theta.size:
             return
         going = self.code == 0
-        rows = self._run(KernelSpec(self.law, exponents=True), bounces, self.tangent, threads)
+        tangent = self.tangent or self._vectors()
+        rows = self._run(KernelSpec(self.law, exponents=True), bounces, tangent, threads)
         self.tangent = [rows[name] for name in TANGENT]
         speed, curvature = self.map.states.bending(self.component, self.theta)
         moved = rows["shift"] / rows["n0"] * speed

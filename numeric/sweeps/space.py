@@ -5,15 +5,18 @@ positive beyond its error (`numeric.sweeps.sweep`). The one with the smallest ex
 more as a cycle may have that it comes back on.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.pinball.sampling import Starts
+from numeric.dynamics.recognition import determinants
+from numeric.pinball.sampling import Growth, Starts
 from numeric.sweeps.sweep import (
     BLOCKS,
     Array,
@@ -88,10 +91,75 @@ def periods(map: PinballMap, starts: Starts) -> NDArray[np.int64]:
     >>> periods(PinballMap("circle", lam=1), diameters).tolist()
     [2, 0]
     """
-    orbit = map.orbit(starts.theta, starts.phi, LONGEST, starts.component, threads=1)
-    moved = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0]) / map.arclength.perimeter
-    back = (orbit.code[1:] == 0) & (moved < BACK) & (np.abs(orbit.phi[1:] - orbit.phi[0]) < BACK)
+    fields = ("x", "y", "phi", "code")
+    told = map.orbit(starts.theta, starts.phi, LONGEST, starts.component, threads=1, fields=fields)
+    x, y, phi = (told[name][1:] - told[name][0] for name in fields[:3])
+    back = (told["code"][1:] == 0) & (np.hypot(x, y) < BACK * map.arclength.perimeter) & (np.abs(phi) < BACK)
     return np.where(back.any(axis=0), np.argmax(back, axis=0) + 1, 0)
+
+
+def attracting(map: PinballMap, starts: Starts, period: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Are both multipliers of the cycle through each particle, of the period given, smaller than 1? Not for period 0.
+
+    Paper: section 2.1; `|trace| < 1 + det` and `|det| < 1` say so.
+
+    >>> ends = Starts(*(np.array(x) for x in ([0, 0], [np.pi / 2, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0])))
+    >>> attracting(PinballMap("ellipse", a=2, lam="0.5"), ends, np.array([2, 2])).tolist()  # the short axis, the long
+    [True, False]
+    """
+    found, fields = np.zeros(period.size, dtype=bool), ("component", "theta", "phi")
+    for n in np.unique(period[period > 0]):
+        on = np.flatnonzero(period == n)
+        lam, (component, theta, phi, *_) = np.broadcast_to(map.lam, period.shape)[on], starts.only(on)
+        told = map.at(lam).orbit(theta, phi, int(n), component, threads=1, fields=fields)
+        component, theta, phi = (told[name][:-1] for name in fields)
+        slopes = map.at(np.broadcast_to(lam, theta.shape)).derivative(theta, phi, component)
+        product = slopes[0]
+        for slope in slopes[1:]:
+            product = np.sum(slope[:, :, :, None] * product[:, None, :, :], axis=2)
+        trace, determinant = product[:, 0, 0] + product[:, 1, 1], np.prod(determinants(slopes), axis=0)
+        found[on] = (np.abs(trace) < 1 + determinant) & (np.abs(determinant) < 1)
+    return found
+
+
+class Followed(NamedTuple):
+    """The period of the cycle on which each particle is, 0 for none; which of the others go on, and they on their way.
+
+    Of all particles `starts` has where they are.
+    """
+
+    period: NDArray[np.int64]
+    starts: Starts
+    going: NDArray[np.int64]
+    growth: Growth
+
+
+def followed(map: PinballMap, starts: Starts, marks: Sequence[int], threads: int | None = None) -> Followed:
+    """Particles after the last of so many bounces; those that are on an attracting cycle after one of the `marks` stay.
+
+    Such a particle is back where it was after up to `LONGEST` bounces, the derivative along which contracts: one that
+    passes by a saddle is back as well.
+
+    >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
+    >>> starts = Starts(*(np.array(x) for x in ([0, 0], [1.5, 0.2], [0.0, 0.1], [0.0, 0.0], [0.0, 0.0])))
+    >>> followed(ellipse, starts, (1, 100)).period.tolist(), followed(ellipse, starts, (1,)).going.tolist()
+    ([2, 2], [0, 1])
+    """
+    growth, done = Growth(map, starts.theta, starts.phi, starts.component), 0
+    period, going = np.zeros(starts.theta.size, dtype=np.int64), np.arange(starts.theta.size)
+    component, theta, phi = growth.component.copy(), growth.theta.copy(), growth.phi.copy()
+    for mark in marks:
+        if not going.size:
+            break
+        growth.skip(mark - done, threads)
+        component[going], theta[going], phi[going] = growth.component, growth.theta, growth.phi
+        here = Starts(growth.component, growth.theta, growth.phi, starts.x[going], starts.y[going])
+        there = map.at(growth.lam)
+        back = np.where((growth.code == 0) & (growth.lam < 1), periods(there, here), 0)
+        period[going] = np.where(attracting(there, here, back), back, 0)
+        left = np.flatnonzero((period[going] == 0) & (growth.code == 0))
+        going, growth, done = going[left], growth.only(left), mark
+    return Followed(period, Starts(component, theta, phi, starts.x, starts.y), going, growth)
 
 
 def egg(K: int, alpha: float) -> str:

@@ -294,8 +294,7 @@ class Measured(NamedTuple):
 
     def ended(self, which: NDArray[np.int64]) -> Starts:
         """Where some of the orbits end, to go on from there."""
-        component, theta, phi, x, y = self.end
-        return Starts(component[which], theta[which], phi[which], x[which], y[which])
+        return self.end.only(which)
 
 
 def floor_of(bounces: int) -> float:
@@ -316,12 +315,17 @@ def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, thre
     >>> bool(found.chaotic.any()), bool(found.regular.all())
     (False, True)
     """
+    growth = Growth(map, starts.theta, starts.phi, starts.component)
+    growth.skip(transient, threads)
+    return counted(growth, bounces, threads)
+
+
+def counted(growth: Growth, bounces: int, threads: int | None = None) -> Measured:
+    """The same of particles on their way whose sums have just begun."""
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")
-    growth = Growth(map, starts.theta, starts.phi, starts.component)
-    growth.skip(transient, threads)
-    reached = np.zeros((2, BLOCKS + 1, starts.theta.size))
+    map, reached = growth.map, np.zeros((2, BLOCKS + 1, growth.theta.size))
     for i in range(1, BLOCKS + 1):
         growth.advance(block, threads)
         reached[:, i] = growth.stretch, growth.volume

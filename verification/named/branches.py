@@ -22,6 +22,7 @@ from numeric.dynamics.attractors import moved
 from numeric.dynamics.phase_points import PhasePoints, embedded, phase_points
 from numeric.dynamics.recognition import Cycle, polished
 from numeric.pinball.sampling import interior_starts
+from numeric.sweeps.space import followed
 from symbolic.tables import egg
 from symbolic.tables.geometry import Symmetry
 from symbolic.tables.table import Table
@@ -218,8 +219,8 @@ def _solved(
     return End(start[-1], event, decimal(proof.value, digits + 1)[0], proof.certified, cycle)
 
 
-DIGITS, PARTICLES, TRANSIENT, SEED = 15, 400, 40_000, 1
-RETURN = 1e-7  # of a ball on the cycle to where it was
+DIGITS, PARTICLES, SEED = 15, 400, 1
+STAGES = (1000, 4000, 35_000)  # bounces after each of which it is seen whether a particle is on the cycle
 
 
 @dataclass(frozen=True)
@@ -261,12 +262,13 @@ def reached(alpha: Rational, lam: Rational, period: int) -> list[float]:
     """The bounces of a cycle of this period on which a random particle ends; `ValueError` when none does."""
     map = PinballMap("egg", lam=str(lam), alpha=str(alpha))
     starts = interior_starts(map, PARTICLES, SEED)
-    end = map.exponents(starts.theta, starts.phi, 1, TRANSIENT, starts.component)
-    orbit = map.orbit(end.theta, end.phi, period)
-    gap = np.hypot(orbit.x[1:] - orbit.x[0], orbit.y[1:] - orbit.y[0])
-    there = (gap[-1] < RETURN) & np.all(gap[:-1] > RETURN, axis=0)
-    if not np.any(there):
-        raise ValueError(
-            f"egg: none of {PARTICLES} particles at alpha = {alpha}, lam = {lam} ends on a cycle of period {period}"
-        )
-    return [float(x) for x in orbit.theta[:period, np.argmax(there)]]
+    for bounces in STAGES:
+        found = followed(map, starts, (bounces,))
+        on = np.flatnonzero(found.period == period)
+        if on.size:
+            first = found.starts.only(on[:1])
+            return [float(x) for x in map.orbit(first.theta, first.phi, period - 1, first.component).theta[:, 0]]
+        starts = found.starts
+    raise ValueError(
+        f"egg: none of {PARTICLES} particles at alpha = {alpha}, lam = {lam} ends on a cycle of period {period}"
+    )

@@ -12,6 +12,7 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
+from numeric.sweeps import space
 from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import stability_number, trace_of
 from symbolic.tables import named
@@ -180,7 +181,8 @@ def test_an_orbit_that_is_left_off_early_in_the_plane_of_parameters_has_no_posit
     table, lams = PinballMap("egg", alpha="0.085"), np.array([0.2, 0.4, 0.6, 0.8])
     starts = interior_starts(PinballMap("egg", lam=1, alpha="0.05"), 80, 1)
     early = egg.signs(table, lams, starts, 1000)
-    monkeypatch.setattr(egg, "EARLY", 0)  # where each particle still is: none is back on a cycle
+    monkeypatch.setattr(egg, "FIRST", 20)  # all starts at once
+    monkeypatch.setattr(space, "periods", lambda map, starts: np.zeros(starts.theta.size, dtype=int))  # none is left
 
     assert egg.signs(table, lams, starts, 1000).tolist() == early.tolist()
     assert set(early) == {0, 1}

@@ -15,6 +15,7 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
+from numeric.sweeps.space import followed
 from verification.arithmetic.balls import FLOAT64
 from verification.named import crises
 from verification.paper.claims.claim import Claim, Judgement
@@ -136,13 +137,14 @@ def extent(lam: str) -> Extent:
     settled = map.exponents(start[0], start[1], 500, 2000)
     on = settled.nu_plus > 0
     orbit = map.orbit(settled.theta[on], settled.phi[on], 2000)
-    third, height = 2 * np.pi / 3, np.sin(orbit.phi).ravel()
-    theta = np.concatenate([sign * (orbit.theta.ravel() + k * third) for sign in (1, -1) for k in range(3)])
-    heights = np.concatenate([sign * height for sign in (1, -1) for _ in range(3)])
-    column = (np.remainder(theta, 2 * np.pi) / (2 * np.pi) * CELLS).astype(int) % CELLS
-    row = np.minimum(((heights + 1) / 2 * CELLS).astype(int), CELLS - 1)
-    met = np.unique(row * CELLS + column).size
-    return Extent(float(np.max(np.abs(height))), met / CELLS**2)
+    height = np.sin(orbit.phi).ravel()
+    column = (np.remainder(orbit.theta.ravel(), 2 * np.pi) / (2 * np.pi) * CELLS).astype(int) % CELLS
+    row = np.minimum(((height + 1) / 2 * CELLS).astype(int), CELLS - 1)
+    met = np.zeros((CELLS, CELLS), dtype=bool)
+    met[row, column] = True
+    met |= met[::-1, ::-1]  # the mirror image: cell by cell, as those of a third of a turn
+    met |= np.roll(met, CELLS // 3, axis=1) | np.roll(met, -CELLS // 3, axis=1)
+    return Extent(float(np.max(np.abs(height))), float(np.mean(met)))
 
 
 @cache
@@ -150,8 +152,12 @@ def period_3(lam: str) -> float:
     """The share of 4000 random starts that the two period-3 orbits attract."""
     map = PinballMap("egg", lam=lam, alpha=SHAPE)
     start = interior_starts(map, MANY, SEED)
-    end = map.exponents(start.theta, start.phi, 200, 1000, start.component)
-    return float(np.mean((end.nu_plus < -0.02) & (np.abs(end.phi) > 0.15)))
+    found = followed(map, start, (200, 1000))
+    count = np.sum((found.period == 3) & (np.abs(found.starts.phi) > 0.15))
+    if found.going.size:
+        end = map.exponents(found.growth.theta, found.growth.phi, 200)
+        count += np.sum((end.nu_plus < -0.02) & (np.abs(end.phi) > 0.15))
+    return float(count) / MANY
 
 
 def grows(lams: tuple[str, ...]) -> bool:

@@ -23,8 +23,8 @@ from sympy import (
 )
 
 from numeric import PinballMap
-from numeric.pinball.sampling import Starts, interior_starts
-from numeric.sweeps.space import periods
+from numeric.pinball.sampling import interior_starts
+from numeric.sweeps.space import followed
 from symbolic import tables
 from symbolic.cycles.cycle import egg_diameter
 from symbolic.cycles.polygons import (
@@ -205,7 +205,7 @@ SHAPE = Rational(2, 25)
 SEED = 1
 SIDE = {12: (0.3725, (-1.544175, -0.015589)), 8: (0.379, (-2.258379, -0.040530))}  # lam, and theta, phi on a cycle
 MEMBERS, STARTS = 2, 8000
-EARLY = 1000  # bounces after which most orbits are on their cycle, and need not be followed on
+SOON, EARLY = 250, 1000  # bounces after which many, and most, orbits are on their cycle: they are not followed on
 
 
 @judges("egg.period3_direction")
@@ -263,9 +263,8 @@ def chaotic_share(lam_text: str) -> float:
     """The share of random starts whose neighbourhood still grows after a long time."""
     map = PinballMap("egg", lam=lam_text, alpha=str(SHAPE))
     starts = interior_starts(map, STARTS, SEED)
-    soon = map.exponents(starts.theta, starts.phi, 1, EARLY - 1)
-    going = periods(map, Starts(soon.component, soon.theta, soon.phi, starts.x, starts.y)) == 0
-    if not np.any(going):
+    rest = followed(map, starts, (SOON, EARLY))
+    if not rest.going.size:
         return 0.0
-    late = map.exponents(soon.theta[going], soon.phi[going], 500, 4000 - EARLY)
+    late = map.exponents(rest.growth.theta, rest.growth.phi, 500, 4000 - EARLY)
     return float(np.sum(late.nu_plus > 0.02)) / STARTS

@@ -13,12 +13,12 @@ from flint import arb
 from sympy import Rational, S
 
 from numeric import PinballMap
-from numeric.dynamics.phase_points import phase_points
+from numeric.dynamics.phase_points import PhasePoints, advanced, phase_points
 from numeric.pinball.sampling import interior_starts
-from numeric.sweeps.run import run
+from numeric.sweeps.run import in_memory
 from numeric.sweeps.space import egg as shaped
-from numeric.sweeps.space import parameter_space
-from numeric.sweeps.sweep import Measured, map_of, measured
+from numeric.sweeps.space import followed, parameter_space
+from numeric.sweeps.sweep import counted, map_of, measured
 from symbolic.cycles.cycle import egg_diameter, trace_and_determinant
 from symbolic.cycles.polygons import saddle_node
 from symbolic.expressions.signs import Finding
@@ -189,7 +189,7 @@ def no_chaos_below(claim: Claim) -> Judgement:
             f"chaos reach down to alpha = 0.04 at least: sampled, {seen} (benchmarks/parameter_space.py)",
         )
     shapes, lams = np.linspace(0.2, 0.9, 4) * limit, np.linspace(0, 0.95, 20)
-    chaotic = run(parameter_space(shapes, lams, 20, seed=SEED), workers=1).chaotic.values
+    chaotic = in_memory(parameter_space(shapes, lams, 20, seed=SEED), 1)["chaotic"]
     said = f"{np.sum(chaotic)} of {20 * chaotic.size} random particles are chaotic, on a coarse grid below {limit}"
     return sampled("none on a coarse grid", said, not np.any(chaotic))
 
@@ -198,7 +198,7 @@ def no_chaos_below(claim: Claim) -> Judgement:
 def chaos_at(shape: str, lam: str) -> tuple[float, float, float]:
     """The share of random particles that are chaotic, with the mean of their exponents and its standard error."""
     map = PinballMap("egg", lam=lam, alpha=shape)
-    first = measured(map, interior_starts(map, 600, SEED), 4000, 10_000)
+    first = counted(followed(map, interior_starts(map, 600, SEED), (1000, 10_000)).growth, 4000)
     on = np.nonzero(first.chaotic)[0]
     if on.size < 2:
         return 0.0, float("nan"), float("nan")
@@ -210,8 +210,8 @@ def chaos_at(shape: str, lam: str) -> tuple[float, float, float]:
 @cache
 def cut() -> tuple[np.ndarray, np.ndarray]:
     """The contractions of the cut at `alpha = 0.08`, and how many of 40 particles are chaotic at each."""
-    found = run(parameter_space(np.array([0.08]), CUT, starts=40, bounces=2000, transient=4000, seed=SEED), workers=1)
-    return CUT, found.chaotic.values[0]
+    pairs = parameter_space(np.array([0.08]), CUT, starts=40, bounces=2000, transient=4000, seed=SEED)
+    return CUT, in_memory(pairs, 1)["chaotic"][0]
 
 
 @judges("egg.chaotic_interval")
@@ -283,8 +283,8 @@ def isolated_regions(claim: Claim) -> Judgement:
 def periods_at(shape: str, lam: str, particles: int) -> Counter[int]:
     """How many random particles end on a cycle of each period; 0 stands for none up to `LONGEST`."""
     map = map_of(shaped(3, float(shape)), float(lam))
-    settled: Measured = measured(map, interior_starts(map, particles, SEED), 20_000, 20_000)
-    end = settled.end
+    starts = interior_starts(map, particles, SEED)
+    end = advanced(map, PhasePoints(*starts[:3]), 40_000).points
     orbit = map.orbit(end.theta, end.phi, LONGEST, end.component)
     gap = np.hypot(orbit.x - orbit.x[0], orbit.y - orbit.y[0]) + np.abs(orbit.phi - orbit.phi[0])
     back = gap[1:] < RETURN

@@ -12,10 +12,10 @@ from sympy import Rational
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_starts
+from numeric.pinball.sampling import Starts, interior_starts, phase_starts
 from numeric.sweeps.run import in_memory
-from numeric.sweeps.space import periods
-from numeric.sweeps.sweep import Array, measured
+from numeric.sweeps.space import followed
+from numeric.sweeps.sweep import Array, counted
 from numeric.sweeps.workers import cores
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde
@@ -279,6 +279,7 @@ NAMES = ("no chaos found", "chaos", "undecided")
 
 
 EARLY = 200  # bounces after which most orbits are on their cycle; what is there need not be followed on
+FIRST = 8  # starts that are followed before the others: where one of them is chaotic, the pair's sign is known
 
 
 def parameter_space(fine: float = 1.0) -> Panels:
@@ -307,24 +308,36 @@ def signs(table: PinballMap, lams: Array, starts: Starts, bounces: int) -> NDArr
     """For each contraction 1 where one of its starts is chaotic, 2 where that is undecided, else 0.
 
     Orbits are measured over `bounces` after as many. One that is back where it was after `EARLY` is on a cycle that
-    attracts it, and is not followed on.
+    attracts it, and is not followed on. Where one of the `FIRST` starts is chaotic the others are not asked.
 
     >>> starts = interior_starts(PinballMap("egg", lam=1, alpha="0.09"), 8, 1)
     >>> signs(PinballMap("egg", alpha="0.09"), np.array([0.1, 0.3]), starts, 400).tolist()
     [0, 1]
     """
-    lam = np.repeat(lams, starts.theta.size // lams.size)
-    growth = Growth(table.at(lam), starts.theta, starts.phi, starts.component)
-    growth.skip(min(EARLY, bounces))
-    here = Starts(growth.component, growth.theta, growth.phi, starts.x, starts.y)
-    attracts = (periods(table.at(lam), here) > 0) & (lam < 1)
-    going = np.flatnonzero(~attracts & (growth.code == 0))
-    rest = Starts(here.component[going], here.theta[going], here.phi[going], here.x[going], here.y[going])
-    found = measured(table.at(lam[going]), rest, bounces, max(0, bounces - EARLY))
-    chaotic, decided = np.zeros(lam.size, dtype=bool), attracts
-    chaotic[going], decided[going] = found.chaotic, found.chaotic | found.regular
-    some, all_ = (np.reshape(rows, (lams.size, -1)) for rows in (chaotic, decided))
-    return np.where(some.any(axis=1), 1, np.where(all_.all(axis=1), 0, 2))
+    each, some, all_ = starts.theta.size // lams.size, np.zeros(lams.size, dtype=bool), np.ones(lams.size, dtype=bool)
+    for first, last in ((0, FIRST), (FIRST, each)):
+        left = np.flatnonzero(~some)
+        which = (left[:, None] * each + np.arange(each)[first:last]).ravel()
+        if which.size:
+            lam = np.repeat(lams[left], which.size // left.size)
+            signed = _signs(table.at(lam), lam, starts.only(which), bounces)
+            chaotic, decided = (row.reshape(left.size, -1) for row in signed)
+            some[left], all_[left] = chaotic.any(axis=1), all_[left] & decided.all(axis=1)
+    return np.where(some, 1, np.where(all_, 0, 2))
+
+
+def _signs(map: PinballMap, lam: Array, starts: Starts, bounces: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which starts are chaotic, and of which it is decided."""
+    early = min(EARLY, bounces)
+    soon = followed(map, starts, (early,))
+    chaotic, decided = np.zeros(lam.size, dtype=bool), soon.period > 0
+    if soon.going.size:
+        late = followed(map.at(lam[soon.going]), soon.starts.only(soon.going), (bounces - early,))
+        decided[soon.going] = late.period > 0
+        if late.going.size:
+            found, going = counted(late.growth, bounces), soon.going[late.going]
+            chaotic[going], decided[going] = found.chaotic, found.chaotic | found.regular
+    return chaotic, decided
 
 
 def draw_parameter_space(panels: Panels) -> "Figure":

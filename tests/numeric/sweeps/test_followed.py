@@ -25,7 +25,7 @@ def test_who_is_left_on_a_cycle_early_is_on_one_of_that_period_in_the_end():
 def test_a_particle_that_passes_by_a_saddle_is_back_and_goes_on():
     """The long axis of the ellipse returns, and repels; the short one attracts."""
     map = PinballMap("ellipse", a=2, lam="0.5")
-    long, short = beside(0.0, 1e-9, 3), beside(np.pi / 2, 1e-9, 3)
+    long, short = beside(0.0, 1e-13, 3), beside(np.pi / 2, 1e-13, 3)
 
     assert periods(map, long).tolist() == periods(map, short).tolist() == [2, 2, 2]
     assert followed(map, long, (2,)).going.tolist() == [0, 1, 2]

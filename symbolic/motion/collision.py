@@ -137,9 +137,10 @@ def derivative_matrix(
     matrix = implicit_derivative()
     values = {symbol: own[symbol.name] for symbol in matrix.free_symbols}
     reflected = Matrix([matrix.row(0), lam * matrix.row(1) + drift * matrix.row(0)])
-    return reflected.subs(values, simultaneous=True)
+    return reflected.xreplace({symbol: S(value) for symbol, value in values.items()})
 
 
+@cache
 def determinant(slope: Expr = lam, drift: Expr = S.Zero) -> Expr:
     """`det DT` in the coordinates `(s, phi)`: `lam * cos_phi0 / cos_eta1`, with the slope of any law for `lam`.
 
@@ -178,6 +179,7 @@ def birkhoff_matrix(matrix: Matrix, cos_phi0: Expr, cos_phi1: Expr) -> Matrix:
     return Matrix([[1, 0], [0, cos_phi1]]) * matrix * Matrix([[1, 0], [0, 1 / cos_phi0]])
 
 
+@cache
 def area_factor(phi: Expr = -lam * eta) -> Expr:
     """`g(eta)`: what a bounce that lands at the incidence angle `eta` multiplies `ds d(sin(phi))` by; of any law `phi`.
 

@@ -6,12 +6,15 @@ coefficients and millions of terms on SymPy's way to them.
 Crossings are excluded for finite Fourier sums, else sought on polygons.
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from math import atan2, fsum, tau
+from typing import Any
 
 from sympy import (
+    QQ,
     Add,
     Dummy,
     Expr,
@@ -31,6 +34,8 @@ from sympy import (
     sign,
     sin,
 )
+from sympy.polys.rings import ring
+from sympy.simplify.fu import TR8
 
 from symbolic.expressions.signs import bernstein, vanishes
 from symbolic.tables.table import Component, Table, theta
@@ -38,7 +43,7 @@ from symbolic.tables.table import Component, Table, theta
 Pair = tuple[Fraction, Fraction]  # real and imaginary part
 Waves = dict[int, Pair]  # of exp(i*k*theta), by k; none of them 0
 PRODUCTS = 150_000  # of two coefficients, in one formula: about a second
-ZERO = Fraction(0)
+EMPTY: Mapping[Symbol, Any] = {}
 DIGITS = 30  # by which two values are told apart
 LONG = 200  # operations, names and numbers: what is longer is not multiplied out by SymPy
 
@@ -59,32 +64,74 @@ def waves(expression: Expr) -> Waves | None:
     True
     """
     try:
-        found = _read(expression, [PRODUCTS])
+        found = _read(expression, [PRODUCTS], Fraction)
     except _TooLongError:  # treated as any other formula, that is not multiplied out
         return None
     return None if found is None else dict(sorted(found.items()))
 
 
-def _read(e: Expr, left: list[int]) -> Waves | None:
-    """The coefficients, operand by operand; `left` holds how many products may still be made."""
+def trigonometric(expression: Expr) -> Expr:
+    """A trigonometric polynomial as a sum of sines and cosines of multiples; others merely expanded.
+
+    >>> trigonometric(sin(theta) ** 2 + 3 * cos(theta) ** 2)
+    cos(2*theta) + 2
+    """
+    found = _summed(S(expression))
+    while found is None:
+        last, expression = expression, expand(TR8(expand(expression)))
+        found = expression if expression == last else None
+    return found
+
+
+@lru_cache(maxsize=256)
+def _summed(expression: Expr) -> Expr | None:
+    """A real trigonometric polynomial, letters in its coefficients, as sines and cosines of multiples; or None."""
+    letters = sorted(expression.free_symbols - {theta}, key=str)
+    own = ring(letters or [Dummy("x")], QQ)[0]
+    try:
+        found = _read(expression, [PRODUCTS], lambda p, q: own(QQ(p, q)), dict(zip(letters, own.gens, strict=False)))
+    except _TooLongError:
+        return None
+    if found is None:
+        return None
+    terms = []
+    for k in {abs(k) for k in found}:
+        (u, v), (x, y) = found.get(k, (own.zero, own.zero)), found.get(-k, (own.zero, own.zero))
+        if u != x or v != -y:  # not real
+            return None
+        for factor, wave in ((u, cos(k * theta)), (-v, sin(k * theta))):
+            terms += [term * wave * (2 if k else 1) for term in Add.make_args(factor.as_expr())]
+    return Add(*terms)
+
+
+def _read(
+    e: Expr, left: list[int], number: Callable[[int, int], Any], letters: Mapping[Symbol, Any] = EMPTY
+) -> dict[int, tuple[Any, Any]] | None:
+    """The coefficients, operand by operand; `left` holds how many products may still be made.
+
+    `number(p, q)` is a fraction in the ring of the coefficients, which `letters` belong to.
+    """
+    zero = number(0, 1)
     if isinstance(e, Rational):
-        return {0: (Fraction(e.p, e.q), ZERO)} if e.p else {}
+        return {0: (number(e.p, e.q), zero)} if e.p else {}
+    if e in letters:
+        return {0: (letters[e], zero)}
     if e is I:
-        return {0: (ZERO, Fraction(1))}
+        return {0: (zero, number(1, 1))}
     if isinstance(e, cos | sin):
         multiple = e.args[0] / theta
         if not multiple.is_Integer:
             return None
-        k, half = int(multiple), Fraction(1, 2)
-        return {-k: (half, ZERO), k: (half, ZERO)} if isinstance(e, cos) else {-k: (ZERO, half), k: (ZERO, -half)}
+        k, half = int(multiple), number(1, 2)
+        return {-k: (half, zero), k: (half, zero)} if isinstance(e, cos) else {-k: (zero, half), k: (zero, -half)}
     if isinstance(e, Pow):
-        base = _read(e.base, left) if e.exp.is_Integer and e.exp.is_positive else None
-        return None if base is None else _power(base, int(e.exp), left)
+        base = _read(e.base, left, number, letters) if e.exp.is_Integer and e.exp.is_positive else None
+        return None if base is None else _power(base, int(e.exp), left, {0: (number(1, 1), zero)})
     if not isinstance(e, Add | Mul):
         return None
     parts = []
     for operand in e.args:
-        part = _read(operand, left)
+        part = _read(operand, left, number, letters)
         if part is None:
             return None
         parts.append(part)
@@ -97,7 +144,7 @@ def _read(e: Expr, left: list[int]) -> Waves | None:
 def _sum(f: Waves, g: Waves) -> Waves:
     total = dict(f)
     for k, (x, y) in g.items():
-        u, v = total.get(k, (ZERO, ZERO))
+        u, v = total.get(k, (0, 0))
         total[k] = u + x, v + y
     return {k: c for k, c in total.items() if c[0] or c[1]}
 
@@ -109,7 +156,7 @@ def _product(f: Waves, g: Waves, left: list[int]) -> Waves:
     total: Waves = {}
     for k, (a, b) in f.items():
         for n, (x, y) in g.items():
-            u, v = total.get(k + n, (ZERO, ZERO))
+            u, v = total.get(k + n, (0, 0))
             real, imaginary = a * x, b * x
             if y:
                 real, imaginary = real - b * y, imaginary + a * y
@@ -117,8 +164,8 @@ def _product(f: Waves, g: Waves, left: list[int]) -> Waves:
     return {k: c for k, c in total.items() if c[0] or c[1]}
 
 
-def _power(f: Waves, n: int, left: list[int]) -> Waves:
-    found: Waves = {0: (Fraction(1), ZERO)}
+def _power(f: Waves, n: int, left: list[int], one: Waves) -> Waves:
+    found = one
     while n:
         found = _product(found, f, left) if n % 2 else found
         n //= 2

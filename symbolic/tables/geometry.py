@@ -37,10 +37,9 @@ from sympy import (
     sqrt,
 )
 from sympy.polys.polyerrors import PolynomialError
-from sympy.simplify.fu import TR8
 
 from symbolic.expressions.signs import vanishes
-from symbolic.tables.curves import LONG, exactly, size, waves
+from symbolic.tables.curves import LONG, exactly, size, trigonometric, waves
 from symbolic.tables.table import Component, Table, theta
 
 HIGHEST = 24  # harmonic of what is written as a polynomial in the tangent of half the angle
@@ -103,29 +102,20 @@ def curvature(component: Component) -> Expr:
 
 
 def evolute(component: Component) -> Matrix:
-    """The centres of curvature, the envelope of the inward normals. Paper: section 2.2.
+    """The centres of curvature, the envelope of the inward normals, simplified. Paper: section 2.2.
 
     >>> from symbolic.tables import circle
     >>> evolute(circle.components[0]).T
     Matrix([[0, 0]])
     """
+    return centre_of_curvature(component).applyfunc(simplify)
+
+
+def centre_of_curvature(component: Component) -> Matrix:
+    """The point of the evolute, as it is derived."""
     x, y = velocity(component)
     ratio = trigonometric(x**2 + y**2) / turning(component)
-    return Matrix([simplify(p + ratio * n) for p, n in zip(component.point, (-y, x), strict=True)])
-
-
-def trigonometric(expression: Expr) -> Expr:
-    """A trigonometric polynomial as a sum of sines and cosines of multiples; others merely expanded.
-
-    >>> from sympy import cos, sin
-    >>> trigonometric(sin(theta) ** 2 + 3 * cos(theta) ** 2)
-    cos(2*theta) + 2
-    """
-    while True:
-        summed = expand(TR8(expand(expression)))
-        if summed == expression:
-            return summed
-        expression = summed
+    return Matrix([p + ratio * n for p, n in zip(component.point, (-y, x), strict=True)])
 
 
 def arc_length(component: Component) -> Expr:

@@ -25,6 +25,7 @@ from sympy import (
     nan,
     oo,
     pi,
+    sign,
     sin,
     sqrt,
     tan,
@@ -34,8 +35,17 @@ from sympy import (
 
 from symbolic.expressions.enclosures import UnboundedError, pole, sign_in, sign_on
 from symbolic.expressions.signs import Box, Outcome, conjunction, positive
-from symbolic.tables.curves import LONG, alone, chord_of_length_zero, curves, polygon_crossing, size, waves
-from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent, trigonometric
+from symbolic.tables.curves import (
+    LONG,
+    alone,
+    chord_of_length_zero,
+    curves,
+    polygon_crossing,
+    size,
+    trigonometric,
+    waves,
+)
+from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent
 from symbolic.tables.polynomial import as_bezier, meets, signed_area
 from symbolic.tables.table import Component, Table, lam, theta
 
@@ -283,6 +293,8 @@ def root(square: Expr, box: Box) -> Expr:
     outside, inside = S.One, S.One
     for part, way in ((numerator, 1), (denominator, -1)):
         constant, factors = factor_list(part)
+        share = sqrt(abs(constant))
+        outside, constant = (outside * share**way, sign(constant)) if share.is_Rational else (outside, constant)
         inside *= constant**way
         for factor, power in factors:
             inside *= factor ** (way * (power % 2))

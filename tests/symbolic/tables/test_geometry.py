@@ -6,7 +6,8 @@ from sympy import Expr, Function, Matrix, Rational, S, Symbol, cos, integrate, p
 
 from symbolic.expressions.signs import vanishes
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.geometry import curvature, evolute, normal, speed, tangent, trigonometric, turning, velocity
+from symbolic.tables.curves import trigonometric
+from symbolic.tables.geometry import curvature, evolute, normal, speed, tangent, turning, velocity
 from symbolic.tables.table import Component, a, alpha, theta
 
 mp = mpmath.MPContext()

@@ -5,7 +5,8 @@ import pytest
 from sympy import Integral, Rational, S, Symbol, cos, elliptic_e, pi, simplify, sin, sqrt
 
 from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
-from symbolic.tables.geometry import arc_length, perimeter, positions, speed, trigonometric
+from symbolic.tables.curves import trigonometric
+from symbolic.tables.geometry import arc_length, perimeter, positions, speed
 from symbolic.tables.table import Component, Table, a, alpha, theta
 
 mp = mpmath.MPContext()

@@ -18,7 +18,6 @@ from sympy import (
     expand,
     expand_trig,
     pi,
-    simplify,
     sin,
 )
 
@@ -38,6 +37,7 @@ from symbolic.expressions.signs import Finding, positive
 from symbolic.motion.chords import convexity
 from symbolic.motion.flight import flight
 from symbolic.tables import egg
+from symbolic.tables.curves import trigonometric
 from symbolic.tables.table import alpha, lam, phi, theta
 from verification.cycles.cascade import doublings
 from verification.named.crises import changed_axis, stay
@@ -54,7 +54,7 @@ BOUNDARY = egg(3).components[0]
 def radius(claim: Claim) -> Judgement:
     """The distance from the centre along the direction `theta`."""
     x, y = BOUNDARY.point
-    return identity(claim, simplify(x * cos(theta) + y * sin(theta)))
+    return identity(claim, trigonometric(x * cos(theta) + y * sin(theta)))
 
 
 @judges("egg.circle")

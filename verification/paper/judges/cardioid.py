@@ -1,6 +1,6 @@
 """Claims on the cardioid. Paper: section 4."""
 
-from sympy import Expr, Function, Interval, Matrix, Rational, S, Symbol, cos, pi, simplify, sin, sqrt
+from sympy import Expr, Function, Interval, Matrix, Rational, S, Symbol, cancel, cos, pi, sin, sqrt
 
 from symbolic.cycles.cardioid_slap import (
     LAUNCH_COS2,
@@ -19,7 +19,8 @@ from symbolic.cycles.thresholds import stability_number
 from symbolic.expressions.signs import Finding, conjunction, positive
 from symbolic.motion.collision import determinant, growth_defects, telescoped
 from symbolic.tables import cardioid
-from symbolic.tables.geometry import arc_length, curvature, evolute, velocity
+from symbolic.tables.curves import trigonometric
+from symbolic.tables.geometry import arc_length, centre_of_curvature, curvature, velocity
 from symbolic.tables.table import Component, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, identity, judges, zero
@@ -37,7 +38,7 @@ def position(angle: Expr) -> Expr:
 def radius(claim: Claim) -> Judgement:
     """The distance from the pole along the direction `theta`."""
     x, y = BOUNDARY.point
-    return identity(claim, simplify(x * cos(theta) + y * sin(theta)))
+    return identity(claim, trigonometric(x * cos(theta) + y * sin(theta)))
 
 
 @judges("cardioid.arc_length")
@@ -50,7 +51,7 @@ def length(claim: Claim) -> Judgement:
 def flattest(claim: Claim) -> Judgement:
     """`x = C*(1 + C)` and `kappa**2 = 9/(8*(1 + C))` with `C = cos(theta)`."""
     rest = Interval.Ropen(-1, 1)
-    squared = simplify(curvature(BOUNDARY) ** 2).subs(cos(theta), C)
+    squared = cancel(curvature(BOUNDARY) ** 2).subs(cos(theta), C)
     return Judgement(
         by(
             "for cos(theta) < 1 x is below 2 and kappa^2 above 9/16",
@@ -226,7 +227,7 @@ def cardioid_evolute(claim: Claim) -> Judgement:
     return Judgement(
         by(
             "the centre of curvature is (2/3, 0) - z(theta + pi)/3",
-            equal(evolute(BOUNDARY), Matrix([Rational(2, 3) + mirrored[0], mirrored[1]]), {}),
+            equal(centre_of_curvature(BOUNDARY), Matrix([Rational(2, 3) + mirrored[0], mirrored[1]]), {}),
         ),
         "(2/3, 0) - z(theta + pi)/3",
     )

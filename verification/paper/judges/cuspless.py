@@ -16,7 +16,7 @@ from symbolic.cycles.thresholds import lambda_c, stability_number
 from symbolic.expressions.signs import Finding, nonnegative, positive
 from symbolic.motion.collision import derivative_matrix, exit_angle
 from symbolic.tables import cardioid, cuspless
-from symbolic.tables.geometry import perimeter, positions, turning, velocity
+from symbolic.tables.geometry import perimeter, positions, speed, turning, velocity
 from symbolic.tables.table import K1, eta, lam, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import (
@@ -94,7 +94,7 @@ def convex(claim: Claim) -> Judgement:
 @judges("cuspless.smooth_except_joins")
 def smooth(claim: Claim) -> Judgement:
     """Each component is analytic with non-zero velocity."""
-    squared = velocity(ARC).dot(velocity(ARC)).simplify().subs(cos(theta), C)
+    squared = (speed(ARC) ** 2).subs(cos(theta), C)
     return Judgement(
         by("the speed does not vanish on the arc", positive(squared, {C: Interval(Rational(-1, 2), 1)})),
         "analytic off the joins",

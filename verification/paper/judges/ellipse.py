@@ -1,5 +1,7 @@
 """Claims on the circle and the ellipse: their orbits, limit sets and slap maps. Paper: sections 3.1, 3.2 and 3.4."""
 
+from functools import cache
+
 from sympy import (
     Expr,
     Interval,
@@ -24,7 +26,7 @@ from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, p
 from symbolic.motion.collision import derivative_matrix, exit_angle, gradient, joachimsthal_defect
 from symbolic.motion.flight import flight, iterate, limit_position
 from symbolic.tables import ellipse
-from symbolic.tables.geometry import curvature, evolute, velocity
+from symbolic.tables.geometry import centre_of_curvature, curvature, velocity
 from symbolic.tables.table import a, eta, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, identity, judges, on_range, zero
@@ -41,6 +43,7 @@ def explicit_map() -> Finding:
     return zero("the landing point is q0 + 2*cos(phi)*v", *gap)
 
 
+@cache
 def settles() -> Finding:
     """By induction: the closed form of the state after `n` bounces, and how far an even bounce is off its limit."""
     position, angle = after(n)
@@ -287,7 +290,7 @@ def major_unstable(claim: Claim) -> Judgement:
 @judges("ellipse.evolute")
 def ellipse_evolute(claim: Claim) -> Judgement:
     """`x = (a**2-1)/a*cos**3`, `y = -(a**2-1)*sin**3`."""
-    centre = evolute(ellipse.components[0])
+    centre = centre_of_curvature(ellipse.components[0])
     astroid = Matrix([(a**2 - 1) / a * cos(theta) ** 3, -(a**2 - 1) * sin(theta) ** 3])
     return Judgement(
         by("the centre of curvature is an astroid stretched by 1/a and 1", equal(centre, astroid, {})),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from sympy import Expr, Integer, Interval, Matrix, S, Symbol, diag, eye, limit, oo, sqrt, symbols
+from sympy import Expr, Integer, Interval, Matrix, S, Symbol, cancel, diag, eye, limit, oo, sqrt, symbols
 
 from symbolic.cycles.cycle import discriminant, major_axis, minor_axis, monodromy, multipliers, saddle
 from symbolic.cycles.thresholds import lambda_minus, lambda_plus, stability_number, stable_while_nonnegative
@@ -29,7 +29,7 @@ def both_sides_of_sqrt2(prove: Callable[[Box], Finding], box: Box) -> Finding:
 
 def in_w(expression: Expr) -> Expr:
     """An even function of `a` in the variable `w = sqrt(a**2 - 1)`."""
-    return expression.subs(a, sqrt(1 + w**2)).simplify()
+    return cancel(expression.subs(a, sqrt(1 + w**2)))
 
 
 @judges("ellipse.monodromy")

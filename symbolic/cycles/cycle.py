@@ -32,17 +32,18 @@ from sympy import (
     eye,
     factor,
     pi,
+    prod,
     simplify,
     solve,
     sqrt,
     symbols,
-    together,
 )
 
+from symbolic.expressions.identities import over_one_root
 from symbolic.expressions.signs import Box, Finding, conjunction, positive, vanishes
-from symbolic.motion.collision import derivative_matrix
+from symbolic.motion.collision import derivative_matrix, determinant
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.table import Table, alpha, lam, theta
+from symbolic.tables.table import Table, alpha, cos_eta1, cos_phi0, lam, theta
 from symbolic.tables.validity import parameter_box, root
 
 
@@ -82,23 +83,23 @@ class Cycle:
     def chord(self, i: int) -> Matrix:
         """The vector from bounce `i` to the next."""
         n = len(self.bounces)
-        return (self.frames[(i + 1) % n].point - self.frames[i % n].point).applyfunc(simplify).as_immutable()
+        return (self.frames[(i + 1) % n].point - self.frames[i % n].point).applyfunc(shortened).as_immutable()
 
     @cache  # noqa: B019  (a cycle is frozen)
     def length(self, i: int) -> Expr:
         """The length of the flight that leaves bounce `i`."""
         chord = self.chord(i)
-        return root(simplify(chord.dot(chord)), self.ranges)
+        return root(shortened(chord.dot(chord)), self.ranges)
 
     @cache  # noqa: B019  (a cycle is frozen)
     def cos_exit(self, i: int) -> Expr:
         """The cosine of the exit angle at bounce `i`."""
-        return simplify(self.chord(i).dot(self.frames[i % len(self.bounces)].normal) / self.length(i))
+        return shortened(self.chord(i).dot(self.frames[i % len(self.bounces)].normal) / self.length(i))
 
     @cache  # noqa: B019  (a cycle is frozen)
     def cos_incidence(self, i: int) -> Expr:
         """The cosine of the incidence angle at bounce `i`."""
-        return simplify(-self.chord(i - 1).dot(self.frames[i % len(self.bounces)].normal) / self.length(i - 1))
+        return shortened(-self.chord(i - 1).dot(self.frames[i % len(self.bounces)].normal) / self.length(i - 1))
 
     @cache  # noqa: B019  (a cycle is frozen)
     def sliding(self, i: int) -> tuple[Expr, Expr]:
@@ -106,7 +107,7 @@ class Cycle:
         tangent = self.frames[i % len(self.bounces)].tangent
         leaving = self.chord(i).dot(tangent) / self.length(i)
         arriving = self.chord(i - 1).dot(tangent) / self.length(i - 1)
-        return simplify(leaving), simplify(arriving)
+        return shortened(leaving), shortened(arriving)
 
     def _repr_latex_(self) -> str:
         from symbolic.tables.formula import equation  # a notebook asks for it, nothing else does
@@ -130,19 +131,22 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
     first, second = first.applyfunc(shortened), second.applyfunc(shortened)
     speed = root(shortened(first.dot(first)), box)
     turning = shortened(first[0] * second[1] - first[1] * second[0])
-    tangent = (first / speed).applyfunc(cancel)
+    tangent = (first / speed).applyfunc(shortened)
     normal = Matrix([-tangent[1], tangent[0]])
-    return Frame(point, tangent, normal, cancel(-turning / speed**3))
+    return Frame(point, tangent, normal, shortened(-turning / speed**3))
 
 
 def shortened(expression: Expr) -> Expr:
-    """As `simplify`; a quotient of polynomials with rational coefficients is cancelled, which says all there is.
+    """As `simplify`; rational functions of letters, and of one square root besides, are cancelled, which says all.
 
-    >>> shortened((alpha**2 - 1) / (alpha - 1))
-    alpha + 1
+    >>> shortened((alpha**2 - 1) / (alpha - 1)), shortened((alpha**2 - 3) / (alpha - sqrt(3)))
+    (alpha + 1, alpha + sqrt(3))
     """
     rational = not expression.atoms(Function, NumberSymbol) and all(p.exp.is_Integer for p in expression.atoms(Pow))
-    return cancel(expression) if rational else simplify(expression)
+    if rational:
+        return cancel(expression)
+    found = over_one_root(expression)
+    return simplify(expression) if found is None else found
 
 
 @cache
@@ -195,14 +199,23 @@ def _monodromy(cycle: Cycle, base: int, contraction: Expr) -> Matrix:
     product = eye(2)
     for i in range(base, base + len(cycle.bounces)):
         product = flight_matrix(cycle, i, contraction) * product
-    return product.applyfunc(factor).as_immutable()
+    return product.applyfunc(_factored).as_immutable()
+
+
+def _factored(expression: Expr) -> Expr:
+    """As `factor`, which is slow where a square root is met before it is multiplied out."""
+    found = over_one_root(expression)
+    return factor(expression if found is None else found)
 
 
 @lru_cache(maxsize=256)
 def trace_and_determinant(cycle: Cycle, contraction: Expr = lam) -> tuple[Expr, Expr]:
-    """Trace and determinant of the monodromy matrix."""
-    matrix = monodromy(cycle, 0, contraction)
-    return simplify(matrix.trace()), simplify(matrix.det())
+    """Trace and determinant of the monodromy matrix, the latter as the product over the flights."""
+    area = prod(
+        determinant(contraction).subs({cos_phi0: cycle.cos_exit(i), cos_eta1: cycle.cos_incidence(i + 1)})
+        for i in range(len(cycle.bounces))
+    )
+    return shortened(monodromy(cycle, 0, contraction).trace()), shortened(area)
 
 
 def discriminant(trace: Expr, det: Expr) -> Expr:
@@ -348,8 +361,8 @@ def parallel_shape() -> Expr:
     """
     _, y = egg(3).components[0].point
     slope = y.diff(theta).subs(theta, acos(c))
-    (shape,) = solve(expand(slope.expand(trig=True)), alpha)
-    return together(shape)
+    slope = expand(slope.expand(trig=True))
+    return cancel(-slope.coeff(alpha, 0) / slope.coeff(alpha, 1))
 
 
 @lru_cache(maxsize=64, typed=True)

@@ -35,7 +35,7 @@ from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt
 
 from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter, shortened
 from symbolic.cycles.polygons import half_turn
-from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive
+from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive, vanishes
 from symbolic.motion.collision import area_factor, derivative_matrix
 from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
 
@@ -148,7 +148,7 @@ def tilt(K: int | Expr = 3) -> Expr:
     """
     P = stability_number(egg_diameter(K))
     W = 2 * S(K) ** 2 * alpha / (1 - alpha**2)
-    if simplify(1 - P - W**2) != 0:
+    if not vanishes(1 - P - W**2):
         raise ValueError(f"egg: K = {K} is even; a vertex then faces a vertex and alpha-tilde does not exist")
     return W
 

@@ -6,7 +6,7 @@ polynomials decides whether it is 0. With them, reducing its numerator modulo th
 and a failed reduction refutes nothing.
 """
 
-from functools import cache
+from functools import cache, reduce
 from typing import Any
 
 from sympy import (
@@ -26,12 +26,16 @@ from sympy import (
     gcd_list,
     preorder_traversal,
     sin,
+    sqrt,
     symbols,
     tan,
     together,
 )
+from sympy.polys.fields import field
 from sympy.polys.polyerrors import PolynomialError
 from sympy.polys.rings import PolyElement, ring
+
+Element = tuple[Any, Any]  # `p + q*r` by `p` and `q`
 
 
 def is_zero_in_ring(expression: Expr) -> bool | None:
@@ -132,6 +136,62 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
     except ZeroDivisionError:
         return None
     return zero or (None if roots else False)
+
+
+def over_one_root(expression: Expr) -> Expr | None:
+    """A rational function of letters and of one square root `r` as `p + q*r`, both cancelled; None for any other.
+
+    The field of rational functions is extended by `r`, whose square is known; `1/(p + q*r)` is the conjugate over
+    the norm.
+
+    >>> from sympy import sqrt
+    >>> x = symbols("x")
+    >>> over_one_root((x**2 - 2) / (x - sqrt(2))), over_one_root(1 / (1 + sqrt(1 - x**2)))
+    (x + sqrt(2), -sqrt(1 - x**2)/x**2 + x**(-2))
+    """
+    bases = {power.base for power in expression.atoms(Pow) if _is_root(power)}
+    if len(bases) != 1:
+        return None
+    (base,) = bases
+    letters = sorted(expression.free_symbols, key=str)
+    numbers = field(letters or [Dummy("x")], QQ)[0]
+    generator = dict(zip(letters, numbers.gens, strict=False))
+    zero, one = numbers(0), numbers(1)
+
+    def product(left: Element, right: Element) -> Element:
+        (p, q), (u, v) = left, right
+        return (p * u + q * v * square, p * v + q * u) if q or v else (p * u, zero)
+
+    def power(element: Element, exponent: int) -> Element:
+        p, q = element
+        if exponent < 0:
+            norm = p**2 - q**2 * square
+            element = p / norm, -q / norm
+        return reduce(product, [element] * abs(exponent), (one, zero))
+
+    def read(node: Expr) -> Element:
+        if node.is_Rational:
+            return numbers(QQ(node.p, node.q)), zero
+        if node.is_Symbol:
+            return generator[node], zero
+        if isinstance(node, Add):
+            parts = [read(part) for part in node.args]
+            return sum((p for p, _ in parts), zero), sum((q for _, q in parts), zero)
+        if isinstance(node, Mul):
+            return reduce(product, map(read, node.args))
+        if isinstance(node, Pow) and node.exp.is_Integer:
+            return power(read(node.base), int(node.exp))
+        if isinstance(node, Pow) and node.base == base:
+            return product((zero, one), power((square, zero), int(node.exp - S.Half)))
+        raise PolynomialError
+
+    square = zero
+    try:
+        square = read(base)[0]
+        rational, irrational = read(expression)
+    except (PolynomialError, ZeroDivisionError):
+        return None
+    return S(rational.as_expr()) + S(irrational.as_expr()) * sqrt(base)
 
 
 def reduced_numerator(expression: Expr) -> Expr:

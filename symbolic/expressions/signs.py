@@ -10,10 +10,10 @@ in the box (the Bernstein criterion), else the box is halved. Faces that belong 
 judged by the same rule, one variable fewer, so ends of ranges are never lost and never assumed.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from math import comb
+from math import comb, prod
 from typing import Any
 
 from sympy import (
@@ -243,13 +243,34 @@ def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Fi
     points: list[dict[Symbol, Expr]] = [{}]
     for x, interval in box.items():
         points = [{**point, x: value} for point in points for value in _samples(interval)]
+    value_at = _evaluator(p, tuple(box))
     for point in points:
-        value = p.subs(point)
+        value = value_at(point)
         if value.is_negative or (value.is_nonpositive and not strictly):
             where = ", ".join(f"{x} = {v}" for x, v in point.items())
             reason = f"at {where} the value is {value}" if where else f"the value is {value}"
             return Finding(Outcome.REFUTED, reason, tuple(point.items()))
     return None
+
+
+def _evaluator(p: Expr, used: tuple[Symbol, ...]) -> Callable[[dict[Symbol, Expr]], Expr]:
+    """The values of `p` at given points: by its terms where they and the point are rational, else by substitution."""
+
+    def substituted(point: dict[Symbol, Expr]) -> Expr:
+        return p.subs(point)
+
+    poly = Poly(p, *used) if used and p.is_polynomial(*used) else None
+    if poly is None or poly.domain not in (ZZ, QQ):
+        return substituted
+    terms = [(powers, QQ.from_sympy(c)) for powers, c in poly.terms()]
+
+    def value(point: dict[Symbol, Expr]) -> Expr:
+        if not all(x.is_Rational for x in point.values()):
+            return substituted(point)
+        at = [QQ.from_sympy(point[x]) for x in used]
+        return QQ.to_sympy(sum((c * prod(map(pow, at, powers)) for powers, c in terms), QQ.zero))
+
+    return value
 
 
 def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:

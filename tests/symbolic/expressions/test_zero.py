@@ -5,9 +5,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import I, Rational, S, Symbol, cos, expand, nan, pi, sin, sqrt, tan
 
-from symbolic.expressions.identities import is_zero_in_ring, reduced_numerator
+from symbolic.expressions.identities import is_zero_in_ring, over_one_root, reduced_numerator
 from symbolic.expressions.signs import vanishes
-from symbolic.tables.geometry import trigonometric
+from symbolic.tables.curves import trigonometric
 from symbolic.tables.table import a, theta
 
 x, y = Symbol("x", real=True), Symbol("y", real=True)
@@ -161,3 +161,35 @@ def test_the_reduced_numerator_holds_no_squared_sine():
     reduced = reduced_numerator(sin(theta) ** 4 + sin(theta) ** 3 / 2)
 
     assert expand(reduced - 2 * (1 - cos(theta) ** 2) ** 2 - sin(theta) * (1 - cos(theta) ** 2)) == 0
+
+
+@settings(max_examples=15)
+@given(st.sampled_from([S(3), 1 - x**2, x]), st.lists(SMALL, min_size=8, max_size=8))
+@example(1 - x**2, [0, 0, 1, 0, 1, 0, 0, 1])
+def test_a_quotient_with_one_square_root_is_a_rational_part_and_a_rational_multiple_of_the_root(base, numbers):
+    c = [S(number) for number in numbers]
+    r = sqrt(base)
+    bottom = c[4] + c[5] * x + (c[6] + 7 * y) * r
+    quotient = (c[0] + c[1] * y + (c[2] + c[3] * x) * r**3) / bottom + c[7] / r + r
+    found = over_one_root(quotient)
+    share = Symbol("share")
+    parts = found.xreplace({r: share})
+    assert vanishes(found - quotient)
+    assert parts.is_rational_function() and parts.diff(share, 2) == 0
+
+
+def test_two_square_roots_or_other_words_are_left_to_others():
+    assert over_one_root(sqrt(x) + sqrt(y)) is None
+    assert over_one_root(cos(x) * sqrt(y)) is None
+    assert over_one_root(1 / (x - sqrt(x**2))) is None
+    assert over_one_root(x + 1) is None
+
+
+@settings(max_examples=15)
+@given(trigonometric_sums(), trigonometric_sums(), SMALL)
+@example(cos(theta) ** 3, sin(theta) ** 3, 2)
+def test_letters_among_the_coefficients_are_kept_as_they_are(p, q, k):
+    whole = (p + a * q) ** 2 + k * a
+    found = trigonometric(whole)
+    assert found == expand(trigonometric(p**2) + a * trigonometric(2 * p * q + k) + a**2 * trigonometric(q**2))
+    assert vanishes(found - whole)

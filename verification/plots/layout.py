@@ -101,6 +101,7 @@ class Cell:
     axes: "Axes"
     dpi: float
     numbered: "list[list[float]] | None" = None
+    legend: "Array | None" = None  # its corners, from the point that it hangs on
     reach: "Array" = field(default_factory=lambda: np.zeros((2, 2)))
 
     def beyond(self, renderer: RendererAgg) -> "Array":
@@ -108,8 +109,11 @@ class Cell:
         words = self.words(renderer)
         box = Bbox(self.axes.bbox.get_points() + self.dpi * words * [[-1], [1]])
         legend = self.axes.get_legend()
-        if legend is not None:
-            box = Bbox.union([box, legend.get_window_extent(renderer)])
+        if legend is not None and legend.get_bbox_to_anchor() is not self.axes.bbox:  # else it lies within
+            anchor = legend.get_bbox_to_anchor().min
+            if self.legend is None:
+                self.legend = legend.get_window_extent(renderer).get_points() - anchor
+            box = Bbox.union([box, Bbox(anchor + self.legend)])
         cell = self.axes.get_position(original=True).transformed(self.axes.figure.transFigure)
         return _outside(box, cell) / self.dpi
 

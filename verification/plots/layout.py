@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 PAD = 3 / 72  # inches around all that belongs to one axes
 BETWEEN = 0.02  # of a figure's side: the least room between all columns or all rows together
 PASSES = 2  # a legend lies at a part of the size of its axes, which depends on the room for legends
-DECADES = 1.0  # an axis over no more of them has numbers at its minor ticks
+DECADE = 10.0  # an axis over no more than one has numbers at its minor ticks
 _parsers: dict[str, Any] = {}
 
 
@@ -165,7 +165,7 @@ def plain_minor_ticks(axes: "Axes") -> None:
     They look as Matplotlib's do, each of which is five artists.
     """
     low, high = axes.get_xlim()
-    if not np.log10(high / low) > DECADES:
+    if not high > DECADE * low:
         return
     places = [place for place in axes.xaxis.get_minorticklocs() if low <= place <= high]
     axes.xaxis.set_minor_locator(NullLocator())

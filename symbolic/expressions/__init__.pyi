@@ -3,6 +3,7 @@
 from . import text
 from .enclosures import UnboundedError, pole, root_integral, sign_in, sign_on
 from .numbers import Mask, NumberSystem, R, Real
+from .parts import parted
 from .signs import (
     Box,
     Finding,
@@ -40,6 +41,7 @@ __all__ = [
     "kernel",
     "load",
     "nonnegative",
+    "parted",
     "placed",
     "pole",
     "positive",

@@ -16,8 +16,9 @@ from .cascade import (
 )
 from .cells import Array, fixed_points
 from .chain import Chain, Elimination, dot, trace_and_determinant
-from .chords import Chords, arc_length, chord_angles, landing
+from .chords import Chords, chord_angles, landing
 from .critical import Small, corner, corner_angle, focus, polygon, solved
+from .lengths import arc_length
 from .newton import (
     ATTEMPTS,
     GUARD,

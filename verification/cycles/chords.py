@@ -3,29 +3,27 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
-from flint import arb, arb_series, ctx
-from sympy import pi
 
-from symbolic.expressions.text import kernel, load
+from symbolic.expressions.parts import parted
+from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel, ends_kernel, law_kernel, partials
 from symbolic.tables.definition import table_boundary
-from symbolic.tables.geometry import speed
 from symbolic.tables.law import PAPERS_LAW, Law
-from symbolic.tables.table import Table, theta
+from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, between
-from verification.arithmetic.series import Jet
+from verification.cycles.lengths import arc_length, map_of
 from verification.cycles.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
-from verification.maps.enclosed import EnclosedMap
-from verification.maps.exact import ExactMap
 from verification.maps.first_hit import closes_smoothly, convex
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
 CLOSE = 1e-13
 Slopes = Mapping[str, Any]  # of a law, by name
+End = tuple[int, int, Any]  # of a chord: its component, the number of the bounce, and its parameter
 
 
 class ChordAngles:
@@ -40,6 +38,7 @@ class ChordAngles:
     def __init__(self, table: Table, arithmetic: Arithmetic) -> None:
         self.table, self.arithmetic = table, arithmetic
         self.loaded: dict[tuple[int, int, int], Callable[..., Any]] = {}
+        self.in_parts: dict[tuple[int, int, int], tuple[Callable[..., Any], ...]] = {}
 
     def __call__(self, here: int, there: int, order: int) -> Callable[..., Any]:
         """The kernel from component `here` to `there`, with derivatives up to `order`; loaded once."""
@@ -47,6 +46,30 @@ class ChordAngles:
         if key not in self.loaded:
             self.loaded[key] = load(chord_kernel(self.table, *key), self.arithmetic)
         return self.loaded[key]
+
+    def between(self, order: int, shape: Sequence[Any]) -> Callable[[End, End], Sequence[Any]]:
+        """The angle from one end of a chord to another, for an orbit's chords: what belongs to an end is computed once.
+
+        Ends are told apart by their numbers, so one number is one end for as long as the function is kept.
+        """
+        known: dict[tuple[int, int, int, int], Any] = {}
+        names = tuple(p.symbol.name for p in self.table.shapes)
+
+        def angle(here: End, there: End) -> Sequence[Any]:
+            key = here[0], there[0], order
+            if self.arithmetic is FLOAT64:  # in which a sine costs no more than to look it up
+                return self(*key)(here[2], there[2], *shape)  # type: ignore[no-any-return]
+            if key not in self.in_parts:
+                parts = parted(chord_kernel(self.table, *key), ("theta0", *names), ("theta1", *names))
+                self.in_parts[key] = tuple(load(part, self.arithmetic) for part in parts)
+            *alone, rest = self.in_parts[key]
+            for k, (part, end) in enumerate(zip(alone, (here, there), strict=True)):
+                if (k, end[1], here[0], there[0]) not in known:
+                    known[k, end[1], here[0], there[0]] = part(end[2], *shape)
+            both = (known[k, end[1], here[0], there[0]] for k, end in enumerate((here, there)))
+            return rest(here[2], there[2], *shape, *chain.from_iterable(both))  # type: ignore[no-any-return]
+
+        return angle
 
 
 @cache
@@ -189,16 +212,29 @@ class Chords:
         >>> abs(found.value) < 1e-15
         True
         """
-        angles, parts = chord_angles(self.table, arithmetic), self.components
+        angles = chord_angles(self.table, arithmetic)
 
         def rule(i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
-            before, here, after = near
-            shape = [at[name] for name in self.shapes]
-            f = angles(parts[i], parts[(i + 1) % len(parts)], order)(here, after, *shape)
-            b = angles(parts[i], parts[i - 1], order)(here, before, *shape)
-            return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, parts[i], b[0], here, at, order))
+            angle = angles.between(order, [at[name] for name in self.shapes])
+            return self._at_bounce(arithmetic, angle, i, near, at, order)
 
         return rule
+
+    def bounces(self, arithmetic: Arithmetic, padded: Sequence[Any], at: Mapping[str, Any], order: int) -> Terms[Any]:
+        """The collision rule at every bounce, of all with the neighbours at either end."""
+        angle = chord_angles(self.table, arithmetic).between(order, [at[name] for name in self.shapes])
+        near = (padded[i : i + 3] for i in range(self.period))
+        return Terms.along([self._at_bounce(arithmetic, angle, i, x, at, order) for i, x in enumerate(near)])
+
+    def _at_bounce(
+        self, arithmetic: Arithmetic, angle: Any, i: int, near: Sequence[Any], at: Mapping[str, Any], order: int
+    ) -> Terms[Any]:
+        parts = self.components
+        before, here, after = near
+        own = parts[i], i, here
+        f = angle(own, (parts[(i + 1) % len(parts)], i + 1, after))
+        b = angle(own, (parts[i - 1], i - 1, before))
+        return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, parts[i], b[0], here, at, order))
 
     def doubled(self) -> "Chords":
         """The ring run through twice."""
@@ -233,7 +269,7 @@ class Chords:
         if np.max(np.abs(out)) >= np.pi / 2:
             return f"the chord from bounce {int(np.argmax(np.abs(out)))} does not point into the table"
         shape: dict[str, Any] = {name: at[name] for name in self.shapes}
-        map = PinballMap(self.table, kernels=False, **shape) if shape else _map_of(self.table, PinballMap)
+        map = PinballMap(self.table, kernels=False, **shape) if shape else map_of(self.table, PinballMap)
         landed = map.step(x, out, np.array(self.components))
         after = np.roll(np.array(self.components), -1)
         expected = around(self.closure, x)[2:]
@@ -288,63 +324,6 @@ def _convex_throughout(table: Table) -> bool:
     if not table.shapes or "table" in table_boundary(table)[0]:
         return bool(table.shapes) or convex(table) is True
     return convex(table, tuple(between(float(p.range.start), float(p.range.end)) for p in table.shapes)) is True
-
-
-@cache
-def _map_of(table: Table, maker: Any) -> Any:
-    return maker(table, lam=1)
-
-
-class Lengths:
-    """The paper's arc length on a closed curve where it is an integral: of floats, arrays, mpmath numbers, balls, jets.
-
-    It is counted on one way round, between the ends of the curve's parameter: at them it jumps by the perimeter.
-    """
-
-    def __init__(self, table: Table) -> None:
-        from numeric import PinballMap
-
-        self.map, self.exact, self.enclosed = _map_of(table, PinballMap), dict[int, ExactMap](), dict[int, Any]()
-        (whole,) = table.components
-        if (whole.start, whole.end) != (-pi, pi):
-            raise ValueError(
-                f"{table.name}: the parameter of a closed curve runs from -pi to pi, where s is integrated"
-            )
-        self.rate = kernel("speed", [theta], {"speed": speed(whole)})
-
-    def placed(self, arithmetic: Arithmetic, here: Any) -> list[Any]:
-        """The parameter between -pi and pi, by its middle, and the arc length there."""
-        middle = here.c[0] if isinstance(here, Jet) else here[0] if isinstance(here, arb_series) else here
-        turns = np.round(np.asarray(middle, dtype=float) / (2 * np.pi))
-        here = here - 2 * arithmetic.pi * (turns if turns.ndim else int(turns)) if np.any(turns) else here
-        if not isinstance(here, (Jet, arb_series)):
-            return [here, self.of(here)]
-        (rate,) = load(self.rate, arithmetic)(here)
-        if isinstance(here, arb_series):
-            return [here, (rate * here.derivative()).integral() + self.of(here[0])]
-        steps = rate * Jet(*(k * c for k, c in enumerate(here.c[1:], 1)), 0)
-        return [here, Jet(self.of(here.c[0]), *(c / k for k, c in enumerate(steps.c[:-1], 1)))]
-
-    def of(self, here: Any) -> Any:
-        """The length at a number; of a ball it is enclosed, by the integral to its middle and the speed over it."""
-        if isinstance(here, arb):
-            if ctx.prec not in self.enclosed:
-                self.enclosed[ctx.prec] = EnclosedMap(self.map, 1, ctx.prec)
-            return _enclosed(self.enclosed[ctx.prec], here.lower().man_exp(), here.upper().man_exp())
-        if not hasattr(here, "context"):
-            return self.map.arclength.s(here)
-        if here.context.dps not in self.exact:
-            self.exact[here.context.dps] = ExactMap(self.map, here.context.dps)
-        return here.context.mpf(self.exact[here.context.dps].length(0, here))
-
-
-@lru_cache(256)  # of boxes that differ in other bounces
-def _enclosed(map: EnclosedMap, low: Any, high: Any) -> arb:
-    found: arb = map.length(0, arb(low).union(arb(high)))
-    return found
-
-
-arc_length = cache(Lengths)
 
 
 def landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:

@@ -186,8 +186,8 @@ class Linearised:
         if arithmetic is FLOAT64 and n >= LONG:
             self.terms = problem.ring.terms(np.array(z[:n]), self.at, order).listed()
         else:
-            padded, rule = closure.padded(z[:n], closure.angle(arithmetic)), problem.ring.over(arithmetic)
-            self.terms = Terms.along([rule(i, padded[i : i + 3], self.at, order) for i in range(n)])
+            padded = closure.padded(z[:n], closure.angle(arithmetic))
+            self.terms = problem.ring.bounces(arithmetic, padded, self.at, order)
         self.value: Vector = list(self.terms.value)
         self.plain = Chain(*self.terms.slope, closure.turn)
         if kind is not None:

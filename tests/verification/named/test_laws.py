@@ -18,7 +18,8 @@ from verification import EnclosedMap, certify, find_cycles, follow
 from verification.app.cli import main
 from verification.arithmetic.balls import FLOAT64, balls, multiprecision, working
 from verification.arithmetic.series import Jet, along, in_series, jets
-from verification.cycles.chords import Chords, Lengths
+from verification.cycles.chords import Chords
+from verification.cycles.lengths import Lengths
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import Closure
 from verification.maps.exact import ExactMap

@@ -39,7 +39,7 @@ from symbolic.tables.law import Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import balls, working
 from verification.cycles.chain import Chain
-from verification.cycles.chords import arc_length
+from verification.cycles.lengths import arc_length
 from verification.cycles.newton import System
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.search import Catalogue

@@ -214,24 +214,50 @@ def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Invert
     >>> found.defect < 1e-6, 10 < found.bound < 30
     (True, True)
     """
-    matrix, size_of = ulam(cells, sign), spread if sign == 1 else largest
-    identity, inverse = np.eye(cells), _in_floats(matrix, sign) if inverse is None else inverse
+    matrix = ulam(cells, sign)
+    inverse = _in_floats(matrix, sign) if inverse is None else inverse
     entries = int(np.diff(matrix.indptr).max())
     rounding = (entries + 4) * UNIT * (2 * largest(inverse) + 1)
-    size = size_of(inverse)
+    size = spread(inverse) if sign == 1 else largest(inverse)
     displaced = 2 * (cells * 1.5 + 3) / GRAIN
-    defect = size_of(identity - inverse + (matrix.T @ inverse.T).T) + rounding * BLANKET + size * displaced
+    left = (matrix.T @ inverse.T).T
+    left -= inverse
+    left[np.diag_indices(cells)] += 1
+    if sign == 1:  # less any one vector, and this one costs less than a median
+        left -= left.mean(axis=1)[:, None]
+    defect = largest(left) + rounding * BLANKET + size * displaced
     bound = size / (1 - defect) * BLANKET if sign in (1, -1) and defect < 0.5 else None
     return Inverted(cells, bound, defect, sign)
 
 
 def _in_floats(matrix: csc_matrix, sign: int) -> Matrix:
-    """About an inverse of `I - Q` on vectors of sum 0, or on all."""
+    """About an inverse of `I - Q` on vectors of sum 0, or on all.
+
+    The upper half of the cells is carried to the lower half `B`, so its unknowns are put into the equations of `B`, and
+    what is inverted is half as large: with `r` for what `(I - Q)u` is, the equations of `B` are
+
+        (I - Q_BB - Q_BA*Q_AB) u_B = r_B + Q_BA*r_A,     u_A = r_A + Q_AB*u_B,
+
+    and that all `u` sum to 0 is one more, which is added to each, times the mass of its cell.
+    """
     cells = matrix.shape[0]
-    mass = np.full(cells, 1 / cells)
-    for _ in range(60):
-        mass = matrix @ mass
-    return np.asarray(np.linalg.inv(np.eye(cells) - matrix.toarray() + (mass[:, None] if sign == 1 else 0)))
+    half = cells // 2
+    rows = matrix.tocsr()
+    ahead, into, out = rows[:half, :half], rows[:half, half:], rows[half:, :half]
+    mass = np.full(half, 1.0 / cells)
+    for _ in range(60 if sign == 1 else 0):
+        mass = ahead @ mass + into @ (out @ mass)
+    total = 1 + np.asarray(out.sum(axis=0)).ravel()  # what each of `u_B` adds to the sum of all
+    reduced = np.eye(half) - (ahead + into @ out).toarray() + (np.outer(mass, total) if sign == 1 else 0)
+    inverse = np.linalg.inv(reduced)
+    found = np.empty((cells, cells))
+    found[:half, :half] = inverse
+    found[:half, half:] = (into.T @ inverse.T).T
+    if sign == 1:
+        found[:half, half:] -= (inverse @ mass)[:, None]
+    found[half:] = out @ found[:half]
+    found[half:, half:].flat[:: half + 1] += 1
+    return found
 
 
 def largest(matrix: Matrix) -> float:

@@ -110,12 +110,12 @@ class BallArray:
 
     def positive(self) -> NDArray[np.bool_]:
         """Where every number is positive; False says only that this is not known."""
-        known: NDArray[np.bool_] = np.logical_and(self.m - self.r > 0, self.r < np.inf)
+        known: NDArray[np.bool_] = self.m - self.r > 0  # not where the radius is infinite or nan
         return known
 
     def negative(self) -> NDArray[np.bool_]:
         """Where every number is negative; False says only that this is not known."""
-        known: NDArray[np.bool_] = np.logical_and(self.m + self.r < 0, self.r < np.inf)
+        known: NDArray[np.bool_] = self.m + self.r < 0
         return known
 
     def magnitude(self) -> Array:
@@ -147,7 +147,7 @@ def hull(low: Any, high: Any) -> BallArray:
     """
     m = low + (high - low) / 2
     r = np.maximum(high - m, m - low)
-    return BallArray(m, (r + ROUNDING * r + TINY) * GROWTH)
+    return BallArray(m, (r + TINY) * GROWTH)
 
 
 def common_part(x: BallArray, y: BallArray) -> BallArray:

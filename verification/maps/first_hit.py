@@ -90,7 +90,7 @@ def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
     ranges = {p.symbol: p.range for p in table.shapes}
     if bend.is_nonnegative or (_all_within(shape, ranges.values()) and _exactly_nonnegative(bend, ranges)):
         return True
-    if ranges and not shape:
+    if not shape:
         shape = tuple(_over(r) for r in ranges.values())
     function = load(kernel("turning", [theta, *(p.symbol for p in table.shapes)], {"bend": bend}), balls(BITS))
     with working(BITS):

@@ -287,7 +287,7 @@ def _supercritical(K: int, lam: arb, alpha: arb) -> bool:
     except ZeroDivisionError:
         return False
     chain = at.plain
-    return bool(-bend * chain.upper[0] * chain.upper[1] / chain.diagonal[0] < 0)
+    return bool(math.prod((bend, *chain.upper, chain.diagonal[0])) > 0)  # turn has the other sign than u0*u1*d0
 
 
 BITS_OF_INTERVAL = 96
@@ -330,9 +330,9 @@ def over_interval(
     lam, end = ends
     theta = floats(Problem(table, components, lam=Rational(lam)), start)
     spent, step, at = 0, (end - lam) / 16, lam
-    rates = [1.0] * len(theta)
-    while (end - lam) * step > 0:
-        step = math.copysign(min(abs(step), abs(end - lam)), step)
+    while lam != end:
+        there = lam + step if abs(step) < abs(end - lam) else end
+        step = there - lam
         spent += 1
         if spent > budget or abs(step) < 1e-9:
             return OverInterval(False, lam, spent)
@@ -342,15 +342,19 @@ def over_interval(
         except ValueError:
             step /= 2
             continue
-        if middle != at:
-            rates = [abs(x - y) / abs(middle - at) for x, y in zip(moved, theta, strict=True)]
-        radii = [abs(step) * (0.7 * rate + 0.2 * max(rates)) + 1e-12 for rate in rates]
+        radii = _radii(moved, theta, step / (middle - at))
         if _proved(table, components, moved, middle, abs(step) / 2, radii) is wanted:
             tick(step / (end - ends[0]))
-            lam, at, theta, step = lam + step, middle, moved, step * 1.3
+            lam, at, theta, step = there, middle, moved, step * 1.3
         else:
             step /= 2
     return OverInterval(True, end, spent)
+
+
+def _radii(moved: list[float], theta: list[float], share: float) -> list[float]:
+    """How far from the middle of a step its bounces may be, from how far they moved to it: a guess."""
+    reaches = [abs((x - y) * share) for x, y in zip(moved, theta, strict=True)]
+    return [0.7 * reach + 0.2 * max(reaches) + 1e-12 for reach in reaches]
 
 
 def _proved(

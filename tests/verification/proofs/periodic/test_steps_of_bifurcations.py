@@ -239,13 +239,18 @@ def test_a_doubling_curve_is_asked_piece_by_piece_until_all_of_it_is_covered(mon
 @pytest.mark.parametrize("wanted", [Stability.ATTRACTING, Stability.SADDLE])
 def test_the_steps_of_a_stretch_cover_it_up_to_what_is_not_proved(monkeypatch, ends, hole, wanted):
     """A cycle of which nothing but one contraction is in the way; it moves by twice and once as much as that."""
-    proved_of, told = [], []
+    proved_of, told, halves = [], [], [(ends[1] - ends[0]) / 16 / 1.3 / 2]
 
     def asked(table, components, theta, middle, half, radii):
         assert theta == pytest.approx([2 * middle, -middle])
         assert all(r >= half * rate for r, rate in zip(radii, (2, 1), strict=True)) or not proved_of
+        refused = len(halves) > 1 and halves[-1] > 0
+        wanted_half = abs(halves[-1]) * (0.5 if refused else 1.3)
+        assert half == pytest.approx(min(wanted_half, abs(ends[1] - middle)), rel=1e-6)
+        halves.append(half)
         if half > 0.05 or (hole is not None and abs(hole - middle) <= half):
             return Stability.UNKNOWN
+        halves[-1] = -half
         proved_of.append((middle - half, middle + half))
         return wanted
 

@@ -20,7 +20,7 @@ from math import gcd
 from typing import Any
 
 from flint import arb
-from sympy import QQ, ZZ, Dummy, Expr, Interval, Matrix, Poly, S, chebyshevt, expand, pi, simplify
+from sympy import QQ, ZZ, Expr, Interval, Matrix, Poly, S, chebyshevt, pi, simplify
 
 from symbolic.expressions.signs import nonnegative
 from symbolic.expressions.text import kernel, load
@@ -125,12 +125,11 @@ def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
     Its coefficients may be polynomials in shape parameters, which have `ranges`.
     """
     waves = coefficients(bend)
-    if waves is None or len(waves) < 2 or any(expand(waves.get(-k, S.Zero) - w) != 0 for k, w in waves.items()):
+    if waves is None or len(waves) < 2 or not all(isinstance(r, Interval) for r in ranges.values()):
         return False
-    if not all(map(_rational, waves.values())) or not all(isinstance(r, Interval) for r in ranges.values()):
+    if not all(map(_rational, waves.values())):  # so those of k and -k, which are conjugate, are equal
         return False
-    step = gcd(*waves)
-    c = Dummy("c", real=True)  # a parameter may be called so, too
+    step, c = gcd(*waves), theta  # which now stands for the cosine
     polynomial = sum((w * (2 if k else 1) * chebyshevt(k // step, c) for k, w in waves.items() if k >= 0), S.Zero)
     used = {p: r for p, r in ranges.items() if p in polynomial.free_symbols}
     return bool(nonnegative(polynomial, {c: Interval(-1, 1)} | used))
@@ -145,7 +144,7 @@ def _rational(w: Expr) -> bool:
 def _over(range: Interval) -> arb:
     """A ball over a range; without end where the range has none, or where its ends are no rationals."""
     if not (range.start.is_Rational and range.end.is_Rational):
-        return arb(0, arb("inf"))
+        return arb("0 +/- inf")
     return _exact(Fraction(str(range.start))).union(_exact(Fraction(str(range.end))))
 
 
@@ -204,8 +203,7 @@ def inside(
 def minimal(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
     """True when no shorter cycle is run through several times: some bounce differs from its image."""
     n = len(components)
-    for prime in (k for k in range(2, n + 1) if n % k == 0 and all(k % j for j in range(2, k))):
-        shift = n // prime
+    for shift in (k for k in range(1, n) if n % k == 0):
         if not any(_apart(table, components, zero, i, (i + shift) % n) for i in range(n)):
             return None
     return True

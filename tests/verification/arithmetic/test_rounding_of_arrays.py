@@ -1,4 +1,4 @@
-"""Balls in arrays, in rational numbers: no end of a ball is lost by a rounding, and none is wider than its proof says."""
+"""Balls in arrays, in rational numbers: no rounding loses an end of a ball, and none is wider than its proof says."""
 
 from fractions import Fraction
 from itertools import product
@@ -41,7 +41,7 @@ def every(*lists):
 
 @pytest.mark.parametrize("operation", [add, sub, mul, truediv])
 def test_each_operation_holds_the_corners_exactly_and_reaches_hardly_beyond(operation):
-    """Of `x + y`, `x - y`, `x*y`, `x/y` the extremes over two balls are at corners; that is all the radius but a hair."""
+    """The extremes of a sum, difference, product or quotient over two balls are at corners: all its radius but a hair."""
     a, ra, b, rb = every(MIDDLES, RADII, MIDDLES, RADII)
     found = operation(BallArray(a, ra), BallArray(b, rb))
     for m, r, *ends in zip(*(x.tolist() for x in (found.m, found.r, a, ra, b, rb)), strict=True):
@@ -145,7 +145,7 @@ AT = np.array([0.0, 0.3, -0.34, 0.35, 1.0, -1.5, 7.7, -20.0, 63.9, -63.9])
 
 
 def test_the_exponential_is_as_wide_as_the_count_of_its_errors():
-    """Relative to its value `r + r**2`, for `exp(r) - 1`, and the error of a double, which a factor of `1 + r` spreads."""
+    """Relative to its value `r + r**2`, for `exp(r) - 1`, and the error of a double, which a factor `1 + r` spreads."""
     m, r = every(AT, [0.0, 2.0**-60, 2.0**-10, 0.5, 1.0])
     found = ArrayOps().exp(BallArray(m, r))
     with working(200):
@@ -211,7 +211,7 @@ OFF = [0.0, 1e-3, -1e-3, 0.1, -0.1, 0.3, -0.3]
 
 @pytest.mark.parametrize("off", OFF)
 def test_a_logarithm_is_enclosed_whatever_was_guessed(monkeypatch, off):
-    """Within the square of how far the guess is off, where it is; of a double, by the errors of exponential and guess."""
+    """Within the square of how far the guess is off, and the errors of the exponential and of a double."""
     own = elementary.log
     monkeypatch.setattr(arrays.elementary, "log", lambda x: own(x) + off)
     m = np.array([0.1, 1.0, 3.7, 1e5])

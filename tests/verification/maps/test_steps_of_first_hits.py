@@ -23,7 +23,13 @@ SHARE = (theta - 2) / 3  # of that component
 
 @pytest.mark.parametrize(
     ("range", "value"),
-    [((3, 4), 3.5), ((-1, oo), 0), ((-oo, 5), 4), ((Rational(1, 4), Rational(1, 2)), 0.375), ((3, pi), (3 + math.pi) / 2)],
+    [
+        ((3, 4), 3.5),
+        ((-1, oo), 0),
+        ((-oo, 5), 4),
+        ((Rational(1, 4), Rational(1, 2)), 0.375),
+        ((3, pi), (3 + math.pi) / 2),
+    ],
 )
 def test_a_number_inside_a_range_is_its_middle_or_one_from_its_end(range, value):
     assert first_hit._some(Interval(*range)) == arb(value)
@@ -75,7 +81,7 @@ def test_a_component_bends_inwards_where_its_turning_is_positive_from_end_to_end
 
 def test_the_pieces_of_a_component_cover_it_and_are_halved_only_where_it_may_not_bend(monkeypatch):
     asked = []
-    for most, answer, count in ((0.8, arb(1), 3), (0.4, arb(1), 7), (3.0, arb(1), 1), (0.8, arb(0), 62)):
+    for most, answer, count in ((0.8, arb(1), 3), (0.4, arb(1), 7), (3.0, arb(1), 1), (0.8, arb(0), 61)):
         asked.clear()
 
         def turning(at, *shape, most=most, answer=answer):
@@ -87,7 +93,7 @@ def test_the_pieces_of_a_component_cover_it_and_are_halved_only_where_it_may_not
         monkeypatch.setattr(first_hit, "turning", lambda part: exp(theta) - 3)
         monkeypatch.setattr(first_hit, "PIECES", 60)
         assert first_hit._bends_inwards(Table("two", (ONE, ONE)), 1, ()) is (answer > 0)
-        assert len(asked) == count if answer > 0 else len(asked) <= count
+        assert len(asked) == count
         if answer > 0:
             small = sorted((at for at in asked if at.rad() < most), key=lambda at: float(at.mid()))
             assert len(small) == (count + 1) // 2
@@ -349,7 +355,9 @@ def test_a_chord_between_sides_of_a_star_is_free_exactly_where_it_meets_no_other
     for _ in range(120):
         i, j = chance.sample(range(len(STAR)), 2)
         at = [Fraction(chance.randint(40, 984), 1024) for _ in range(2)]
-        (p, q) = (tuple(a + t * (b - a) for a, b in zip(*sides[k], strict=True)) for k, t in zip((i, j), at, strict=True))
+        (p, q) = (
+            tuple(a + t * (b - a) for a, b in zip(*sides[k], strict=True)) for k, t in zip((i, j), at, strict=True)
+        )
         d = q[0] - p[0], q[1] - p[1]
         way = [tuple(b - a for a, b in zip(*sides[k], strict=True)) for k in (i, j)]
         free = cross(way[0], d) > 0 and cross(d, way[1]) > 0

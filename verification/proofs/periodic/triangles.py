@@ -31,13 +31,14 @@ from functools import partial
 from typing import Any
 
 from flint import arb
-from sympy import Expr, Integer, Rational, Symbol, atan, pi, sqrt, tan
+from sympy import Expr, Integer, Rational, atan, pi, sqrt, tan
 
 from symbolic.cycles.polygons import characteristic_on_branch, half_turn, largest_tilt
 from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import chord_kernel, polar_polygon_kernel, polygon_kernel
 from symbolic.tables import egg
 from symbolic.tables.table import alpha as letter
+from symbolic.tables.table import theta
 from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
 from verification.arithmetic.iteration import Tick, Vector, silent
 from verification.cycles.critical import Small
@@ -55,10 +56,9 @@ def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
     >>> flips_nowhere(Rational(2, 25))
     True
     """
-    x = Symbol("x", real=True)
-    value = characteristic_on_branch(x, Integer(-1)).subs(letter, alpha)
+    value = characteristic_on_branch(theta, Integer(-1)).subs(letter, alpha)
     with working(BITS):
-        at = load(kernel("characteristic", [x], {"value": value}), balls(BITS))
+        at = load(kernel("characteristic", [theta], {"value": value}), balls(BITS))
         end = load(kernel("fold", [], {"fold": acos_of(alpha)}), balls(BITS))()[0]
         queue, spent = [(0.5, 0.5)], 0
         while queue:

@@ -1,8 +1,8 @@
-"""The checklist of a bifurcation and the stretches of contractions: what each step is given, and each made to fail alone."""
+"""The checklist of a bifurcation, and stretches of contractions: what each step is given, and each made to fail alone."""
 
 import math
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, product
 from types import SimpleNamespace
 
 import pytest
@@ -112,7 +112,9 @@ def test_a_normal_form_is_worked_out_with_more_bits_only_where_fewer_leave_it_op
     assert len(asked["_form"]) == 3
 
 
-@pytest.mark.parametrize(("radius", "digits", "precise"), [(1, 0, False), (0.5, 0, True), (0.5, 1, False), (2, 0, False)])
+@pytest.mark.parametrize(
+    ("radius", "digits", "precise"), [(1, 0, False), (0.5, 0, True), (0.5, 1, False), (2, 0, False)]
+)
 def test_a_value_is_precise_where_its_radius_is_below_the_last_digit(monkeypatch, asked, radius, digits, precise):
     enclosed(monkeypatch, Status.UNIQUE, [*ZERO[:2], arb(0.25, radius)])
     assert proved(a_claim(Problem(cuspless, (1, 0), FLIP, "lam"), digits=digits)).checks["precise"] is precise
@@ -262,7 +264,7 @@ def test_the_steps_of_a_stretch_cover_it_up_to_what_is_not_proved(monkeypatch, e
     whole = hole is None or not low <= hole <= high
     assert found.proved is whole
     reached = sorted(proved_of)
-    assert all(abs(b[0] - a[1]) < 1e-15 for a, b in zip(reached, reached[1:], strict=False))
+    assert all(abs(b[0] - a[1]) < 1e-15 for a, b in pairwise(reached))
     begun, done = (reached[0][0], reached[-1][1]) if ends[0] < ends[1] else (reached[-1][1], reached[0][0])
     assert begun == pytest.approx(ends[0], abs=1e-15)
     assert done == pytest.approx(found.reached, abs=1e-15)

@@ -205,6 +205,10 @@ class EnclosedMap:
         middle: arb = iterated(correction, [near], NEWTON, kept=arb.mid).x[0]
         return middle
 
+    def _reach(self, step: arb, middle: arb) -> arb:
+        """How far about a guess a landing is looked for: an interval Newton step closes there, or nothing is said."""
+        return abs(step) * 4 + (abs(middle) + 1) * arb(2) ** (4 - self.bits)
+
     def _landed(self, here: Bounce, guess: Bounce) -> Bounce | None:
         """The enclosed landing near a guess, or None when Newton's step does not close."""
         vx, vy = here.v
@@ -215,7 +219,7 @@ class EnclosedMap:
 
         middle = self._polished(flight, guess.theta)
         value, slope = flight(middle)
-        radius = abs(value / slope) * 4 + (abs(middle) + 1) * arb(2) ** (4 - self.bits)
+        radius = self._reach(value / slope, middle)
         if not radius.is_finite():  # nor is it where the slope may be 0
             return None
         box = arb(middle, radius.upper())

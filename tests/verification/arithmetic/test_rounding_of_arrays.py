@@ -41,7 +41,7 @@ def every(*lists):
 
 @pytest.mark.parametrize("operation", [add, sub, mul, truediv])
 def test_each_operation_holds_the_corners_exactly_and_reaches_hardly_beyond(operation):
-    """The extremes of a sum, difference, product or quotient over two balls are at corners: all its radius but a hair."""
+    """The extremes of a sum, difference, product or quotient are at corners: all its radius but a hair."""
     a, ra, b, rb = every(MIDDLES, RADII, MIDDLES, RADII)
     found = operation(BallArray(a, ra), BallArray(b, rb))
     for m, r, *ends in zip(*(x.tolist() for x in (found.m, found.r, a, ra, b, rb)), strict=True):

@@ -107,10 +107,8 @@ def proved(claim: Claim) -> Proof:
     """
     problem = claim.problem
     enclosure = interval_newton(problem, list(claim.centre), claim.radius, claim.bits)
-    found = enclosure.status is Status.UNIQUE
-    checks: Checks = {"exists": True if found else None, "unique": True if found else None}
-    if enclosure.status is Status.EMPTY:
-        checks = {"exists": False, "unique": False}
+    found = {Status.UNIQUE: True, Status.EMPTY: False}.get(enclosure.status)
+    checks: Checks = {"exists": found, "unique": found}
     with working(claim.bits):
         zero = enclosure.zero
         bound = arb(10) ** -claim.digits
@@ -203,9 +201,8 @@ def twist(points: Table, components: Sequence[int], bounces: Sequence[arb], bits
         jets = [_jet(points, index, bits)(at) for index, at in zip(components, bounces, strict=True)]
         ends = [(jet[: QUARTIC + 1], jet[QUARTIC + 1 :]) for jet in jets]
         flights = zip(ends, [*ends[1:], ends[0]], strict=True)
-        return birkhoff_normal_form(
-            composed([bounce(chord(here, there, lambda x: x.sqrt())) for here, there in flights])
-        )
+        bounced = [bounce(chord(here, there, lambda x: x.sqrt())) for here, there in flights]
+        return birkhoff_normal_form(composed(bounced))
 
 
 def birkhoff_normal_form(map: Map) -> Twist:
@@ -327,13 +324,12 @@ def over_interval(
     >>> over_interval(egg(3).at(alpha=tilted), (0, 0, 0), flat, (0.99, 0.9), Stability.ATTRACTING).proved
     True
     """
-    lam, end = ends
+    (lam, end), spent = ends, 0
     theta = floats(Problem(table, components, lam=Rational(lam)), start)
-    spent, step, at = 0, (end - lam) / 16, lam
+    step, at = (end - lam) / 16, lam
     while lam != end:
         there = lam + step if abs(step) < abs(end - lam) else end
-        step = there - lam
-        spent += 1
+        step, spent = there - lam, spent + 1
         if spent > budget or abs(step) < 1e-9:
             return OverInterval(False, lam, spent)
         middle = lam + step / 2
@@ -366,7 +362,7 @@ def _proved(
         centre = [arb(x) for x in theta]
         over = krawczyk(wide, centre, radii, BITS_OF_INTERVAL)
         at = krawczyk(thin, centre, radii, BITS_OF_INTERVAL)
-        if over.status is not Status.UNIQUE or at.status is not Status.UNIQUE or convex(table) is not True:
+        if not over.status is at.status is Status.UNIQUE or convex(table) is not True:
             return Stability.UNKNOWN
         if not inside(table, components, over.zero) or not minimal(table, components, over.zero):
             return Stability.UNKNOWN

@@ -249,8 +249,8 @@ def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, 
     if any(not (p + ratio * e * _UNIT).contains(0) for p, e in zip(phi, eta, strict=True)):
         return True
     sloped = slopes(*theta)
-    dphi = [_slope(sloped[3 * i : 3 * i + 3], i, j) for i, j in ends]
-    deta = [_slope(sloped[3 * i + 9 : 3 * i + 12], i, i - 1) for i in range(3)]
+    dphi = [_slope(sloped[3 * i :], i, j) for i, j in ends]
+    deta = [_slope(sloped[3 * i + 9 :], i, i - 1) for i in range(3)]
     middle = angles(arb(first), arb(first) + one, arb(first) + one + two)
     phi_m, eta_m = middle[:3], middle[3:]
     offset = [x - m for x, m in zip(wide, (arb(first), arb(one), arb(two)), strict=True)]

@@ -1,4 +1,4 @@
-"""The checklist of a bifurcation, and stretches of contractions: what each step is given, and each made to fail alone."""
+"""The checklist of a bifurcation, and stretches of contractions: each step is given what it says, and fails alone."""
 
 import math
 from dataclasses import replace

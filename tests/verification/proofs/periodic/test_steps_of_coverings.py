@@ -366,6 +366,16 @@ def test_derivatives_by_gaps_are_sums_over_the_bounces_that_move_with_them():
     assert newton._by_gaps({1: arb(10)}, 3) == [10, 10, 0]
 
 
+def test_an_image_that_reaches_an_end_of_a_box_is_not_inside_it():
+    box = [arb(0, 1)] * 2
+    end = box[0].rad()  # a little more than 1
+    for image in ([end, arb(0)], [arb(0), -end], [end, end], [arb(0, 1), arb(0)]):
+        assert newton.compared(image, box) is Status.UNKNOWN
+    assert newton.compared([end * (1 - arb(2) ** -20)] * 2, box) is Status.UNIQUE
+    assert newton.compared([arb(0), end * (1 + arb(2) ** -20)], box) is Status.EMPTY
+    assert newton.slope_bits(1) == 136
+
+
 @pytest.mark.parametrize("off", [0.0, 0.3, -0.3])
 @pytest.mark.parametrize("half", [0.0, 1e-4])
 def test_krawczyks_operator_holds_the_cycle_of_each_contraction_and_is_hardly_wider_than_it_moves(off, half):

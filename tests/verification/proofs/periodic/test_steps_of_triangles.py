@@ -92,6 +92,23 @@ def test_a_box_that_no_rule_excludes_stays_whatever_is_not_finite():
         assert triangles._impossible(lambda *_, v=values: v, None, arb(1), arb(1), 0.25, box) is False
 
 
+@pytest.mark.parametrize("at", range(3))
+def test_one_rule_at_one_bounce_excludes_a_box_where_the_angles_are_known_over_all_of_it(at):
+    """The sum of the exit angles, and each incidence angle: of slopes nothing is known, and the middle is free."""
+    box = ((0.5, 2.0**-10), (2.5, 2.0**-10), (2.0, 2.0**-10))
+    unknown = lambda *_: [arb(0, 1e9)] * 18  # noqa: E731
+
+    def excluded(phi, eta):
+        values = lambda *z: [arb(0)] * 6 if z[0].is_exact() else [*map(arb, phi), *map(arb, eta)]  # noqa: E731
+        return triangles._impossible(values, unknown, arb(1), arb("0.5"), 0.25, box)
+
+    phi = [0.4 if k == at else 0.35 for k in range(3)]
+    assert excluded(phi, [-1] * 3)
+    assert not excluded([0.4 if k == at else 0.25 for k in range(3)], [-1] * 3)
+    for wrong in (1, -0.5):  # of the other sign, or too small for the largest contraction
+        assert excluded([0.3] * 3, [wrong if k == at else -1 for k in range(3)])
+
+
 @pytest.mark.parametrize(
     ("gaps", "gap", "settled"),
     [

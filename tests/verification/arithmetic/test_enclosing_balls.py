@@ -51,9 +51,7 @@ def test_a_power_of_any_exponent_is_that_of_doubles(power):
 def test_a_decimal_has_the_digits_that_are_asked_for_or_known_and_two_more():
     with working(300):
         third = arb(1) / 3
-        assert decimal(arb(1) / 8, 20) == ("0.1250000000000000000", "0") or decimal(arb(1) / 8, 20)[0].startswith(
-            "0.125"
-        )
+        assert decimal(arb(1) / 8, 20)[0].startswith("0.125")
         assert decimal(third, 5)[0] == "0.33333"
         for digits in (4, 9, 15):
             shown, bound = decimal(third + arb(0, 10.0**-digits), 40)

@@ -87,3 +87,41 @@ def test_each_component_has_its_two_ends():
         for low, high in first_hit._ends(sinai(), (), 64)[:4]:
             assert (low, high) == (0, 1)
     assert first_hit._exact(Fraction(-3, 4)) == arb(-0.75)
+
+
+def test_the_pieces_that_a_chord_is_asked_about_cover_every_component(monkeypatch):
+    """Halved until they are short; next to a bounce is only what lies on its own component."""
+    asked = []
+
+    def passes(place, piece, near, p, d):
+        asked.append((place, piece, near))
+        return bool(piece.rad() < 0.5)
+
+    monkeypatch.setattr(first_hit, "_passes", passes)
+    places = [lambda t: (arb(0), t, arb(0), arb(-1)), lambda t: (arb(1), t, arb(0), arb(1))]
+    boundary = Boundary(places, [(arb(2), arb(5)), (arb(-1), arb(0.5))])
+    with working(96):
+        assert first_hit.free(boundary, (0, arb(2.25)), (1, arb(0.25)))
+    for place, (low, high), count in zip(places, ((2, 5), (-1, 0.5)), (7, 3), strict=True):
+        own = [(piece, near) for other, piece, near in asked if other is place]
+        short = sorted((piece for piece, _ in own if piece.rad() < 0.5), key=lambda piece: float(piece.mid()))
+        assert len(own) == count
+        assert short[0].contains(low)
+        assert short[-1].contains(high)
+        assert all(a.overlaps(b) for a, b in pairwise(short))
+        assert sum(2 * float(piece.rad()) for piece in short) < (high - low) * 1.001
+        assert all(len(near) == 1 for _, near in own)
+
+
+def test_a_chord_that_leaves_outwards_or_arrives_from_outside_is_not_asked_about(monkeypatch):
+    """Of walls at both ends of a chord, each turned the right and the wrong way, and along it."""
+    monkeypatch.setattr(first_hit, "_passes", lambda *_: True)
+    for first in (-1, 0, 1):
+        for last in (-1, 0, 1):
+            places = [
+                lambda t, v=first: (arb(0), t, arb(1 - abs(v)), arb(v)),
+                lambda t, v=last: (arb(1), t, arb(1 - abs(v)), arb(v)),
+            ]
+            boundary = Boundary(places, [(arb(-1), arb(1))] * 2)
+            with working(96):
+                assert first_hit.free(boundary, (0, arb(0)), (1, arb(0))) is (first < 0 < last)

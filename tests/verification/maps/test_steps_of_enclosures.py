@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flint import arb
+from flint import acb, arb
 from sympy import Rational
 
 from numeric import PinballMap
@@ -267,3 +267,42 @@ def test_what_is_told_of_an_orbit_ends_with_the_name_of_its_outcome(monkeypatch,
         assert float(found[3]["theta"]) == 1.25
     assert set(tries) == ({tries[0], 2 * tries[0]} if end == "wide" else {tries[0]})
     assert told == (["1", "1", "2", "3"] if end == "wide" else ["1"] if ended else ["1", "2", "3"])
+
+
+def test_a_length_is_integrated_only_where_no_cut_passes_through():
+    """Of root, logarithm and arc tangent: a ball across the cut has no value, one beside it that of the function."""
+    words, across = enclosed._Complex(), acb(arb(-2), arb(0, 1))
+    assert not words.sqrt(across).is_finite()
+    assert not words.log(across).is_finite()
+    assert not words.root(across, 3).is_finite()
+    for high in (1.5, 0.99, -1.5):
+        assert words.atan(acb(arb(0, 0.1), arb(high))).is_finite() is (abs(high) < 1)
+    beside = acb(2, arb(0.5))
+    assert words.sqrt(beside).overlaps(beside.sqrt())
+    assert words.log(beside).overlaps(beside.log())
+    assert (words.root(beside, 3) ** 3).overlaps(beside)
+    assert words.atan(beside).overlaps(beside.atan())
+    assert words.q(1, 4) == 0.25
+    assert words.pi.overlaps(acb.pi())
+
+
+@pytest.mark.parametrize("table", ["cuspless", "stadium"])
+def test_a_boundary_of_parts_has_no_length_but_by_its_closed_form(table):
+    made = EnclosedMap(PinballMap(table), 1, BITS)
+    assert len(made.parts) > 1
+    with working(BITS):
+        found = made.length(1, arb(0.1), 20)
+    closed = enclosed.closed_length(made.map, made.ops, made.shape, 1, arb(0.1))
+    assert (found is None) is (closed is None)
+
+
+@pytest.mark.parametrize("off", [1e-6, -1e-6])
+def test_a_landing_is_enclosed_about_a_guess_that_nobody_sharpened(monkeypatch, ellipse, off):
+    """The interval Newton step alone leads from the guess to the landing."""
+    here = ellipse.start(0.3, 0.2)
+    with working(BITS):
+        true = ellipse._landed(here, place(0, arb(float(ellipse.map.step(0.3, 0.2).theta))))
+        monkeypatch.setattr(ellipse, "_polished", lambda flight, near: (near + off).mid())
+        found = ellipse._landed(here, place(0, true.theta.mid()))
+    assert found.theta.contains(true.theta)
+    assert found.theta.rad() < 1e-10

@@ -8,6 +8,7 @@ from flint import arb, fmpq, fmpq_mat
 from hypothesis import given
 from hypothesis import strategies as st
 
+from verification.arithmetic import linear
 from verification.arithmetic.balls import working
 from verification.arithmetic.linear import approximated, solved
 
@@ -104,3 +105,36 @@ def test_an_approximate_solution_has_the_digits_of_floats():
         assert all(abs(x - y) < 1e-12 for x, y in zip(row, sure, strict=True))
     with pytest.raises(ZeroDivisionError):
         approximated([[arb(0)]], [[arb(1)]])
+
+
+@pytest.mark.parametrize("size", [1, 2, 6])
+def test_each_product_in_floats_may_err_by_four_units_for_each_term_and_for_four_more(monkeypatch, size):
+    """Of the matrix 1 nothing is lost, but that is what is allowed; sums of bounds may err by twice as many units."""
+    asked = []
+    monkeypatch.setattr(linear, "_column", lambda *given: asked.append(given) or [arb(0)] * size)
+    solved([[arb(int(i == j)) for j in range(size)] for i in range(size)], [[arb(1)]] * size)
+    ((sparse, inverse, off, blanket, _),) = asked
+
+    assert sparse == [[(i, arb(1))] for i in range(size)]
+    assert blanket == 1 + 8 * (size + 4) * 2.0**-53
+    assert np.array_equal(inverse, np.eye(size))
+    for (i, j), lost in np.ndenumerate(off):
+        least = 4 * (size + 4) * 2.0**-53 * blanket if i == j else size * linear.TINY
+        assert least <= lost <= least * (1 + 1e-14)
+
+
+def test_an_error_is_above_what_is_left_and_what_it_makes_of_itself():
+    """`e` with `(c + e/4)*3/2 < e`, where `c = 3/2`: not 3, for that gives 27/8; but 5/4 of this gives less."""
+    sparse, inverse, off, unit = [[(0, arb(1))]], np.array([[1.0]]), np.array([[0.25]]), 2.0**-10
+    (found,) = linear._column(sparse, inverse, off, 1.5, [arb(1, unit)])
+    (exact,) = linear._column(sparse, inverse, 0 * off, 1.0, [arb(1)])
+
+    assert found.mid() == 1
+    assert float(found.rad()) == pytest.approx(1.25 * 27 / 8 * unit)
+    assert float(exact.rad()) == pytest.approx(2.5 * linear.TINY)  # what underflow may lose twice, and a quarter more
+
+
+def test_a_matrix_with_an_entry_that_is_not_finite_is_named():
+    for entry in ("inf", "nan"):
+        with pytest.raises(ZeroDivisionError, match="a matrix that is not finite"):
+            solved([[arb(1), arb(0)], [arb(0), arb(entry)]], [[arb(1)], [arb(1)]])

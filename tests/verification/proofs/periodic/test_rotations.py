@@ -74,17 +74,20 @@ def test_an_orbit_that_goes_on_by_whole_turns_has_the_normal_form_of_one_that_st
         assert abs(one.cubic() - found[0].cubic()) < 1e-9
 
 
-def test_a_rule_times_a_function_that_is_not_0_has_the_same_normal_form():
-    plane = AFTER - t * HERE + d * BEFORE + 2 * HERE * BEFORE - HERE**2 * BEFORE + push * HERE**3
-    factor = 2 + AFTER - BEFORE / 2 + AFTER**2 + AFTER * HERE * 3
+@pytest.mark.parametrize("closure", [IDENTITY, MIRROR])
+def test_a_rule_times_a_function_that_is_not_0_has_the_same_normal_form(closure):
+    """An odd rule times an even function is odd: half of a cycle may be followed too."""
+    bent = 2 * HERE * BEFORE if closure == IDENTITY else 0
+    plane = AFTER - t * HERE + d * BEFORE + bent - HERE**2 * BEFORE + push * HERE**3
+    factor = 2 + AFTER**2 + AFTER * HERE * 3 - BEFORE**2 / 2 + (AFTER - BEFORE / 2 if closure == IDENTITY else 0)
     fixed = {"t": Rational(1, 2), "push": Rational(1, 3)}
-    for times in (1, 2, 3):
-        once = 0.25 + 1j * (1 - 0.25**2) ** 0.5
+    for times in (1, 2):
+        whole = closure.turn * (0.25 + 1j * (1 - 0.25**2) ** 0.5) ** times
         forms = [
             Rotation(
-                Rotating(Explicit("plane", rule, (t, d, push), times), ("d", "trace"), fixed),
+                Rotating(Explicit("plane", rule, (t, d, push), times, closure), ("d", "trace"), fixed),
                 FLOAT64,
-                [0.0] * times + [1.0, 2 * (once**times).real],
+                [0.0] * times + [1.0, 2 * whole.real],
             )
             for rule in (plane, plane * factor)
         ]

@@ -79,7 +79,7 @@ def test_a_rule_times_a_function_that_is_not_0_has_the_same_normal_form(closure)
     """An odd rule times an even function is odd: half of a cycle may be followed too."""
     bent = 2 * HERE * BEFORE if closure == IDENTITY else 0
     plane = AFTER - t * HERE + d * BEFORE + bent - HERE**2 * BEFORE + push * HERE**3
-    factor = 2 + AFTER**2 + AFTER * HERE * 3 - BEFORE**2 / 2 + (AFTER - BEFORE / 2 if closure == IDENTITY else 0)
+    factor = 2 + 3 * AFTER * HERE + AFTER**2 + (AFTER if closure == IDENTITY else 0)
     fixed = {"t": Rational(1, 2), "push": Rational(1, 3)}
     for times in (1, 2):
         whole = closure.turn * (0.25 + 1j * (1 - 0.25**2) ** 0.5) ** times

@@ -85,6 +85,15 @@ Pieces = Mapping[int, Piece]
 SIGNS = {0: -1, 1: 1}  # of v on the arc and on the wall
 
 
+def inward(v: arb, component: int) -> arb:
+    """How far a `v` lies within the side of a component: positive there.
+
+    >>> inward(arb(2), 0), inward(arb(2), 1)
+    (-2.00000000000000, 2.00000000000000)
+    """
+    return v if SIGNS[component] > 0 else -v
+
+
 def hull(points: list[Point]) -> Polygon:
     """The convex hull.
 
@@ -238,7 +247,7 @@ def fixed_point(piece: Piece) -> Row:
 
 def kind(pieces: Pieces) -> Kind:
     """Do both pieces have their fixed point on their own side for the same sign of `e`?"""
-    own = [fixed_point(piece)[1] * SIGNS[component] for component, piece in pieces.items()]
+    own = [inward(fixed_point(piece)[1], component) for component, piece in pieces.items()]
     if all(x > 0 for x in own) or all(x < 0 for x in own):
         return Kind.FOLD
     return Kind.PERSISTENCE if own[0] * own[1] < 0 else Kind.UNKNOWN
@@ -249,7 +258,7 @@ def hypotheses(pieces: Pieces) -> dict[str, bool | None]:
     right, left = sorted(pieces, key=lambda component: float(pieces[component].trace.mid()))
     low, high = pieces[right], pieces[left]
     return {
-        "fixed_points_on_their_sides": less(arb(0), fixed_point(high)[1] * SIGNS[left]),
+        "fixed_points_on_their_sides": less(arb(0), inward(fixed_point(high)[1], left)),
         "determinants_between_0_and_1": both(
             *(both(less(arb(0), piece.determinant), less(piece.determinant, arb(1))) for piece in (low, high))
         ),
@@ -306,7 +315,7 @@ Segment = tuple[Row, Row]
 def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 10) -> Extent | None:
     """Bounds of the attractor; `folding` is the piece with the negative multiplier. None when not proved."""
     fixed, border = fixed_point(pieces[folding]), _to_border(pieces[folding])
-    if border is None or not fixed[1] * SIGNS[folding] > 0:
+    if border is None or not inward(fixed[1], folding) > 0:
         return None
     manifold, heights = [(fixed, border)], [fixed[1]]
     for _ in range(images):
@@ -343,7 +352,7 @@ def _mapped(pieces: Pieces, segment: Segment) -> list[Segment]:
         crossing = p[0] - p[1] * (q[0] - p[0]) / (q[1] - p[1]), arb(0)
         return _mapped(pieces, (p, crossing)) + _mapped(pieces, (crossing, q))
     height = p[1] + q[1]
-    return [(piece.of(p), piece.of(q)) for c, piece in pieces.items() if height * SIGNS[c] > 0 and p[1] * q[1] >= 0]
+    return [(piece.of(p), piece.of(q)) for c, piece in pieces.items() if inward(height, c) > 0 and p[1] * q[1] >= 0]
 
 
 def _middle(x: Row) -> Point:

@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from verification.arithmetic.balls import working
 from verification.proofs.corner.border_collision import (
-    SIGNS,
     Extent,
     Kind,
     Pieces,
@@ -31,6 +30,7 @@ from verification.proofs.corner.border_collision import (
     fixed_point,
     grown,
     hull,
+    inward,
     kind,
     part,
     robust,
@@ -123,7 +123,7 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
         for component, (u, v) in found.items():
             trace, determinant = family[component].trace, family[component].determinant
             within = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(region))
-            if not (within and v * SIGNS[component] > 0 and abs(trace) > abs(1 + determinant)):
+            if not (within and inward(v, component) > 0 and abs(trace) > abs(1 + determinant)):
                 return None
         return found
 

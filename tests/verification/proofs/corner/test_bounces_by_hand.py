@@ -1,4 +1,4 @@
-"""Bounces near a corner where the angle of a chord is linear, so that all that is enclosed can be worked out by hand."""
+"""Bounces near a corner where the angle of a chord is linear: all that is enclosed can be worked out by hand."""
 
 import pytest
 from flint import arb

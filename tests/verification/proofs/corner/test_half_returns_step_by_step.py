@@ -183,7 +183,7 @@ def test_the_border_collision_is_told_where_its_attractor_and_its_exponents_are_
     monkeypatch.setattr(evidence, "exponents", lambda *given, **more: asked.append((given, more)) or (
         None if missing == "exponents" else (0.25, 0.5)))  # fmt: skip
     if missing:
-        with pytest.raises(ArithmeticError, match="is not enclosed|is not proved to expand"):
+        with pytest.raises(ArithmeticError, match=r"is not enclosed|is not proved to expand"):
             evidence.border.__wrapped__()
         return
     found = evidence.border.__wrapped__()

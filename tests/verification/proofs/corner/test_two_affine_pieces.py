@@ -1,4 +1,4 @@
-"""Two affine pieces by hand: how far an attractor reaches, which segments have images, where cones stretch by how much."""
+"""Two affine pieces by hand: how far an attractor reaches, which segments have images, how much cones stretch."""
 
 from dataclasses import replace
 
@@ -60,7 +60,7 @@ def test_a_segment_across_the_border_has_the_images_of_its_two_parts():
         found = border._mapped(pieces, segment(*ends))
         told = [[(float(u), float(v)) for u, v in pair] for pair in found]
         wanted = [[(0, -2), (2, 0)], [(3, 0), (9, 6)]]
-        assert told == (wanted if ends[0][1] < 0 else [[p[::-1] for p in [wanted[1]]][0], wanted[0][::-1]])
+        assert told == (wanted if ends[0][1] < 0 else [wanted[1][::-1], wanted[0][::-1]])
     for ends, factor in (([(1, -1), (2, -3)], 2), ([(1, 1), (2, 3)], 3), ([(1, 0), (2, -1)], 2), ([(1, 2), (0, 0)], 3)):
         ((p, q),) = border._mapped(pieces, segment(*ends))
         assert [(float(u), float(v)) for u, v in (p, q)] == [(factor * u, factor * v) for u, v in ends]

@@ -14,7 +14,8 @@ from verification.proofs.periodic.returning import SIXTH, SLACK, Image, Piece, R
 SHAPE, LAMS = Rational(2, 25), (0.25, 0.5)
 TABLE = egg(3).at(alpha=SHAPE)
 LEADS = [
-    {0: {1: (-0.1, 0.2)}, 1: {0: (-0.3, 0.1), 2: (-0.5, 0.0)}, 2: {2: (0.1, 0.3)}, 3: {0: (-9.0, 9.0)}, **{k: {} for k in range(4, 8)}},
+    {0: {1: (-0.1, 0.2)}, 1: {0: (-0.3, 0.1), 2: (-0.5, 0.0)}, 2: {2: (0.1, 0.3)}, 3: {0: (-9.0, 9.0)}}
+    | {k: {} for k in range(4, 8)},
     {0: {2: (0.0, 0.5)}, 2: {0: (-0.5, 0.0)}, **{k: {} for k in (1, 3, 4, 5)}},
     {k: {} for k in range(6)},
 ]
@@ -57,9 +58,7 @@ def scripted(monkeypatch):
     return told
 
 
-def test_cells_that_cycles_may_meet_are_halved_with_the_angles_with_which_others_of_these_arrive(
-    scripted, monkeypatch
-):
+def test_cells_that_cycles_may_meet_are_halved_with_the_angles_with_which_others_of_these_arrive(scripted, monkeypatch):
     monkeypatch.setattr(returning, "HALVINGS", 3)
     found = returning.returning(SHAPE, LAMS)
     widest = 0.5 * np.pi / 2

@@ -1,5 +1,6 @@
-"""Periodic points of slap maps that are given, Ulam's matrix from launching points by hand, the defect of an inverse."""
+"""Periodic points of slap maps that are given; Ulam's matrix and the defect of an inverse, by hand."""
 
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -136,6 +137,19 @@ def test_an_exponent_is_judged_from_a_candidate_and_two_inverses(monkeypatch):
         assert found.checks == {"gap": True, "symmetric": answer}
         assert found.certified is (answer is True)
     assert asked[:2] == [(("candidate", 6), 6, (64, 1)), ((1024, -1), "known")]
+
+
+def test_a_candidate_is_judged_by_the_inequality_that_is_proved_where_no_other_is_given(monkeypatch):
+    made = SimpleNamespace(residual=lambda: SimpleNamespace(norm=arb(0), variation=arb(0)), mean=lambda: arb(1))
+    near = SimpleNamespace(integral=lambda: arb(2))
+    near.grounded = lambda: near
+    known, other = Variation(arb("0.5"), arb(1), True), Variation(arb("0.5"), arb(1), False)
+    monkeypatch.setattr(exponent, "Judge", lambda *_: made)
+    monkeypatch.setattr(exponent, "variation", lambda: known)
+    inverse = Inverted(1000, 9.0, 0.0, 1)
+    assert exponent.judged(near, 4, inverse).certified is True
+    assert exponent.judged(near, 4, inverse, other).checks["variation"] is None
+    assert exponent.judged(near, 4, inverse).value == 0.5
 
 
 FACTS = (

@@ -378,6 +378,7 @@ def test_each_item_of_the_exponents_checklist_is_asked_and_the_ball_is_that_of_t
 
     assert {item for item, value in found.checks.items() if value is not True} == open_items
     assert set(found.checks) == {"variation", "inverse", "gap", "mass", "precise"}
+    assert False not in found.checks.values()  # what is not proved is open
     assert found.certified is (not open_items)
     bound = inverse.bound or 0
     room = 1 - 2 * np.pi / (4 * inverse.cells) * (bound + 1) / 0.25

@@ -138,6 +138,7 @@ def test_the_checklist_of_the_corner_orbit_says_what_is_proved_of_it(
 
     assert set(found.checks) == ITEMS | asked
     assert {item for item, value in found.checks.items() if value is not True} == open_
+    assert False not in found.checks.values()
     assert found.certified is (not open_)
     assert found.value is enclosure.zero[1]
 

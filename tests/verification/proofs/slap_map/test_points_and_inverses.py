@@ -150,6 +150,9 @@ def test_a_candidate_is_judged_by_the_inequality_that_is_proved_where_no_other_i
     assert exponent.judged(near, 4, inverse).certified is True
     assert exponent.judged(near, 4, inverse, other).checks["variation"] is None
     assert exponent.judged(near, 4, inverse).value == 0.5
+    monkeypatch.setattr(exponent, "gap", lambda *_: arb(0))
+    assert exponent.judged(near, 4, inverse).checks["gap"] is None
+    assert exponent.symmetric(Inverted(1000, 9.0, 0.0, -1), known) is None
 
 
 FACTS = (

@@ -54,7 +54,6 @@ there are no period-4 orbits`).
 from dataclasses import dataclass, replace
 
 from flint import arb
-from sympy import Rational
 
 from symbolic.cycles.polygons import COSINE, centre_beyond_boundary, centre_far_inside
 from symbolic.expressions.text import kernel, load
@@ -168,7 +167,7 @@ def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
     queue, boxes = [WHOLE], 0
     with working(BITS):
         at = load(kernel("centre", [COSINE, alpha], expressions), balls(BITS))
-        most = arb(Rational(1, 10).p) / 10
+        most = arb(1) / 10
         while queue:
             (c, wide), (shape, high) = box = queue.pop()
             boxes += 1

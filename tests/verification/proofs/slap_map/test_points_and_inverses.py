@@ -141,7 +141,7 @@ def test_an_exponent_is_judged_from_a_candidate_and_two_inverses(monkeypatch):
 
 def test_a_candidate_is_judged_by_the_inequality_that_is_proved_where_no_other_is_given(monkeypatch):
     made = SimpleNamespace(residual=lambda: SimpleNamespace(norm=arb(0), variation=arb(0)), mean=lambda: arb(1))
-    near = SimpleNamespace(integral=lambda: arb(2))
+    near = SimpleNamespace(integral=lambda: arb(0.5))
     near.grounded = lambda: near
     known, other = Variation(arb("0.5"), arb(1), True), Variation(arb("0.5"), arb(1), False)
     monkeypatch.setattr(exponent, "Judge", lambda *_: made)
@@ -149,7 +149,9 @@ def test_a_candidate_is_judged_by_the_inequality_that_is_proved_where_no_other_i
     inverse = Inverted(1000, 9.0, 0.0, 1)
     assert exponent.judged(near, 4, inverse).certified is True
     assert exponent.judged(near, 4, inverse, other).checks["variation"] is None
-    assert exponent.judged(near, 4, inverse).value == 0.5
+    assert exponent.judged(near, 4, inverse).value == 2
+    monkeypatch.setattr(exponent, "gap", lambda *_: arb(0.5, 0.25))
+    assert 0.2499 < exponent.judged(near, 4, inverse).gap <= 0.25
     monkeypatch.setattr(exponent, "gap", lambda *_: arb(0))
     assert exponent.judged(near, 4, inverse).checks["gap"] is None
     assert exponent.symmetric(Inverted(1000, 9.0, 0.0, -1), known) is None

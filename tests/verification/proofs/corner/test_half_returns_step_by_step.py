@@ -1,5 +1,6 @@
 """Half the return near its corner orbit, step by step: the boxes that are followed, hulls of slopes, steps of `e`."""
 
+import math
 import random
 from types import SimpleNamespace
 
@@ -240,3 +241,9 @@ def test_a_cone_whose_vectors_may_keep_their_length_proves_nothing(monkeypatch, 
         assert found[0] is FAMILY
         assert found[1].cycle[1].contains(arb(0.25))
         assert TINY < 1e-6
+
+
+def test_exponents_are_bounded_with_the_outer_ends_of_what_stretches_are_enclosed_by():
+    steps = (half_return.Step((0.0, 1.0), [], Expansion(arb(0), arb(1.5, 0.25), arb(2, 0.5)), None),)
+    least, most = half_return.TrappingRegion(True, 1.0, steps).exponent
+    assert (least, most) == pytest.approx((math.log(1.25) / 2, math.log(2.5) / 2))

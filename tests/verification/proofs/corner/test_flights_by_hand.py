@@ -235,3 +235,84 @@ def test_a_kink_is_enclosed_in_a_box_six_tenths_as_wide_as_the_contractions(monk
     )
     assert [x is lam for _, x in asked] == [True, True, True, False]
     assert asked[-1][1] == arb(0.0625)
+
+
+def test_a_map_is_odd_where_every_component_is_its_own_mirror_image(monkeypatch):
+    asked = []
+    monkeypatch.setattr(return_map, "mirrored", lambda part: asked.append(part) or len(asked) != 2)
+    assert Flights().odd is False
+    assert len(asked) == 2
+
+
+@pytest.mark.parametrize(("angle", "low", "high"), [(0.25, 0.0, 2.0), (1.0, 0.25, 0.5), (0.5, 0.0, 1.0)])
+def test_boxes_of_angles_and_contractions_are_halved_along_either_side_and_cover_all(monkeypatch, angle, low, high):
+    settled, asked = [], set()
+
+    def lands(phi, lam, or_lower):
+        asked.add(or_lower)
+        small = float(phi.rad()) < angle / 3 and float(lam.rad()) < (high - low) / 6
+        return small and not settled.append((phi, lam))
+
+    monkeypatch.setattr(return_map, "_lands_inside", lands)
+    found = return_map.fourth_on_wall(angle, low, high)
+    assert found.on_wall is True
+    assert asked == {False}
+    for k in range(-8, 9):
+        for i in range(9):
+            phi, lam = arb(angle * k / 8), arb(low + (high - low) * i / 8)
+            assert any(a.contains(phi) and b.contains(lam) for a, b in settled)
+    for phi, lam in settled:
+        assert abs(phi) < angle + 1e-8
+        assert low - 1e-8 < lam < high + 1e-8
+    assert sum(float(phi.rad() * lam.rad()) for phi, lam in settled) == pytest.approx(angle * (high - low) / 2)
+    assert return_map.fourth_on_wall(angle, low, high, or_lower=True).on_wall is True
+    assert asked == {False, True}
+
+
+def test_boxes_too_small_to_be_cut_on_end_the_question(monkeypatch):
+    monkeypatch.setattr(return_map, "_lands_inside", lambda *_: False)
+    found = return_map.fourth_on_wall(0.25, 0.0, 0.5, 5000)
+    assert found.on_wall is None
+    assert 70 < found.boxes < 90  # 38 halvings of either side, one after the other
+
+
+def given(second, fourth=8.0):
+    return return_map.Course(
+        WALL, Quantity(arb(0), (arb(-2), arb(1)), second), Quantity(arb(0), (arb(-4), arb(3)), arb(fourth))
+    )
+
+
+def test_a_kink_is_between_ends_where_every_course_is_on_its_side_and_all_that_is_missed_counts(monkeypatch):
+    sides = {"left": [arb(1), arb(2)], "right": [arb(-1), arb(-2)]}
+
+    def courses(theta1, lam):
+        if theta1 < 0.2499 or theta1 > 0.2501:
+            return [given(x) for x in sides["left" if theta1 < 0.25 else "right"]]
+        return [given(arb(0, 2.0**-20)), given(arb(0, 2.0**-16))]
+
+    monkeypatch.setattr(return_map, "courses", courses)
+    monkeypatch.setattr(return_map, "_near", lambda _: 0.25)
+    lam = arb(0.0625, 2.0**-10)
+    assert float(return_map.kink(lam).value.rad()) == pytest.approx(2.0**-10 + 2 * 2.0**-16, rel=1e-6)
+    for side, wrong in (("left", [arb(1), arb(-1)]), ("left", [arb(0), arb(1)]), ("right", [arb(-1), arb(1)]),
+                        ("right", [arb(0), arb(-1)])):  # fmt: skip
+        right, sides[side] = sides[side], wrong
+        with pytest.raises(ArithmeticError, match="the kink is not enclosed"):
+            return_map.kink(lam)
+        sides[side] = right
+
+
+@pytest.mark.parametrize(
+    ("lam", "theta1", "answer"),
+    [
+        (arb("0.07", "0.01"), arb("0.25", "0.1"), True), (arb("0.08", "0.01"), arb("0.25", "0.1"), None),
+        (arb("0.07", "0.01"), arb("0.35", "0.1"), None), (arb("0.07", "0.0001"), arb("0.25", "0.1"), None),
+        (arb("0.07", "0.01"), arb("0.25", "0.001"), None),
+    ],
+)  # fmt: skip
+def test_the_corner_orbit_must_be_at_a_kink_with_all_that_its_enclosure_holds(monkeypatch, lam, theta1, answer):
+    """It is known up to 1/100 and 1/1000: a kink whose ball meets that, and does not hold it, may be another."""
+    monkeypatch.setattr(return_map, "enclosed", lambda: (arb("0.25", "0.01"), arb("0.07", "0.001")))
+    monkeypatch.setattr(return_map, "cuts", lambda *_: [lam])
+    monkeypatch.setattr(return_map, "kink", lambda lam: return_map.Kink(lam, theta1, arb(0), arb(-1)))
+    assert return_map.kink_falls(0.06, 0.08) is answer

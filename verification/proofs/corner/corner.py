@@ -306,7 +306,7 @@ def _root(plain: Angle, angle: Angle, here: arb, value: arb, near: float, radius
     for _ in range(10):
         box = arb(near, radius)
         image: arb = near - gap / angle(here, box)[2]
-        if image.is_finite() and box.contains_interior(image):
+        if box.contains_interior(image):  # which is no NaN
             return image
         radius *= 2
     raise ArithmeticError("a landing is not enclosed")

@@ -153,7 +153,7 @@ class Flights:
         for _ in range(6):
             box = arb(guess, radius)
             image = guess - missed / angle(piece.theta, box)[2]
-            if image.is_finite() and box.contains_interior(image):
+            if box.contains_interior(image):  # which is no NaN
                 over = angle(piece.theta, image)
                 phi_1 = -self.lam * self.values[target, piece.component](image, piece.theta)[0] + arb(0)
                 return Piece(target, image, -piece.slope * over[1] / over[2], phi_1)

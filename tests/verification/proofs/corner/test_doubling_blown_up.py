@@ -2,11 +2,14 @@
 
 import pytest
 from flint import arb, arb_mat
+from sympy import Rational
 
 from symbolic.cycles.thresholds import lambda_c
+from symbolic.tables import egg
 from verification.arithmetic.balls import real_ball, working
 from verification.proofs.corner import corner_orbit
 from verification.proofs.corner.corner_orbit import BITS, MOST, RADII, divided, half, linearised, slope_at_zero, step
+from verification.proofs.periodic.interval_newton import Enclosure, Status
 
 WIDE = arb(MOST / 2, MOST / 2 * (1 + 2.0**-40))
 POINTS = ("0.0005", "0.01", "0.025", "0.04")
@@ -139,3 +142,44 @@ def test_the_multipliers_at_the_end_and_the_determinant_over_all_e_say_that_a_br
         corner_orbit, "half", lambda e, m, lam: (trace, arb(0.25)) if e.is_exact() else (arb(9), everywhere)
     )
     assert corner_orbit.doubled_branch().unstable is unstable
+
+
+def test_derivatives_by_the_contraction_are_those_of_the_rules_at_every_point_of_the_branch():
+    """By differences in `lam`, off the direction `m` of the doubling, to far more digits than a ball is wide."""
+    with working(BITS):
+        (m, lam), h = near(), arb(10) ** -8
+        for e, off in ((arb("0.04"), arb("0.5")), (arb("0.02"), arb("-0.25"))):
+            over = corner_orbit.derivatives(e, m + off, lam)
+            low, high = (divided(e, m + off, lam + s * h) for s in (-1, 1))
+            for i in range(2):
+                quotient = (high[i] - low[i]) / (2 * h)
+                assert (over[i, 1] + arb(0, 1e-9)).contains(quotient.mid())
+                assert over[i, 1].rad() < 0.01
+
+
+@pytest.mark.parametrize(("apart", "held"), [(0, None), (1, True), (2, None)])
+def test_bounces_are_apart_by_no_whole_turns(monkeypatch, apart, held):
+    """By 0, by 2*pi*1/3 and by 2*pi: a third of a turn is one, and a whole turn is none."""
+    asked = []
+    gap = (arb(0), 2 * arb.pi() / 3, 2 * arb.pi())[apart]
+    zero = [arb(1) + gap, arb(1), arb(0.05, 1e-12)]
+    monkeypatch.setattr(corner_orbit, "interval_newton", lambda *_: Enclosure(Status.UNIQUE, zero))
+    monkeypatch.setattr(corner_orbit, "convex", lambda *given: asked.append(given) or True)
+    monkeypatch.setattr(corner_orbit.CornerClaim, "system", None)
+    claim = corner_orbit.CornerClaim("alpha", (arb(0),) * 3, arb(0.01), 64, 10, Rational(1, 3))
+    found = corner_orbit.corner_proved(claim)
+    assert found.checks["minimal_period"] is held
+    assert found.checks["admissible"] is held
+    assert asked == ([(egg(3), (zero[-1],))] if held else [])
+
+
+def test_all_bounces_of_the_branch_are_asked_to_be_inside(monkeypatch):
+    asked = []
+    monkeypatch.setattr(corner_orbit, "inside", lambda *given: asked.append(given) or True)
+    found = corner_orbit.doubled_branch()
+    ((_, parts, (w, v)),) = asked
+    assert parts == (1, 0)
+    for e in (arb(0), arb(MOST)):
+        assert w.contains(e)
+        assert v.contains((e * found.m).mid())
+    assert v.rad() < 1.1 * MOST * abs(found.m).upper()

@@ -316,3 +316,32 @@ def test_the_corner_orbit_must_be_at_a_kink_with_all_that_its_enclosure_holds(mo
     monkeypatch.setattr(return_map, "cuts", lambda *_: [lam])
     monkeypatch.setattr(return_map, "kink", lambda lam: return_map.Kink(lam, theta1, arb(0), arb(-1)))
     assert return_map.kink_falls(0.06, 0.08) is answer
+
+
+def test_the_speed_and_the_value_at_a_kink_count_the_worst_of_its_courses(monkeypatch):
+    """With `s2` moving by -2 and 5, `s4` by -4 and 3, or -8 and 3: the kink by 3 - 4*5/2 or 3 - 8*5/2."""
+
+    def courses(theta1, lam):
+        side = arb(1) if theta1 < 0.2499 else arb(-1) if theta1 > 0.2501 else arb(0, 2.0**-20)
+        second = Quantity(arb(0), (arb(-2), arb(5)), side)
+        return [
+            return_map.Course(WALL, second, Quantity(arb(0), (arb(slope), arb(3)), arb(8))) for slope in (-4.0, -8.0)
+        ]
+
+    monkeypatch.setattr(return_map, "courses", courses)
+    monkeypatch.setattr(return_map, "_near", lambda _: 0.25)
+    found = return_map.kink(arb(0.0625, 2.0**-10))
+    assert (found.speed.contains(-7), found.speed.contains(-17), found.speed.rad() < 5.001) == (True, True, True)
+    assert float(found.value.rad()) == pytest.approx(17 * 2.0**-10 + 4 * 2.0**-20, rel=1e-6)
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_one_stretch_of_contractions_has_the_corner_orbit(monkeypatch, place):
+    monkeypatch.setattr(return_map, "enclosed", lambda: (arb(0.25), arb(0.0625)))
+    monkeypatch.setattr(return_map, "cuts", lambda *_: [0, 1, 2])
+    monkeypatch.setattr(
+        return_map,
+        "kink",
+        lambda k: return_map.Kink(arb(0.0625 if k == place else 1), arb(0.25, 0.125), arb(0), arb(-1)),
+    )
+    assert return_map.kink_falls(0.0, 1.0) is True

@@ -247,3 +247,10 @@ def test_exponents_are_bounded_with_the_outer_ends_of_what_stretches_are_enclose
     steps = (half_return.Step((0.0, 1.0), [], Expansion(arb(0), arb(1.5, 0.25), arb(2, 0.5)), None),)
     least, most = half_return.TrappingRegion(True, 1.0, steps).exponent
     assert (least, most) == pytest.approx((math.log(1.25) / 2, math.log(2.5) / 2))
+
+
+def test_exit_angles_count_with_the_outer_ends_of_their_balls(monkeypatch):
+    monkeypatch.setattr(evidence, "enclosed", lambda: (arb(0.5), arb(0.25)))
+    monkeypatch.setattr(evidence, "angle", lambda here, there: (arb(1, 0.5), arb(0), arb(1)))
+    low, high = evidence._angles([(0.0, -1.0), (0.0, 1.0), (-2.0, 0.0)])
+    assert (low, high) == pytest.approx((-1.5, 0.0), abs=1e-7)  # the second is -1/2 + 2/4

@@ -116,3 +116,12 @@ def test_a_flat_corner_in_floats_is_no_corner():
     assert border.exactly_convex(square[::-1]) == square
     assert border.holds(square, (arb(0.5), arb(0.5)))
     assert replace(affine(1, 0, 0, 1), shift=(arb(1), arb(1))).of((arb(0), arb(0))) == (1, 1)
+
+
+def test_the_image_of_a_point_is_told_with_a_hair_on_every_side():
+    hair = border.HAIR
+    found = border._image(affine(1, 0, 0, 1), [(0.5, 0.25)])
+    assert len(found) == 4
+    for u in (0.5 - hair, 0.5 + hair):
+        for v in (0.25 - hair, 0.25 + hair):
+            assert any(abs(x - u) + abs(y - v) < hair / 100 for x, y in found)

@@ -75,11 +75,10 @@ def slope(node):
     """The fraction that theta has in a formula that is else free of it; None of one that is not of this form."""
     if not has_theta(node):
         return Fraction(0)
-    parts = [node.left, node.right] if isinstance(node, ast.BinOp) else [getattr(node, "operand", None)]
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub) and None not in map(slope, parts):
-        return slope(parts[0]) + slope(parts[1]) * (1 if isinstance(node.op, ast.Add) else -1)
-    found = linear(node)
-    return found and found.get("theta")
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        x, y = map(slope, (node.left, node.right))
+        return None if x is None or y is None else x + y * (1 if isinstance(node.op, ast.Add) else -1)
+    return (linear(node) or {}).get("theta")
 
 
 def periodic(node):

@@ -76,8 +76,7 @@ class I(Number):
     def of(x, p):
         if isinstance(x, I):
             k = p - x.p
-            return x if k == 0 else I(x.lo << k, x.hi << k, p) if k > 0 else I(x.lo >> -k, -(-x.hi >> -k), p)
-        x = x if isinstance(x, int) else Fraction(x)
+            return I(x.lo << k, x.hi << k, p) if k > 0 else I(x.lo >> -k, -(-x.hi >> -k), p) if k < 0 else x
         return I((x.numerator << p) // x.denominator, -((-x.numerator << p) // x.denominator), p)
 
     def __add__(self, o):
@@ -118,7 +117,7 @@ class I(Number):
     def sin_cos(self):
         """Those of the middle, by Taylor's series, give or take the radius, since no slope is above 1."""
         m, p, one = self.mid(), self.p, 1 << self.p
-        r, w = self.hi - m.lo, p + 32 + max(0, m.lo.bit_length() - p)  # a huge argument takes as many more bits of pi
+        r, w = self.hi - m.lo, 32 + max(p, m.lo.bit_length())  # a huge argument takes as many more bits of pi
         k = round(Fraction(2 * m.lo << w - p, pi(w).lo)) if abs(m.lo) > one else 0
         x = I.of(m, w) - (pi(w) * Fraction(k, 2) if k else 0)
         y, total, slack, n = x.mid().lo, 0, x.hi - x.mid().lo + 16, 1

@@ -45,6 +45,7 @@ def test_an_interval_of_other_bits_is_the_least_that_holds_it(check, p):
         found = check.I.of(check.I(low, high, 3), p)
         assert found.p == p
         assert (found.lo, found.hi) == (math.floor(Fraction(low, 8) * 2**p), math.ceil(Fraction(high, 8) * 2**p))
+        assert check.I.of(found, p) is found
 
 
 def test_sums_and_products_of_intervals_are_the_least_that_hold_all_values(check):

@@ -1,7 +1,7 @@
 """The second reader's tables and flights, step by step, by formulas in floating point and by what was worked out."""
 
 from fractions import Fraction
-from math import atan2, cos, pi, sin
+from math import atan2, cos, pi, sin, sqrt
 
 import mpmath
 import pytest
@@ -122,6 +122,21 @@ def test_no_particle_lands_behind_its_start_or_arrives_from_outside(check):
     for part, near in ((1, Fraction(22, 7)), (2, 0), (0, Fraction(22, 7))):
         with pytest.raises(check.Unproved, match="may not arrive from inside"):
             landed(check, made, 0, 0, part, near)
+
+
+def test_no_particle_leaves_outwards_though_its_line_meets_a_wall_from_inside(check):
+    """Through the disc itself: at an angle of 9/5 from the normal, which is between a right one and 2."""
+    disc, walls = ("cos(theta)", "-sin(theta)", "-pi", "pi"), ("9*cos(theta)", "9*sin(theta)", "-pi", "pi")
+    ux, uy = cos(1.8), -sin(1.8)
+    t = sqrt(80 + ux * ux) - ux
+    near = Fraction(atan2(t * uy, 1 + t * ux))
+    with pytest.raises(check.Unproved, match="may not arrive from inside"):
+        landed(check, table(check, disc, walls), 0, "9/5", 1, near)
+
+
+def test_a_table_may_be_small(check):
+    there, psi = landed(check, table(check, ("1/100", "-pi", "pi")), 0, 0, 0, Fraction(22, 7))
+    assert (check.value(there).real(), check.value(psi).real()) == pytest.approx((pi, 0))
 
 
 @pytest.mark.parametrize("psi", ["31/5", "-31/5", "25/4", "-25/4", "3", "-3", "22/7", "41/20", "-41/20"])

@@ -77,7 +77,7 @@ def slope(node):
         return Fraction(0)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
         x, y = map(slope, (node.left, node.right))
-        return None if x is None or y is None else x + y * (1 if isinstance(node.op, ast.Add) else -1)
+        return None if x is None or y is None else x + y if isinstance(node.op, ast.Add) else x - y
     return (linear(node) or {}).get("theta")
 
 
@@ -209,7 +209,8 @@ def positive(table):
     """Refuses a radius that may not be, over the range of a free parameter."""
     queue, spent = [(Fraction(-1), Fraction(1))], 0
     while queue:
-        (a, b), spent = queue.pop(), spent + 1
+        a, b = queue.pop()
+        spent += 1
         need(spent < 500, "scene: the radius may not be positive", Wrong)
         names = table.letters | {"theta": pi(64) * I.of(a, 64).hull(I.of(b, 64))}
         try:

@@ -382,7 +382,8 @@ class Table:
         for part in range(len(self.parts)):
             (low, high), queue = self.ends(part, p), [(Fraction(0), Fraction(1))]
             while queue:
-                (a, b), spent = queue.pop(), spent + 1
+                a, b = queue.pop()
+                spent += 1
                 need(spent <= 4000, "admissible: a chord may meet the boundary on its way")
                 try:
                     done = settled(part, low + (high - low) * I.of(a, p).hull(I.of(b, p)))

@@ -259,10 +259,29 @@ def test_a_wall_is_in_the_way_where_it_meets_the_chord_between_its_ends(check, w
     a, b, c, d = map(Fraction, wall)
     for _ in range(turned):
         a, b, c, d = 1 - b, a, 1 - d, c
-    made = Counted(table(check, *PIECES, (f"{a} + ({c - a})*theta", f"{b} + ({d - b})*theta", "0", "1")))
+    made = Counted(table(check, *PIECES, (f"{a} + ({c - a})*(theta + 2)/3", f"{b} + ({d - b})*(theta + 2)/3", "-2", "1")))
     start, end = [((3, "1/2"), (1, "1/2")), ((0, "1/2"), (2, "1/2"))][turned % 2]
     for chord in ((start, end), (end, start)):
         assert bool(made.free(check, *([place] for place in chord), 14)) is free
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+@pytest.mark.parametrize(
+    ("wall", "free"),
+    [
+        (("theta/4", "theta*(1/2 - theta)/8", "-1/2", "1"), False),  # back at 1/2, and slow
+        (("theta/4", "theta*(7 - theta)/40", "-1", "3"), True),
+        (("theta/40", "theta*(7 - theta)/40", "-1", "9"), False),  # back at 7, which is more than a turn of a circle
+        (("theta/40", "theta*(7 - theta)/40*(theta**2 - 4*theta + 9)/(theta**2 - 4*theta + 9)", "-1", "9"), False),
+        (("theta/4", "theta*(7 - theta)/40*(theta**2 - 2*theta + 9/8)/(theta**2 - 2*theta + 9/8)", "-1", "2"), True),
+    ],
+)
+def test_a_wall_that_comes_back_to_the_chord_that_it_sends_is_in_the_way(check, wall, free, sign):
+    """The chord is the axis from 0 to 1; of a quotient a wide piece has no value, and then it is halved."""
+    x, y, *ends = wall
+    made = Counted(table(check, (x, f"{sign}({y})", *ends), ("1", "theta", "-1/2", "1/2")))
+    for chord in (((0, "0"), (1, "0")), ((1, "0"), (0, "0"))):
+        assert bool(made.free(check, *([place] for place in chord))) is free
 
 
 def test_where_a_chord_is_free_the_boundary_is_asked_once_about_the_middle_of_it(check):

@@ -151,6 +151,18 @@ def test_an_angle_from_a_wrong_guess_is_none(check, monkeypatch, off):
             check.I.of(10, p).atan()
 
 
+@pytest.mark.parametrize("x", [Fraction(0), Fraction(1, 2), Fraction(-3), Fraction(7)])
+@pytest.mark.parametrize("off", [0.25, -0.125, 0.0625])
+def test_an_angle_that_newtons_method_has_not_yet_found_is_enclosed_by_its_residual(check, monkeypatch, x, off):
+    """One step from `atan(x) + off` comes to `tan(off) - off` from it; twice the residual is on either side."""
+    monkeypatch.setattr(check, "atan", lambda at: math.atan(at) + off)
+    _, p = check.pi(72), 40
+    found, true = check.I.of(x, p).atan(), precise("atan", x)
+    residual = math.sin(abs(math.tan(off) - off)) * math.sqrt(1 + x * x)
+    assert span(found)[0] <= true <= span(found)[1]
+    assert found.width() / 2**p == pytest.approx(4 * residual, rel=1e-5, abs=1e-10)
+
+
 def test_the_exponents_of_three_letters_and_the_pairs_that_multiply_to_each(check):
     for degree, count in ((0, 1), (1, 4), (2, 10), (3, 20)):
         powers, at, pairs = check.algebra(degree)

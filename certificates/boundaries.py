@@ -94,9 +94,8 @@ def periodic(node):
 
 def closed(part):
     """Is a component a curve that comes round after 2*pi, from its formulas and its ends?"""
-    start, end = map(linear, part[-2:])
-    round_once = ast.BinOp(part[-1], ast.Sub(), part[-2])
-    return start is not None and end is not None and linear(round_once) == {"pi": 2} and all(map(periodic, part[:-2]))
+    *formulas, start, end = part
+    return linear(ast.BinOp(end, ast.Sub(), start)) == {"pi": 2} and all(map(periodic, formulas))
 
 
 def called_by(way, said):

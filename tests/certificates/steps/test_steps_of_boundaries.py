@@ -28,7 +28,8 @@ def boundaries(check):
         ("theta**0", 1), ("theta**1", -1), ("theta**2", 1), ("theta**3", -1), ("theta**(-1)", -1), ("theta**(-2)", 1),
         ("(theta + 1)**2", 0), ("(theta + 1)**0", 1), ("(theta**2)**3", 1), ("theta**(1/2)", 0), ("theta**(4/2)", 1),
         ("cos(theta)**(1/3)", 1), ("b**theta", 0), ("b**cos(theta)", 1), ("theta**cos(theta)", 0), ("theta**b", 0),
-        ("cos(theta)**b", 1), ("b**theta**2", 1), ("theta**(b - b + 2)", 1), ("2**(theta*eta)", 1), ("cos(theta)**theta", 0),
+        ("cos(theta)**b", 1), ("b**theta**2", 1), ("theta**(b - b + 2)", 1), ("2**(theta*eta)", 1),
+        ("cos(theta)**theta", 0),
     ],
 )  # fmt: skip
 def test_a_formula_is_even_odd_or_neither_by_its_nodes(check, boundaries, text, sign):
@@ -58,7 +59,9 @@ def test_a_formula_is_even_odd_or_neither_by_its_nodes(check, boundaries, text, 
 def test_a_component_is_its_own_mirror_image_where_radius_or_x_is_even_and_y_and_law_are_odd(
     check, boundaries, parts, law, which, wanted
 ):
-    table = SimpleNamespace(parts=[[check.parse(text) for text in part] for part in parts], law=law and check.parse(law))
+    table = SimpleNamespace(
+        parts=[[check.parse(text) for text in part] for part in parts], law=law and check.parse(law)
+    )
     assert boundaries.symmetric(table, which) is wanted
 
 
@@ -67,7 +70,8 @@ def test_a_component_is_its_own_mirror_image_where_radius_or_x_is_even_and_y_and
     [
         ("3", {"": 3}), ("pi", {"pi": 1}), ("-theta", {"theta": -1}), ("+theta", {"theta": 1}), ("-3", {"": -3}),
         ("pi/2 + 1/3", {"pi": Fraction(1, 2), "": Fraction(1, 3)}), ("2*theta - b", {"theta": 2, "b": -1}),
-        ("theta*2", {"theta": 2}), ("2*3", {"": 6}), ("(theta + 1)*2", {"theta": 2, "": 2}), ("5/3", {"": Fraction(5, 3)}),
+        ("theta*2", {"theta": 2}), ("2*3", {"": 6}), ("(theta + 1)*2", {"theta": 2, "": 2}),
+        ("5/3", {"": Fraction(5, 3)}),
         ("2*(theta - pi/3)", {"theta": 2, "pi": Fraction(-2, 3)}), ("theta - theta", {}), ("(2 - 3)*pi", {"pi": -1}),
         ("theta*pi", None), ("pi/theta", None), ("theta**2", None), ("sin(theta)", None), ("theta + sin(1)", None),
         ("cos(1)*2", None), ("1/pi", None), ("-sin(1)", None), ("cos(1)/2", None), ("2/cos(1)", None), ("2**2", None),
@@ -89,9 +93,11 @@ def test_a_sum_of_coefficients_has_no_zeros(boundaries):
     ("text", "has", "slope"),
     [
         ("3", False, 0), ("sin(b)", False, 0), ("theta", True, 1), ("-theta", True, -1), ("theta*3", True, 3),
-        ("theta + sin(b)", True, 1), ("sin(b) - 2*theta", True, -2), ("b - (theta - pi)*3", True, -3), ("theta/2", True, Fraction(1, 2)),
+        ("theta + sin(b)", True, 1), ("sin(b) - 2*theta", True, -2), ("b - (theta - pi)*3", True, -3),
+        ("theta/2", True, Fraction(1, 2)),
         ("theta - theta", True, 0), ("2*theta + 3*theta", True, 5), ("theta - 4*theta", True, -3),
-        ("sin(theta)", True, None), ("theta*b", True, None), ("b + theta**2", True, None), ("theta**2 - theta", True, None),
+        ("sin(theta)", True, None), ("theta*b", True, None), ("b + theta**2", True, None),
+        ("theta**2 - theta", True, None),
         ("theta - cos(theta)", True, None), ("b/theta", True, None), ("-sin(theta)", True, None),
     ],
 )  # fmt: skip
@@ -109,10 +115,13 @@ def test_the_place_has_a_fraction_for_its_coefficient_or_none_is_known(check, bo
         ("sin(0*theta)", True), ("exp(sin(theta))*b", True), ("-cos(theta)**3/(2 + sin(theta))", True),
         ("sin(theta) + theta", False), ("theta*sin(theta)", False), ("exp(theta)", False), ("sinh(theta)", False),
         ("sin(theta/2)", False), ("sin(theta**2)", False), ("sin(sin(theta))", True), ("cos(theta*b)", False),
-        ("sin(b)", True), ("b**theta", False), ("sqrt(2 + cos(theta))", True), ("sin(cos(theta)/3)", True), ("-theta", False),
+        ("sin(b)", True), ("b**theta", False), ("sqrt(2 + cos(theta))", True), ("sin(cos(theta)/3)", True),
+        ("-theta", False),
     ],
 )  # fmt: skip
-def test_a_formula_has_the_period_where_the_place_stands_in_waves_of_whole_numbers_alone(check, boundaries, text, wanted):
+def test_a_formula_has_the_period_where_the_place_stands_in_waves_of_whole_numbers_alone(
+    check, boundaries, text, wanted
+):
     assert boundaries.periodic(check.parse(text)) is wanted
 
 
@@ -135,7 +144,8 @@ def test_a_part_comes_round_by_its_formulas_and_its_ends(check, boundaries, part
         ("3", 3), ("b", Fraction(2, 7)), ("-b", Fraction(-2, 7)), ("+b", Fraction(2, 7)), ("b + 1", Fraction(9, 7)),
         ("b - 1", Fraction(-5, 7)), ("1 - b", Fraction(5, 7)), ("b*3", Fraction(6, 7)), ("b/2", Fraction(1, 7)),
         ("2/b", 7), ("b**2", Fraction(4, 49)), ("2**b", None), ("b**(-2)", Fraction(49, 4)), ("b**0", 1), ("0**2", 0),
-        ("0**0", None), ("0**(-1)", None), ("1/0", None), ("b/(b - b)", None), ("pi", None), ("pi + 1", None), ("sin(b)", None),
+        ("0**0", None), ("0**(-1)", None), ("1/0", None), ("b/(b - b)", None), ("pi", None), ("pi + 1", None),
+        ("sin(b)", None),
         ("1 + sin(b)", None), ("b // 2", None), ("2**100000", 2**100000), ("2**500000", None), ("2**(-500000)", None),
         ("2**(b*7)", 4), ("c*b", None), ("-pi", None), ("(-1)**3", -1),
     ],
@@ -202,9 +212,12 @@ DISC = [("5 + cos(theta)", "sin(theta)", "-pi", "pi")]
         ([line(0, "c", 1, 0), *TRIANGLE[1:]], {"b": "1"}, "piece 1 has a letter without a number"),
         ([*TRIANGLE[:2], line(0, 1, 0, "c")], {"b": "1"}, "piece 3 has a letter without a number"),
         ([("theta - 1", "0", "1", "1 + b"), line("b", 0, 0, 1), TRIANGLE[2]], {"b": "1..2"}, [(0, 3)]),
-        ([("theta - 1", "0", "1", "1 + b"), line("b", 0, 0, 1), TRIANGLE[2]], {"b": "0..2"}, "piece 1 does not run forward"),
-        ([("theta - 1", "0", "1", "1 + b"), line("b", 0, 0, 1), TRIANGLE[2]], {"b": "-1/9"}, "piece 1 does not run forward"),
-        ([("theta", "0", "0", "(b - 1/16)**2"), line("(b - 1/16)**2", 0, 0, 1), TRIANGLE[2]], {"b": "0..1"}, "piece 1 does not"),
+        ([("theta - 1", "0", "1", "1 + b"), line("b", 0, 0, 1),
+        TRIANGLE[2]], {"b": "0..2"}, "piece 1 does not run forward"),
+        ([("theta - 1", "0", "1", "1 + b"), line("b", 0, 0, 1),
+        TRIANGLE[2]], {"b": "-1/9"}, "piece 1 does not run forward"),
+        ([("theta", "0", "0", "(b - 1/16)**2"), line("(b - 1/16)**2", 0, 0, 1),
+        TRIANGLE[2]], {"b": "0..1"}, "piece 1 does not"),
     ],
 )  # fmt: skip
 def test_pieces_are_chained_to_curves_that_come_back_to_where_they_began(check, boundaries, parts, shape, wanted):
@@ -225,7 +238,8 @@ def test_the_tips_of_a_piece_and_whether_two_are_the_same(check, boundaries):
     assert boundaries.tip(pair, pair[2], names, P) == [Fraction(-1, 3), Fraction(4, 3)]
     assert boundaries.tip(pair, pair[3], names, P) == [Fraction(1, 18), Fraction(1, 6)]
     one, near, pi = Fraction(1), check.I.of(1, P).wide(check.I(1, 1, P)), check.pi(P)
-    cases = (([one, one], [one, one], True), ([one, one], [one, 1 + Fraction(1, 10**90)], False), ([one, 0], [1, one], False),
+    cases = (([one, one], [one, one], True), ([one, one], [one, 1 + Fraction(1, 10**90)], False),
+             ([one, 0], [1, one], False),
              ([one, one], [near, one], True), ([one, near], [one, near + 1], False), ([one, pi], [one, pi], True),
              ([0, one], [near, one], False))  # fmt: skip
     for a, b, wanted in cases:
@@ -234,7 +248,14 @@ def test_the_tips_of_a_piece_and_whether_two_are_the_same(check, boundaries):
 
 @pytest.mark.parametrize(
     ("radius", "most"),
-    [("1", 1), ("b", 1), ("cos(theta) + 2", 1), ("1 - cos(theta)*99/100", 40), ("sqrt(cos(theta) + 101/100)", 60), ("theta**2 + 1/50", 40)],
+    [
+        ("1", 1),
+        ("b", 1),
+        ("cos(theta) + 2", 1),
+        ("1 - cos(theta)*99/100", 40),
+        ("sqrt(cos(theta) + 101/100)", 60),
+        ("theta**2 + 1/50", 40),
+    ],
 )
 def test_a_positive_radius_is_seen_to_be_positive_on_few_pieces(check, boundaries, monkeypatch, radius, most):
     looked, real = [], boundaries.evaluate
@@ -245,7 +266,10 @@ def test_a_positive_radius_is_seen_to_be_positive_on_few_pieces(check, boundarie
     assert (pieces[0][0], max(high for _, high in pieces)) == pytest.approx((-3.141592653589793, 3.141592653589793))
 
 
-@pytest.mark.parametrize("radius", ["-1", "0", "b", "theta", "cos(theta) + 1", "theta**2", "(theta - pi)**2", "(theta + pi)**2", "pi - theta"])
+@pytest.mark.parametrize(
+    "radius",
+    ["-1", "0", "b", "theta", "cos(theta) + 1", "theta**2", "(theta - pi)**2", "(theta + pi)**2", "pi - theta"],
+)
 def test_a_radius_that_is_0_somewhere_or_below_is_refused(check, boundaries, radius):
     near = check.I.of(0, 64).wide(check.I.of(Fraction(1, 9), 64))
     with pytest.raises(check.Wrong, match="radius may not be positive"):
@@ -271,7 +295,10 @@ def test_a_marked_point_is_a_place_on_a_component_there_is(check, boundaries, ma
             boundaries.marked(table, given)
 
 
-SQUARE = [{"x": x, "y": y, "from": low, "to": high} for x, y, low, high in [line(0, 0, 1, 0), line(1, 0, 1, 1), line(1, 1, 0, 1), line(0, 1, 0, 0)]]
+SQUARE = [
+    {"x": x, "y": y, "from": low, "to": high}
+    for x, y, low, high in [line(0, 0, 1, 0), line(1, 0, 1, 1), line(1, 1, 0, 1), line(0, 1, 0, 0)]
+]
 MARK = {"name": "m", "component": 0, "theta": "1"}
 
 
@@ -286,7 +313,8 @@ MARK = {"name": "m", "component": 0, "theta": "1"}
         ("polar", {"polar": "cos(theta)", "undefined": [MARK]}, None, ([True], [0], 1)),
         ("polar", {"polar": "cos(theta)"}, None, "radius may not be positive"),
         ("parametric", {"parametric": ["cos(theta)", "sin(theta)"]}, None, ([True], [], 1)),
-        ("component", {"component": SQUARE, "undefined": [MARK, MARK | {"component": 2}]}, None, ([False] * 4, [0, 2], 1)),
+        ("component", {"component": SQUARE, "undefined": [MARK, MARK | {"component": 2}]}, None,
+         ([False] * 4, [0, 2], 1)),
         ("component", {"component": SQUARE[1:]}, None, "not closed"),
         ("table", {"table": "circle"}, "-lam*eta + s", "arc length"),
         ("table", {"table": "circle"}, "-lam*eta + sin(s)", "arc length"),

@@ -19,7 +19,9 @@ def span(x):
 def holds(x, low, high=None, units=0):
     """Does an interval hold a range of values, with so many units in the last place beyond it at most?"""
     low, high = Fraction(low), Fraction(low if high is None else high)
-    return low - Fraction(units, 1 << x.p) <= span(x)[0] <= low <= high <= span(x)[1] <= high + Fraction(units, 1 << x.p)
+    return (
+        low - Fraction(units, 1 << x.p) <= span(x)[0] <= low <= high <= span(x)[1] <= high + Fraction(units, 1 << x.p)
+    )
 
 
 def precise(function, x):
@@ -103,7 +105,12 @@ def test_middle_size_width_meeting_hull_and_interior_are_those_of_the_ends(check
 
 
 ANGLES = [Fraction(n, 7) for n in range(-24, 25, 3)]
-ANGLES += [Fraction(10**k) for k in (1, 3, 9, 40)] + [Fraction(-(2**90)), Fraction(2) ** -40, Fraction(33, 21), Fraction(1)]
+ANGLES += [Fraction(10**k) for k in (1, 3, 9, 40)] + [
+    Fraction(-(2**90)),
+    Fraction(2) ** -40,
+    Fraction(33, 21),
+    Fraction(1),
+]
 
 
 @pytest.mark.parametrize("p", [12, 64, 130])
@@ -142,7 +149,7 @@ def test_angles_are_within_a_few_units_of_the_true_ones_at_both_ends(check, p):
 
 @pytest.mark.parametrize("off", [1.272, math.pi, 2 * math.pi, -math.pi, -2 * math.pi])
 def test_an_angle_from_a_wrong_guess_is_none(check, monkeypatch, off):
-    """Half a turn and a whole one away Newton's method stays there; from 1.272 it comes to a right angle's other side."""
+    """Half a turn or a whole one away Newton's method stays there; from 1.272 it comes beyond a right angle."""
     turn = check.pi(400)
     monkeypatch.setattr(check, "pi", lambda p: check.I.of(turn, p))  # which is found by an angle itself
     monkeypatch.setattr(check, "atan", lambda x: math.atan(x) + off)
@@ -198,7 +205,10 @@ def test_products_and_sums_of_jets_have_the_coefficients_of_polynomials(check, d
             low = sum(min(u * v for u in a[i] for v in b[j]) for i, j in pairs)
             high = sum(max(u * v for u in a[i] for v in b[j]) for i, j in pairs)
             assert span(found[k]) == (low, high)
-        for z, c in ((x + y, [(u[0] + v[0], u[1] + v[1]) for u, v in zip(a, b, strict=True)]), (-x, [(-v, -u) for u, v in a])):
+        for z, c in (
+            (x + y, [(u[0] + v[0], u[1] + v[1]) for u, v in zip(a, b, strict=True)]),
+            (-x, [(-v, -u) for u, v in a]),
+        ):
             assert [span(check.I.of(w, p)) for w in z.c] == c
             assert z.degree == degree
         by = Fraction(3, 2)
@@ -290,7 +300,7 @@ def test_the_series_of_a_function_without_a_letter_is_its_value(check):
 
 @pytest.mark.parametrize(("near", "width"), [("7/5", "1/10"), ("7/5", "1/1000"), ("3/2", "1/4"), ("17/12", "1/400")])
 def test_a_root_near_an_interval_is_found_with_its_jet(check, near, width):
-    """`t**2 = 2 + x*t + y`: by hand, t_x = 1/2, t_y = 1/(2*sqrt(2)), t_xx/2 = 1/(8*sqrt(2)), t_yy/2 = -1/(16*sqrt(2))."""
+    """`t**2 = 2 + x*t + y`, where t_x = 1/2, t_y = 1/(2*sqrt(2)), t_xx/2 = 1/(8*sqrt(2)), t_yy/2 = -1/(16*sqrt(2))."""
     p, root = 90, Fraction(math.isqrt(2 << 400), 2**200)
     x, y = (check.Jet.of(check.I.of(0, p), 2, k) for k in (0, 1))
     start = check.I.of(Fraction(near), p).wide(check.I.of(Fraction(width), p))

@@ -115,7 +115,9 @@ def landed(check, made, start, psi, part, near):
 def test_no_particle_lands_behind_its_start_or_arrives_from_outside(check):
     """From a disc to the right: on the wall ahead, not on the wall behind, nor on another disc's far side."""
     disc = "cos(theta)", "-sin(theta)", "-pi", "pi"
-    made = table(check, disc, ("9*cos(theta)", "9*sin(theta)", "-pi", "pi"), ("4 + cos(theta)", "-sin(theta)", "-pi", "pi"))
+    made = table(
+        check, disc, ("9*cos(theta)", "9*sin(theta)", "-pi", "pi"), ("4 + cos(theta)", "-sin(theta)", "-pi", "pi")
+    )
     there, psi = landed(check, made, 0, 0, 1, 0)
     assert (check.value(there).real(), check.value(psi).real()) == pytest.approx((0, 0))
     assert check.value(landed(check, made, 0, 0, 2, Fraction(22, 7))[0]).real() == pytest.approx(pi)
@@ -184,7 +186,7 @@ def test_an_orbit_over_a_box_is_tightened_by_its_middle_and_the_slopes(check):
         assert Fraction(x.hi, 2**P) == -Fraction(1, 4) + Fraction(1, 32)
 
 
-class Enough(Exception):
+class EnoughError(Exception):
     """A chord was looked at so often that it is taken to be none that is seen to be free."""
 
 
@@ -198,7 +200,7 @@ class Counted:
     def counted(self, *given):
         self.count += 1
         if self.count > self.most:
-            raise Enough
+            raise EnoughError
         return self.at(*given)
 
     def free(self, check, start, end, most=62):
@@ -207,7 +209,7 @@ class Counted:
         places = [[(part, check.I.of(Fraction(x), P)) for part, x in bounce] for bounce in (start, end)]
         try:
             self.made.free(*places, self.made.letters)
-        except Enough:
+        except EnoughError:
             return None
         return self.count
 
@@ -247,7 +249,8 @@ def test_a_bounce_on_a_closed_curve_may_be_told_by_any_of_its_parameters(check, 
 WALLS = [
     (("1/2", "1/4", "1/2", "3/4"), False), (("1/4", "1/4", "3/4", "3/4"), False), (("1/2", "1/8", "1/2", "3/8"), True),
     (("1/2", "5/8", "1/2", "7/8"), True), (("0", "2", "1", "3"), True), (("3/2", "1/4", "3/2", "3/4"), True),
-    (("-1/2", "1/4", "-1/2", "3/4"), True), (("5/4", "1/2", "7/4", "1/2"), True), (("-3/4", "1/2", "-1/4", "1/2"), True),
+    (("-1/2", "1/4", "-1/2", "3/4"), True), (("5/4", "1/2", "7/4", "1/2"), True),
+    (("-3/4", "1/2", "-1/4", "1/2"), True),
     (("1/4", "1/2", "3/4", "1/2"), False), (("1/2", "1/2", "1/2", "3/4"), False), (("9/8", "1/2", "1", "1"), True),
 ]  # fmt: skip
 
@@ -259,7 +262,9 @@ def test_a_wall_is_in_the_way_where_it_meets_the_chord_between_its_ends(check, w
     a, b, c, d = map(Fraction, wall)
     for _ in range(turned):
         a, b, c, d = 1 - b, a, 1 - d, c
-    made = Counted(table(check, *PIECES, (f"{a} + ({c - a})*(theta + 2)/3", f"{b} + ({d - b})*(theta + 2)/3", "-2", "1")))
+    made = Counted(
+        table(check, *PIECES, (f"{a} + ({c - a})*(theta + 2)/3", f"{b} + ({d - b})*(theta + 2)/3", "-2", "1"))
+    )
     start, end = [((3, "1/2"), (1, "1/2")), ((0, "1/2"), (2, "1/2"))][turned % 2]
     for chord in ((start, end), (end, start)):
         assert bool(made.free(check, *([place] for place in chord), 14)) is free

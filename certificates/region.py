@@ -8,6 +8,7 @@ from fractions import Fraction
 from math import cos, sin
 
 from check import I, Jet, Unproved, Wrong, need, pi, read_scene, value
+from curves import covered, piece_of
 
 ENTRIES = {"schema", "name", "kind", "scene", "lam", "columns", "rows", "parts", "runs"}
 BITS, HALVINGS, POINTS = 64, 4, 512  # of numbers; of a cell; of the boundary, at which guesses begin
@@ -67,16 +68,13 @@ def convex(table):
     """Proves that a curve which runs once round a point, seen at growing angles, turns to one side everywhere.
 
     So a line that leaves inwards meets it at just one other point, ahead, and is inside on the way there."""
-    p, queue, spent = table.p, [(Fraction(-1), Fraction(1))], 0
-    while queue:
-        (a, b), spent = queue.pop(), spent + 1
-        try:
-            turn = bend(table, pi(p) * I.of(a, p).hull(I.of(b, p)))
-            need(turn.hi > 0, "convex_table: the boundary bends outwards", Wrong)
-        except Unproved:  # the speed is not seen to be positive on a wide piece
-            turn = I(0, 0, p)
-        need(spent < 2000, "convex_table: the boundary may bend outwards")
-        queue += [] if turn > 0 else [(a, (a + b) / 2), ((a + b) / 2, b)]
+
+    def settled(a, b):
+        turn = bend(table, piece_of((-pi(table.p), pi(table.p)), a, b, table.p))
+        need(turn.hi > 0, "convex_table: the boundary bends outwards", Wrong)
+        return turn > 0
+
+    covered(settled, 2000, "convex_table: the boundary may bend outwards")
 
 
 def bend(table, theta):

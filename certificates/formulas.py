@@ -13,60 +13,69 @@ from check import I, Jet, function, need, pi, taylor, value
 HALF, LARGEST = Fraction(1, 2), 2**16  # of an exponent of e
 
 
+def point(end, p):
+    return I(end, end, p)
+
+
 def hull(each, x):
     """A growing function over an interval, from what encloses it at both ends."""
-    return each(I(x.lo, x.lo, x.p)).hull(each(I(x.hi, x.hi, x.p)))
+    return each(point(x.lo, x.p)).hull(each(point(x.hi, x.p)))
 
 
 @cache
 def log2(p):
-    """log 2 = 2*(1/3 + (1/3)**3/3 + (1/3)**5/5 + ...)."""
-    w = p + 32
-    terms = [(2 << w) // (n * 3**n) for n in range(1, w, 2)]  # each at most one unit too small; 9**(w/2) > 2**w
-    return I.of(I(sum(terms), sum(terms) + len(terms) + 2, w), p)
+    """log 2 = 2*artanh(1/3)."""
+    return I.of(artanh(I.of(Fraction(1, 3), p + 32)) * 2, p)
+
+
+def artanh(x):
+    """x + x**3/3 + x**5/5 + ... of what is at most 1/3: what follows a term is less than the power of x in it."""
+    total, high, n = x, x, 1
+    while high.size().lo > 1:
+        n += 2
+        high = high * x * x
+        total = total + high * Fraction(1, n)
+    return total.wide(high)
 
 
 def exp_at(x):
     """At a point, 2**k times the exponential of what is left: at most log 2, by Taylor's series."""
     need(x.lo < LARGEST << x.p, "an exponential is too large")
-    if x.lo < -(x.p + 1) << x.p:
+    if x.lo < -x.p << x.p:
         return I(0, 1, x.p)
     k = int(x.real() / 0.6931471805599453)
-    w = x.p + 64 + max(0, k)
+    w = x.p + 64 + abs(k)
     r = I.of(x, w) - log2(w) * k
-    y, total, term, n = r.mid().lo, 0, 1 << w, 0
-    slack = (r.hi - r.mid().lo) * 4 + 32  # no slope is above 4
-    while abs(term) > 1:  # each term is at most 4 units off, and what follows the last one at most 16
-        total, slack, n = total + term, slack + 4, n + 1
-        term = (term * y >> w) // n
-    return I.of(I(max(0, total - slack), total + slack, w - k), x.p)
+    total, term, n = I.of(1, w), I.of(1, w), 0
+    while term.size().lo > 1:  # what follows a term is less than that term
+        n += 1
+        term = term * r * Fraction(1, n)
+        total = total + term
+    total = total.wide(term)
+    return I.of(I(total.lo, total.hi, w - k), x.p)
 
 
 def log_at(x):
     """At a point above 0, k*log 2 more than that of m in [1/2, 1], which is 2*artanh((m - 1)/(m + 1))."""
     need(x.lo > 0, "a logarithm of what may not be positive")
     bits, w = x.lo.bit_length(), x.p + 64
-    m = I.of(I(x.lo, x.lo, bits), w)
-    z = (m - 1) / (m + 1)
-    y, total, n = z.mid().lo, 0, 1
-    square, term, slack = y * y >> w, y, (z.hi - y) * 2 + 16  # no slope is above 9/8
-    while abs(term) > 1:  # each term is at most 3 units off, and what follows the last one at most 16
-        total, slack, n = total + term // n, slack + 4, n + 2
-        term = term * square >> w
-    return I.of(I(total - slack, total + slack, w) * 2 + log2(w) * (bits - x.p), x.p)
+    m = I.of(point(x.lo, bits), w)
+    return I.of(artanh((m - 1) / (m + 1)) * 2 + log2(w) * (bits - x.p), x.p)
 
 
 def tanh_at(x):
-    """(1 - u)/(1 + u) with u = exp(-2*abs(x))."""
-    u = exp_at(I(-2 * abs(x.lo), -2 * abs(x.lo), x.p))
-    return (1 - u) / (u + 1) * (1 if x.lo > 0 else -1)
+    """(1 - u)/(1 + u) with u = exp(-2*x)."""
+    if x.lo < 0:
+        return -tanh_at(-x)
+    u = exp_at(point(-2 * x.lo, x.p))
+    return (1 - u) / (u + 1)
 
 
 def atan_at(x):
     """By the angle of 1/x where x is large."""
-    if abs(x.lo) <= 2 << x.p:
-        return x.atan()
-    return (pi(x.p) if x.lo > 0 else -pi(x.p)) / 2 - (1 / x).atan()
+    if x.lo < 0:
+        return -atan_at(-x)
+    return x.atan() if x.lo <= 2 << x.p else pi(x.p) / 2 - (1 / x).atan()
 
 
 def at_number(name, at, exponent):
@@ -84,31 +93,31 @@ def series(name, x, p, exponent=None):
     if not isinstance(x, Jet):
         return y
     if name == "exp":
-        terms = [y, y, y / 2, y / 6]
-    elif name == "tanh":
+        return taylor(x, [y, y, y / 2, y / 6])
+    if name == "tanh":
         slope = 1 - y * y
-        terms = [y, slope, -y * slope, slope * (y * y * 3 - 1) / 3]
-    elif name == "atan":
+        return taylor(x, [y, slope, -y * slope, slope * (y * y * 3 - 1) / 3])
+    if name == "atan":
         r = 1 / (at * at + 1)
-        terms = [y, r, -at * r * r, (at * at * 3 - 1) * r * r * r / 3]
-    else:
-        r = 1 / at
-        terms = [y, r, -r * r / 2, r * r * r / 3] if name == "log" else [y]
-        for k in range(3 if name == "power" else 0):
-            terms.append(terms[-1] * r * (exponent - k) / (k + 1))
-    return taylor(x, terms[: x.degree + 1])
+        return taylor(x, [y, r, -at * r * r, (at * at * 3 - 1) * r * r * r / 3])
+    r, terms = 1 / at, [y]
+    if name == "log":
+        return taylor(x, [y, r, -r * r / 2, r * r * r / 3])
+    for k in range(3):
+        terms.append(terms[-1] * r * (exponent - k) / (k + 1))
+    return taylor(x, terms)
 
 
 def power(x, dx, exponent, p):
     """A power and its derivative; of what may be 0 only a root, and not its slope."""
-    if exponent.denominator == 1 and exponent:
+    if exponent.denominator == 1:
         low = prod([x] * (abs(int(exponent)) - 1), start=I.of(1, p))
         if exponent < 0:
             low = function("inverse", low * x * x, p)
         return low * x, dx and low * dx * exponent
     at = I.of(value(x), p)
     if at.lo == 0 < exponent and not isinstance(x, Jet) and not dx:
-        top = power(I(at.hi, at.hi, p), 0, exponent, p)[0] if at.hi else at
+        top = series("power", point(at.hi, p), p, exponent) if at.hi else at
         return I(0, top.hi, p), 0
     return series("power", x, p, exponent), dx and series("power", x, p, exponent - 1) * dx * exponent
 
@@ -155,4 +164,4 @@ def meaning(kind, mark, parts, p):
         exponent = parts[1][0]
         fit = abs(exponent) <= 64 and exponent.denominator <= 12 and exponent
         return power(*parts[0], exponent, p) if fit else None
-    return called(mark, *parts[0], p) if kind == "Call" and len(parts) == 1 else None
+    return called(mark, *parts[0], p) if len(parts) == 1 else None  # of what has one part only calls have a known name

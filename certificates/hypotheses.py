@@ -28,6 +28,10 @@ TESTS = (
     "test_simple_curves",
     "test_tangencies",
     "test_two_arithmetics",
+    "steps/test_cells_of_regions",
+    "steps/test_long_steps",
+    "steps/test_pieces_of_curves",
+    "steps/test_words_by_hand",
 )
 OWN = {
     "boundaries": "own_tables",

@@ -11,6 +11,7 @@ a box of matrices, these are regular, and A*x = b has abs(x - y) <= max(abs(C*(b
 from fractions import Fraction
 
 from check import Cycle, I, Jet, Wrong, algebra, function, need, value
+from tangency import composed
 
 SHIFT, OFF = 64, Fraction(1, 2**40)  # bits of the approximate inverse after the point; beside a singular matrix
 
@@ -180,15 +181,11 @@ class Long(Cycle):
 
     def moving(self, chords, w, u):
         """The derivatives of g by the bounces and the free parameter: those of the matrix, between both vectors."""
-        n, row, at, w = len(self.parts), {}, algebra(2)[1], self.round(w, self.twist)
-        for k in range(1, n + 1):
-            for jet, first, sign in ((chords[k][0], k, -1), (chords[k - 1][1], k - 1, 1)):
-                a, b, y = w[first], w[first + 1], u[k - 1] * sign
-                aa, ab, bb, ac, bc = (jet.c[at[e]] for e in ((2, 0, 0), (1, 1, 0), (0, 2, 0), (1, 0, 1), (0, 1, 1)))
-                for place, x in ((first, a * aa * 2 + b * ab), (first + 1, a * ab + b * bb * 2)):
-                    column, by = self.turned(place, 1)
-                    row[column] = row.get(column, 0) + x * y * by
-                row[n] = row.get(n, 0) + (a * ac + b * bc) * y
+        row, w = {}, self.round(w, self.twist)
+        slopes = [[jet.diff(0) * w[k] + jet.diff(1) * w[k + 1] for jet in pair] for k, pair in enumerate(chords)]
+        for of_one, y in zip(self.matrix(slopes, 1, True), u):
+            for column, x in of_one.items():
+                row[column] = row.get(column, 0) - x * y
         return row
 
     def generic(self, image):
@@ -210,15 +207,13 @@ class Long(Cycle):
             need(0 not in cubic, "nondegenerate: the cubic coefficient of the normal form may be 0")
 
     def along(self, chords, w, h):
-        """Of each R, along w*e + h*e**2, the coefficient of e**2 but for what is linear in h, and that of e**3."""
-        found, at, w, h = [], algebra(3)[1], self.round(w, self.twist), self.round(h, 1)
+        """Of each R, along w*e + h*e**2, the coefficients of e**2 and e**3."""
+        found, w, h, at = [], self.round(w, self.twist), self.round(h, 1), algebra(3)[1]
+        e = Jet.of(0, 3, 0)
+        ways = [e * a + e * e * b for a, b in zip(w, h)]
         for k in range(1, len(self.parts) + 1):
-            second = third = I.of(0, self.p)
-            for jet, first, sign in ((chords[k][0], k, 1), (chords[k - 1][1], k - 1, -1)):
-                (a, b), (x, y) = w[first : first + 2], h[first : first + 2]
-                c = {(i, j): jet.c[at[i, j, 0]] * sign for i in range(4) for j in range(4 - i)}
-                second = second + a * a * c[2, 0] + a * b * c[1, 1] + b * b * c[0, 2]
-                third = third + (a * x * c[2, 0] + b * y * c[0, 2]) * 2 + (a * y + b * x) * c[1, 1]
-                third = third + (a * c[3, 0] + b * c[2, 1]) * a * a + (a * c[1, 2] + b * c[0, 3]) * b * b
-            found.append((second, third))
+            gap = composed(chords[k][0], [*ways[k : k + 2], e * 0]) - composed(
+                chords[k - 1][1], [*ways[k - 1 : k + 1], e * 0]
+            )
+            found.append([gap.c[at[n, 0, 0]] for n in (2, 3)])
         return found

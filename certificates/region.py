@@ -41,8 +41,8 @@ def blocks(given):
     for run in given["runs"]:
         need(len(run) == 5 and all(type(n) is int for n in run), "runs is no list of five whole numbers each", Wrong)
         chart, size, column, row, high = run
-        within = chart == 0 and 0 <= column < column + size <= columns and 0 <= row < row + size * high <= rows
-        need(within and high > 0, "a run is beyond the grid", Wrong)
+        within = size > 0 and high > 0 and 0 <= column <= columns - size and 0 <= row <= rows - size * high
+        need(chart == 0 and within, "a run is beyond the grid", Wrong)
         block = {(column + i, row + j) for i in range(size) for j in range(size * high)}
         need(not block & found, "a cell stands twice in runs", Wrong)
         found, count = found | block, count + high
@@ -147,7 +147,7 @@ class Inside:
         v = (phi / self.top + 1) * self.rows / 2
         (a, b), (c, d) = (((x.lo - 1) >> x.p, (x.hi + 1) >> x.p) for x in (u, v))
         c, d = max(c, 0), min(d, self.rows - 1)
-        need(a <= b and c <= d, "images_enclosed: an image lies outside the strip")
+        need(c <= d, "images_enclosed: an image lies outside the strip")
         across = range(a, min(b, a + self.columns - 1) + 1)
         return [(i % self.columns, j) for i in across for j in range(c, d + 1)]
 

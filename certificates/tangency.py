@@ -8,6 +8,16 @@ from fractions import Fraction
 from check import I, Jet, Table, Wrong, algebra, evaluate, exact, function, implicit, need, newton, value
 
 
+def composed(f, letters):
+    """A polynomial of three letters with jets in their place."""
+    total = letters[0] * 0
+    for e, c in zip(algebra(f.degree)[0], f.c):
+        for letter in (letter for letter, n in zip(letters, e) for _ in range(n)):
+            c = letter * c
+        total = total + c
+    return total
+
+
 class Back(Table):
     """A table whose particles run back in time: what they arrive at is an exit, and they leave as one had come in."""
 
@@ -78,14 +88,10 @@ class Manifold:
 
     def on(self, f):
         """A jet along the manifold, as one in x and lam, to second order."""
-        (_, x, lam, xx, mixed), letters, total = self.w, [Jet.of(0, 2, k) for k in range(3)], Jet.of(0, 2)
+        (_, x, lam, xx, mixed), letters = self.w, [Jet.of(0, 2, k) for k in range(3)]
         w = [0, lam, x, 0, 0, mixed, xx, 0, 0, 0] if self.own else [0, lam, 0, x, 0, 0, 0, mixed, 0, xx]
         letters[self.other] = Jet(w, 2)
-        for e, c in zip(algebra(2)[0], f.c):
-            for letter in (letter for letter, n in zip(letters, e) for _ in range(n)):
-                c = letter * c
-            total = total + c
-        return total
+        return composed(f, letters)
 
 
 def touching(given, table, lam, title):

@@ -1,0 +1,389 @@
+"""Steps of the second reader's long cycles, each by itself: linear systems, chords, closures, and rows by hand."""
+
+from fractions import Fraction
+from math import atan2, cos, pi, sin
+from random import Random
+
+import pytest
+
+P = 100
+
+
+@pytest.fixture(scope="module")
+def long(check):
+    return check.beside("long")
+
+
+def number(check, x, p=P):
+    return check.I.of(Fraction(x), p)
+
+
+def holds(found, true, units=4) -> bool:
+    """Does an interval hold a fraction, and is it no wider than so many units of its last place?"""
+    return found.lo <= Fraction(true) * 2**found.p <= found.hi and found.width() <= units
+
+
+def system(check, rows):
+    """Of rows of numbers, or of pairs of ends, whose zeros are not told."""
+    interval = lambda x: number(check, x[0]).hull(number(check, x[1])) if isinstance(x, tuple) else number(check, x)  # noqa: E731
+    return [{j: interval(x) for j, x in enumerate(row) if x} for row in rows]
+
+
+ROWS = [[4, "1/3", 0], ["-1/2", (3, "49/16"), 1], [0, ("-9/8", "-1"), "-7/2"]]
+
+
+def corners(row):
+    """A row of fractions for each choice of the ends of its entries."""
+    made = [[]]
+    for x in row:
+        made = [[*some, Fraction(end)] for some in made for end in (x if isinstance(x, tuple) else (x,))]
+    return made
+
+
+def test_the_row_sums_of_what_an_approximate_inverse_leaves_are_bounded_within_two_units(check, long):
+    """By exact fractions, at all ends of the entries: the largest sum is at one of them."""
+    made, n = long.Linear(system(check, ROWS), P), len(ROWS)
+    inverse = [[Fraction(x, 2**long.SHIFT) for x in row] for row in made.inverse]
+    choices = [[]]
+    for row in ROWS:
+        choices = [[*some, one] for some in choices for one in corners(row)]
+    middle = [[sum(matrix[k][j] for matrix in choices) / len(choices) for j in range(n)] for k in range(n)]
+    radius = [[max(matrix[k][j] for matrix in choices) - middle[k][j] for j in range(n)] for k in range(n)]
+    for i, row in enumerate(inverse):
+        off = lambda matrix, j, i=i, row=row: abs((i == j) - sum(c * x[j] for c, x in zip(row, matrix, strict=True)))  # noqa: E731
+        bound = sum(off(middle, j) + sum(abs(c) * r[j] for c, r in zip(row, radius, strict=True)) for j in range(n))
+        assert max(sum(off(matrix, j) for j in range(n)) for matrix in choices) * 2**P <= made.sums[i]
+        assert bound * 2**P <= made.sums[i] <= bound * 2**P + 2
+    assert made.norm.lo == made.norm.hi == max(made.sums)
+
+
+def test_an_approximate_inverse_is_one_to_most_digits_of_doubles(check, long):
+    rows = [[Fraction(x) for x in row] for row in ([4, 1, 0], [-1, 3, 1], [0, "-9/8", "-7/2"])]
+    made = long.Linear(system(check, rows), P)
+    for i in range(3):
+        for j in range(3):
+            product = sum(Fraction(made.inverse[i][k], 2**64) * rows[k][j] for k in range(3))
+            assert abs(product - (i == j)) < Fraction(1, 2**48)
+    assert max(made.sums) < 2 ** (P - 46)
+
+
+def test_an_approximate_inverse_times_intervals_is_exact_but_for_a_rounding(check, long):
+    made = long.Linear.__new__(long.Linear)
+    made.p, made.inverse = P, [[3 << 62, -(1 << 63), 0], [-(1 << 64), 0, 5 << 62], [1, 1, 1]]
+    vector = [check.I(-5, 7, P), check.I(1, 2, P), check.I(-9, -3, P)]
+    found = made.times(vector)
+    assert [(x.lo, x.hi) for x in found[:2]] == [(-5, 5), (-19, 2)]
+    # 3/4*[-5, 7] - 1/2*[1, 2] = [-19/4, 19/4]; -[-5, 7] + 5/4*[-9, -3] = [-73/4, 5/4]
+    assert (found[2].lo, found[2].hi) == (-1, 1)
+
+
+@pytest.mark.parametrize("rounds", [0, 1, 3])
+def test_a_solution_holds_those_of_all_matrices_and_of_all_right_sides(check, long, rounds):
+    made = long.Linear(system(check, ROWS), P)
+    right = [("1/2", "9/16"), -1, 2]
+    found = made.solve([number(check, x[0]).hull(number(check, x[1])) if isinstance(x, tuple) else number(check, x)
+                        for x in right], rounds)  # fmt: skip
+    choices = [[]]
+    for row in ROWS:
+        choices = [[*some, one] for some in choices for one in corners(row)]
+    true = [solved(matrix, [Fraction(b), Fraction(-1), Fraction(2)]) for matrix in choices for b in right[0]]
+    for k, enclosure in enumerate(found):
+        low, high = min(x[k] for x in true), max(x[k] for x in true)
+        assert enclosure.lo <= low * 2**P
+        assert high * 2**P <= enclosure.hi
+    widest = max(max(x[k] for x in true) - min(x[k] for x in true) for k in range(3))
+    assert not rounds or max(x.width() for x in found) < 8 * widest * 2**P
+
+
+def solved(matrix, right):
+    """By Cramer's rule."""
+    det = lambda m: (  # noqa: E731
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    )
+    put = lambda k: [[b if j == k else x for j, x in enumerate(row)] for row, b in zip(matrix, right, strict=True)]  # noqa: E731
+    return [det(put(k)) / det(matrix) for k in range(3)]
+
+
+def test_after_rounds_of_improvement_a_solution_has_all_digits(check, long):
+    """What is left of a residual is divided by how much less than 1 the largest sum is, which is very near 1 here."""
+    rows = [[Fraction(x) for x in row] for row in ([4, 1, 0], [-1, 3, 1], [0, "-9/8", "-7/2"])]
+    made = long.Linear(system(check, rows), P)
+    found = made.solve([number(check, x) for x in (1, -2, 3)], 4)
+    assert all(holds(x, true, 16) for x, true in zip(found, solved(rows, [1, -2, 3]), strict=True))
+    wide = long.Linear(system(check, [[("1/4", "7/4")]]), P)  # sums up to 3/4: x is up to 4/3 from 1 for 1, at a step
+    (one,) = wide.solve([number(check, 1)], 1)
+    assert one.lo / 2**P == pytest.approx(-2, rel=1e-12)  # 1 - 3/4/(1 - 3/4)
+    assert one.hi / 2**P == pytest.approx(4, rel=1e-12)
+
+
+@pytest.mark.parametrize(("entry", "regular"), [(("1/64", "127/64"), True), ((0, 2), False), (("-1/64", "2"), False)])
+def test_a_system_is_refused_where_a_row_sum_may_be_1(check, long, entry, regular):
+    rows = system(check, [[1, 0], [0, entry]])
+    if regular:
+        assert long.Linear(rows, P).norm.real() == pytest.approx(63 / 64, rel=1e-12)
+    else:
+        with pytest.raises(check.Unproved, match="a linear system may be singular"):
+            long.Linear(rows, P)
+
+
+def cycle(check, long, parts, sign=1, twist=1):
+    made = long.Long.__new__(long.Long)
+    made.p, made.parts, made.sign, made.twist = P, parts, sign, twist
+    return made
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("twist", [1, -1])
+def test_after_a_round_a_bounce_is_its_image_times_the_twist(check, long, sign, twist):
+    made = cycle(check, long, [0] * 3, sign, twist)
+    assert [made.turned(k, twist) for k in range(3)] == [(0, 1), (1, 1), (2, 1)]
+    assert [made.turned(k, twist) for k in (3, 4, 6, 7)] == [(0, sign * twist), (1, sign * twist), (0, 1), (1, 1)]
+    assert all(type(by) is int for _, by in (made.turned(k, twist) for k in range(7)))
+    found = made.round([number(check, k) for k in (5, 7, 11)], twist)
+    assert [x.real() for x in found] == [5, 7, 11, 5 * sign * twist, 7 * sign * twist]
+
+
+def jets(check, dice, n, degree):
+    """Pairs of polynomials for each chord of a round and the first one after, with fractions for coefficients."""
+    count = len(check.algebra(degree)[0])
+    told = [[[Fraction(dice.randrange(-8, 9), 4) for _ in range(count)] for _ in range(2)] for _ in range(n + 1)]
+    return told, [[check.Jet([number(check, x) for x in c], degree) for c in pair] for pair in told]
+
+
+def later(bounces, sign):
+    return [*bounces, *(x * sign for x in bounces[:2])]
+
+
+def rule(check, told, bounces, letter, sign):
+    """R of each bounce from the second on, for polynomials that are told: what is to be told of all linear parts."""
+    degree = max(map(sum, check.algebra(3)[0][: len(told[0][0])]))
+    powers = check.algebra(degree)[0]
+    ends = later(bounces, sign)
+    at = lambda c, x, y: sum(a * x ** e[0] * y ** e[1] * letter ** e[2] for a, e in zip(c, powers, strict=True))  # noqa: E731
+    return [
+        at(told[k][0], *ends[k : k + 2]) - at(told[k - 1][1], *ends[k - 1 : k + 1]) for k in range(1, len(bounces) + 1)
+    ]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_the_matrix_of_a_round_has_the_slopes_of_its_rule(check, long, n, sign):
+    """Of linear polynomials at 0: the rule itself at each unit vector, less that at 0. With a twist it is that of
+    `x -> -x` after a round, and the letter has a column where it is free."""
+    dice = Random(n)
+    told, chords = jets(check, dice, n, 1)
+    for twist in (1, -1):
+        made = cycle(check, long, [0] * n, sign, twist)
+        origin = rule(check, told, [0] * n, 0, sign * twist)
+        for free in (False, True):
+            found = made.matrix(chords, twist, free)
+            assert len(found) == n
+            for column in range(n + free):
+                unit = [int(k == column) for k in range(n + 1)]
+                moved = rule(check, told, unit[:n], unit[n], sign * twist)
+                for row, one, zero in zip(found, moved, origin, strict=True):
+                    assert holds(check.I.of(row.get(column, 0), P), one - zero)
+            assert all(set(row) <= set(range(n + free)) for row in found)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("twist", [1, -1])
+@pytest.mark.parametrize("n", [2, 3])
+def test_the_second_and_third_order_along_a_way_are_those_of_the_rule(check, long, n, twist, sign):
+    """Of cubic polynomials: `R(w*e + h*e**2)` at `e = -3, ..., 3` has these coefficients, by exact differences."""
+    dice = Random(n + twist)
+    told, chords = jets(check, dice, n, 3)
+    made = cycle(check, long, [0] * n, sign, twist)
+    w, h = ([Fraction(dice.randrange(-4, 5), 2) for _ in range(n)] for _ in range(2))
+    found = made.along(chords, [number(check, x) for x in w], [number(check, x) for x in h])
+    wide_w, wide_h = later(w, sign * twist), later(h, sign)
+    powers, at = check.algebra(3)[0], check.algebra(3)[1]
+    for k, pair in enumerate(found, 1):
+        wanted = [Fraction(0), Fraction(0)]
+        for c, first, by in ((told[k][0], k, 1), (told[k - 1][1], k - 1, -1)):
+            (a, b), (x, y) = wide_w[first : first + 2], wide_h[first : first + 2]
+            q = {e: c[at[e]] * by for e in powers}
+            wanted[0] += q[2, 0, 0] * a * a + q[1, 1, 0] * a * b + q[0, 2, 0] * b * b + q[1, 0, 0] * x + q[0, 1, 0] * y
+            wanted[1] += 2 * q[2, 0, 0] * a * x + 2 * q[0, 2, 0] * b * y + q[1, 1, 0] * (a * y + b * x)
+            wanted[1] += q[3, 0, 0] * a**3 + q[2, 1, 0] * a * a * b + q[1, 2, 0] * a * b * b + q[0, 3, 0] * b**3
+        assert all(holds(ours, true, 64) for ours, true in zip(pair, wanted, strict=True))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("twist", [1, -1])
+@pytest.mark.parametrize("n", [2, 3])
+def test_how_the_linear_rule_moves_between_two_vectors_is_minus_its_second_derivative(check, long, n, twist, sign):
+    """Of quadratic polynomials, exactly: `-u * d/dx (dR * w)`, in each bounce and in the letter."""
+    dice = Random(7 * n + twist)
+    told, chords = jets(check, dice, n, 2)
+    made = cycle(check, long, [0] * n, sign, twist)
+    w, u = ([Fraction(dice.randrange(-4, 5), 2) for _ in range(n)] for _ in range(2))
+    found = made.moving(chords, [number(check, x) for x in w], [number(check, x) for x in u])
+    at, wide = check.algebra(2)[1], later(w, sign * twist)
+
+    def slope(moved):
+        """Between u and w, the linearised rule at a place."""
+        ends, letter, total = later(moved[:n], sign), moved[n], Fraction(0)
+        for k in range(1, n + 1):
+            for c, first, by in ((told[k][0], k, 1), (told[k - 1][1], k - 1, -1)):
+                (x, y), (a, b) = ends[first : first + 2], wide[first : first + 2]
+                q = {e: c[at[e]] for e in at}
+                here = q[1, 0, 0] + 2 * q[2, 0, 0] * x + q[1, 1, 0] * y + q[1, 0, 1] * letter
+                there = q[0, 1, 0] + 2 * q[0, 2, 0] * y + q[1, 1, 0] * x + q[0, 1, 1] * letter
+                total += u[k - 1] * by * (here * a + there * b)
+        return total
+
+    for column in range(n + 1):
+        unit = [int(k == column) for k in range(n + 1)]
+        assert holds(check.I.of(found.get(column, 0), P), slope([0] * (n + 1)) - slope(unit), 64)
+    assert set(found) <= set(range(n + 1))
+
+
+def test_a_bordered_system_has_one_entry_more_in_a_row_and_a_column_and_is_turned_over(check, long):
+    made = cycle(check, long, [0] * 3)
+    rows = [
+        {0: number(check, 1), 1: number(check, 2)},
+        {1: number(check, 3), 2: number(check, 7)},
+        {2: number(check, 5)},
+    ]
+    found, over = made.bordered(rows, (2, 1))
+    plain = lambda rows: [{j: x.real() for j, x in row.items()} for row in rows]  # noqa: E731
+    assert plain(found.rows) == [{0: 1, 1: 2}, {1: 3, 2: 7}, {2: 5, 3: 1}, {1: 1}]
+    assert plain(over) == [{0: 1}, {0: 2, 1: 3, 3: 1}, {1: 7, 2: 5}, {2: 1}]
+    assert [set(row) for row in rows] == [{0, 1}, {1, 2}, {2}]
+
+
+@pytest.mark.parametrize("twist", [1, -1])
+def test_the_vectors_of_a_singular_matrix_are_those_that_it_takes_to_0_from_both_sides(check, long, twist):
+    """Of the matrix ((1, 1/2), (2, 1)), and for a twist of ((1, -1/2), (2, -1)): `w = (-1/2, 1)` up to sign."""
+    made = cycle(check, long, [0] * 2, 1, twist)
+    made.end, made.border, asked = [number(check, x) for x in (0, 0, 1)], (0, 1), []
+    entries = [
+        {0: number(check, 1), 1: number(check, Fraction(twist, 2))},
+        {0: number(check, 2), 1: number(check, twist)},
+    ]
+    made.matrix = lambda chords, by, free: asked.append((chords, by, free)) or entries
+    w, u = made.vectors("chords")
+    assert asked == [("chords", twist, False)]
+    assert len(w) == len(u) == 2
+    assert all(holds(x, true, 64) for x, true in zip(w, (Fraction(-twist, 2), 1), strict=True))
+    assert all(holds(x, true, 64) for x, true in zip(u, (1, Fraction(-1, 2)), strict=True))
+
+
+def flown(theta0, theta1, alpha=0.08):
+    """The angles at both ends of a chord of the egg, in floats."""
+
+    def at(t):
+        r, slope = 1 + alpha * cos(3 * t), -3 * alpha * sin(3 * t)
+        return r * cos(t), r * sin(t), slope * cos(t) - r * sin(t), slope * sin(t) + r * cos(t)
+
+    (x, y, tx, ty), (u, v, a, b) = at(theta0), at(theta1)
+    dx, dy = u - x, v - y
+    return atan2(dx * tx + dy * ty, dy * tx - dx * ty), atan2(dx * a + dy * b, dx * b - dy * a)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("law", [None, "-lam*eta + eta**3/9 + sin(theta)/99"])
+def test_the_chords_of_a_round_leave_and_arrive_at_their_angles_with_their_slopes(check, long, sign, law):
+    """By floats, and by differences of them; the law makes the angle of the next chord of that of arrival."""
+    scene = {"table": "egg", "shape": {"alpha": "2/25"}} | ({"law": law} if law else {})
+    table, bounces = check.read_scene(scene, "lam", P)[0], [0.4, 2.3, -1.9]
+    made = long.Long(
+        table, "fold", [0] * 3, [number(check, x) for x in bounces], sign, "lam", number(check, "1/2"), None
+    )
+    made.free = True
+    found = made.chords(made.boxes, made.box, 2)
+    assert len(found) == 4
+    ends = later(bounces, sign)
+
+    def true(x, y, lam):
+        leaves, arrives = flown(x, y)
+        return leaves, (arrives * lam if law is None else lam * arrives - arrives**3 / 9 + sin(y) / 99)
+
+    for k, pair in enumerate(found):
+        at = *ends[k : k + 2], 0.5
+        for which, jet in enumerate(pair):
+            assert check.value(jet).real() == pytest.approx(true(*at)[which], abs=1e-12)
+            for place, slope in enumerate(jet.gradient(P)):
+                step = [1e-5 * (place == j) for j in range(3)]
+                up, down = (true(*(x + by * s for x, s in zip(at, step, strict=True)))[which] for by in (1, -1))
+                assert slope.real() == pytest.approx((up - down) / 2e-5, abs=1e-8)
+    made.free = False
+    made.names = lambda letter: table.letters | {"lam": letter}
+    fixed = made.chords(made.boxes, number(check, "1/2"), 1)
+    assert all(jet.gradient(P)[2].width() == jet.gradient(P)[2].lo == 0 for pair in fixed for jet in pair)
+
+
+def test_a_short_chord_of_a_small_disc_leaves_and_arrives_inwards(check, long):
+    """Each of both products is far below 1, and only the sign is asked."""
+    table = check.read_scene({"polar": "1/10"}, "lam", P)[0]
+    boxes = [number(check, x) for x in ("0", "1/2", "1")]
+    made = long.Long(table, "cycle", [0] * 3, boxes, 1, "", None, number(check, "1/2"))
+    made.free = False
+    found = made.chords(boxes, made.lam, 1)
+    assert check.value(found[0][0]).real() == pytest.approx(pi / 2 - 1 / 4, abs=1e-12)
+    assert check.value(found[0][1]).real() == pytest.approx((pi / 2 - 1 / 4) / 2, abs=1e-12)
+
+
+def test_a_cycle_of_another_kind_is_none_of_long_equations(check, long):
+    made = cycle(check, long, [0] * 2)
+    for kind in ("focus", "corner", "tangency"):
+        made.kind = kind
+        with pytest.raises(check.Wrong, match="kind: that of a long cycle is another"):
+            made.solved()
+
+
+def line(check, long, kind, radius, slope="1/2", beside="0", bend="0"):
+    """A cycle of the rule `x[k+1] = slope*x[k] + bend*x[k]**2 + lam - x[k-1]/9` near 0, boxes of a radius beside it."""
+    made = cycle(check, long, [0] * 3)
+    made.kind, made.lam = kind, number(check, 0)
+    made.boxes = [number(check, beside).wide(number(check, radius))] * 3
+    made.box = number(check, 0).wide(number(check, radius))
+    s, q = Fraction(slope), Fraction(bend)
+
+    def chords(bounces, letter, degree):
+        found = []
+        ends = later(bounces, 1)
+        for k in range(4):
+            here, there = (check.Jet.of(x, degree, place) for place, x in enumerate(ends[k : k + 2]))
+            lam = check.Jet.of(letter, degree, 2) if made.free else check.Jet.of(letter, degree)
+            found.append((there * 1, there * s + there * there * q + lam - here * Fraction(1, 9)))
+        return found
+
+    made.chords = chords
+    return made
+
+
+@pytest.mark.parametrize(("beside", "inside"), [("0", True), ("1/3000", True), ("1/900", False), ("-1/900", False)])
+def test_a_cycle_is_one_where_interval_newton_maps_its_boxes_into_themselves(check, long, beside, inside):
+    """Of a linear rule the zero is at 0, whatever the boxes: enclosed within a few units, or outside of them."""
+    made = line(check, long, "cycle", "1/1000", beside=beside)
+    if inside:
+        image, bounces = made.solved()
+        assert all(holds(x, 0, 2**60) for x in bounces)
+        assert image[0] is bounces[0]
+        assert image[1] is None
+        assert image[2] is made.box
+        assert made.bounces == bounces
+        assert len(bounces) == 3
+    else:
+        with pytest.raises(check.Unproved, match="interval Newton does not map the box into itself"):
+            made.solved()
+
+
+@pytest.mark.parametrize(
+    ("kind", "slope", "proved"),
+    [("fold", "10/9", True), ("fold", "-10/9", False), ("flip", "-10/9", True), ("flip", "10/9", False)],
+)
+def test_a_fold_and_a_flip_are_told_apart_by_their_twist(check, long, kind, slope, proved):
+    """At 0 the rule with the slope `+-(1 + 1/9)` has the multiplier `+-1`: folds where `bend` is not 0, in lam = 0."""
+    made = line(check, long, kind, "1/100000", slope=slope, bend="1/2")
+    if proved:
+        image, bounces = made.solved()
+        assert all(0 in x for x in [*bounces, image[2]])
+        assert image[2].width() < 2 ** (P - 25)
+    else:
+        with pytest.raises(check.Unproved):
+            made.solved()

@@ -29,6 +29,7 @@ TESTS = (
     "test_tangencies",
     "test_two_arithmetics",
     "steps/test_cells_of_regions",
+    "steps/test_contacts_by_hand",
     "steps/test_long_steps",
     "steps/test_pieces_of_curves",
     "steps/test_words_by_hand",

@@ -64,7 +64,7 @@ class Manifold:
         s, g, (*_, turn), shift = value(slope), x1.gradient(p)[self.own], slope.gradient(p), x1.gradient(p)[2]
         bend = slope.gradient(p)[self.own] / g
         new = [value(y1), s, y1.gradient(p)[2] - s * shift, bend / 2, turn - bend * shift]
-        need(len(radii) == 5 and all(map(I.inside, new, self.w)), "remainder: the manifold is not enclosed")
+        need(all(map(I.inside, new, self.w)), "remainder: the manifold is not enclosed")
         fy, gy = (f.gradient(p)[self.other].size() for f in (x, y))
         fits = (inner - self.reach).hi <= 0
         grows = fits and (value(x0).size() + self.reach) * (1 / g).size() - inner < 0 and (1 / g).size() < 1

@@ -336,11 +336,11 @@ def test_a_cycle_of_another_kind_is_none_of_long_equations(check, long):
 
 
 def line(check, long, kind, radius, slope="1/2", beside="0", bend="0"):
-    """A cycle of the rule `x[k+1] = slope*x[k] + bend*x[k]**2 + lam - x[k-1]/9` near 0, boxes of a radius beside it."""
+    """A cycle of the rule `x[k+1] = slope*x[k] + bend*x[k]**2 + lam - 1/3 - x[k-1]/9` near 0, by boxes beside."""
     made = cycle(check, long, [0] * 3)
-    made.kind, made.lam = kind, number(check, 0)
+    made.kind, made.lam = kind, number(check, "1/3").mid()
     made.boxes = [number(check, beside).wide(number(check, radius))] * 3
-    made.box = number(check, 0).wide(number(check, radius))
+    made.box = number(check, "1/3").wide(number(check, radius))
     s, q = Fraction(slope), Fraction(bend)
 
     def chords(bounces, letter, degree):
@@ -349,7 +349,7 @@ def line(check, long, kind, radius, slope="1/2", beside="0", bend="0"):
         for k in range(4):
             here, there = (check.Jet.of(x, degree, place) for place, x in enumerate(ends[k : k + 2]))
             lam = check.Jet.of(letter, degree, 2) if made.free else check.Jet.of(letter, degree)
-            found.append((there * 1, there * s + there * there * q + lam - here * Fraction(1, 9)))
+            found.append((there * 1, there * s + there * there * q + (lam - Fraction(1, 3)) - here * Fraction(1, 9)))
         return found
 
     made.chords = chords
@@ -378,11 +378,12 @@ def test_a_cycle_is_one_where_interval_newton_maps_its_boxes_into_themselves(che
     [("fold", "10/9", True), ("fold", "-10/9", False), ("flip", "-10/9", True), ("flip", "10/9", False)],
 )
 def test_a_fold_and_a_flip_are_told_apart_by_their_twist(check, long, kind, slope, proved):
-    """At 0 the rule with the slope `+-(1 + 1/9)` has the multiplier `+-1`: folds where `bend` is not 0, in lam = 0."""
+    """At 0 the rule with the slope `+-(1 + 1/9)` has the multiplier `+-1`: it folds in lam = 1/3."""
     made = line(check, long, kind, "1/100000", slope=slope, bend="1/2")
     if proved:
         image, bounces = made.solved()
-        assert all(0 in x for x in [*bounces, image[2]])
+        assert all(0 in x for x in bounces)
+        assert image[2].lo <= Fraction(2**P, 3) <= image[2].hi
         assert image[2].width() < 2 ** (P - 25)
     else:
         with pytest.raises(check.Unproved):

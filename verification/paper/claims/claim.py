@@ -124,7 +124,7 @@ class Judgement:
         if self.printed.outcome is Outcome.PROVED:
             return Verdict.CONFIRMED
         if self.printed.outcome is Outcome.REFUTED:
-            return Verdict.CORRECTED if self.mended is not None and self.mended else Verdict.REFUTED
+            return Verdict.CORRECTED if self.mended else Verdict.REFUTED
         return Verdict.SUPPORTED if self.evidence else Verdict.OPEN
 
     def witness(self, claim: Claim) -> dict[Symbol, Expr]:

@@ -175,7 +175,8 @@ def test_a_quotient_with_one_square_root_is_a_rational_part_and_a_rational_multi
     share = Symbol("share")
     parts = found.xreplace({r: share})
     assert vanishes(found - quotient)
-    assert parts.is_rational_function() and parts.diff(share, 2) == 0
+    assert parts.is_rational_function()
+    assert parts.diff(share, 2) == 0
 
 
 def test_two_square_roots_or_other_words_are_left_to_others():

@@ -123,11 +123,14 @@ def classify_cells(map: PinballMap, grid: Grid, transient: int = TRANSIENT) -> C
     first = np.unique(np.max([cells for _, cells in images], axis=0))
     theta, phi, component = grid.starts.theta[first], grid.starts.phi[first], grid.starts.component[first]
     followed, attractors = classify(map, theta, phi, component, transient)
-    label, found = np.full(grid.starts.theta.size, UNSETTLED), list(attractors)
-    for symmetry, cells in reversed(images):  # the identity last: who was followed keeps its label
-        onto = np.array([*(image_of(map, found, attractor, symmetry) for attractor in attractors), UNSETTLED])
-        label[cells[first]] = onto[followed]
-    return Classified(label, tuple(found))
+    found = list(attractors)
+    onto = np.array([[image_of(map, found, attractor, g) for attractor in attractors] for g, _ in images], dtype=int)
+    order = list(dict.fromkeys(int(i) for i in onto.T.ravel()))  # an attractor, then its images, then the next
+    place = np.append(np.argsort(order), UNSETTLED)
+    label = np.full(grid.starts.theta.size, UNSETTLED)
+    for row, (_, cells) in zip(reversed(onto), reversed(images), strict=True):  # the identity last
+        label[cells[first]] = place[np.append(row, UNSETTLED)[followed]]
+    return Classified(label, tuple(found[i] for i in order))
 
 
 def image_cells(map: PinballMap, grid: Grid, symmetry: "Symmetry") -> Labels | None:

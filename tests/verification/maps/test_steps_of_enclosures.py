@@ -306,3 +306,14 @@ def test_a_landing_is_enclosed_about_a_guess_that_nobody_sharpened(monkeypatch, 
         found = ellipse._landed(here, place(0, true.theta.mid()))
     assert found.theta.contains(true.theta)
     assert found.theta.rad() < 1e-10
+
+
+@pytest.mark.parametrize(("reach", "lands"), [(1e-5, True), (1e-7, False), (math.inf, False), (math.nan, False)])
+def test_no_landing_is_told_where_the_interval_newton_step_does_not_close(monkeypatch, ellipse, reach, lands):
+    """About a guess that is off by a millionth, looked for within more than that, or less."""
+    here = ellipse.start(0.3, 0.2)
+    monkeypatch.setattr(ellipse, "_polished", lambda flight, near: (near + 1e-6).mid())
+    monkeypatch.setattr(ellipse, "_reach", lambda step, middle: arb(reach))
+    with working(BITS):
+        found = ellipse._landed(here, place(0, arb(float(ellipse.map.step(0.3, 0.2).theta))))
+    assert (found is not None) is lands

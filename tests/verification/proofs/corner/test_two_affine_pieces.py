@@ -125,3 +125,12 @@ def test_the_image_of_a_point_is_told_with_a_hair_on_every_side():
     for u in (0.5 - hair, 0.5 + hair):
         for v in (0.25 - hair, 0.25 + hair):
             assert any(abs(x - u) + abs(y - v) < hair / 100 for x, y in found)
+
+
+@pytest.mark.parametrize(("height", "answer"), [(0.125, True), (-0.125, False), (0.0, False), (arb(0, 1), None)])
+def test_a_left_fixed_point_is_on_its_side_however_near_to_the_border(height, answer):
+    """`v -> 2*v + q` has it at `-q`; the left piece is that with the larger trace, on either side of the border."""
+    for left, right, sign in ((WALL, ARC, 1), (ARC, WALL, -1)):
+        above = Piece(((arb(0.25), arb(0)), (arb(0), arb(2))), (arb(0), -sign * arb(height)))
+        made = border.hypotheses({left: above, right: affine(0.25, 0, 0, -3)})
+        assert made["fixed_points_on_their_sides"] is answer

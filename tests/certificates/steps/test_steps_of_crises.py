@@ -226,6 +226,7 @@ def test_saddles_are_one_curve_of_boxes_that_overlap_and_are_told_at_both_ends(c
     ("entries", "fails"),
     [
         ({}, None), ({"d": "1/2", "det": "3/2"}, None), ({"b": "-1"}, None),
+        ({"a": "11/10", "d": "-9/10", "det": "-99/100"}, None),
         ({"a": "11/10", "d": "0", "det": "0"}, None),
         ({"a": "-3"}, "multipliers"), ({"a": "1", "d": "1/2", "det": "1/2"}, "multipliers"),
         ({"b": "0"}, "multipliers"),
@@ -252,6 +253,7 @@ def test_a_saddle_has_one_multiplier_above_1_and_one_between_plus_and_minus_1(
         ((12, 10), True),
         ((10, 8), True),
         ((11, 10), False),
+        ((10, 11), False),
         ((10, 12), True),
         ((9, 11), False),
         ((11, 11), False),

@@ -62,10 +62,11 @@ def test_what_is_solved_begins_at_the_angle_of_the_first_chord_twice_as_wide(che
         assert asked[2] == ("image", 1)
 
 
-def admissible(check, parts, bounces, sign=1, closed=(False,) * 3, marks=(), refuses=None):
+def admissible(check, parts, bounces, sign=1, closed=(False,) * 3, marks=(), start=-1, refuses=None):
     """The chords that are asked, in their order, of a table whose parts run from -4 to 4, or once round."""
     asked = []
-    ends = lambda part, p: [number(check, -4), number(check, 4)] if not closed[part] else [-check.pi(p), check.pi(p)]  # noqa: E731
+    once = [check.pi(P) * Fraction(start), check.pi(P) * (Fraction(start) + 2)]
+    ends = lambda part, p: once if closed[part] else [number(check, -4), number(check, 4)]  # noqa: E731
     table = SimpleNamespace(closed=closed, ends=ends, marks=[(part, number(check, x)) for part, x in marks])
     table.free = lambda start, end, names: asked.append((*start, *end, names))
     cycle = check.Cycle.__new__(check.Cycle)
@@ -106,9 +107,35 @@ def test_every_chord_of_a_cycle_is_asked_once_and_so_are_those_of_its_mirror_ima
 
 
 @pytest.mark.parametrize("turns", [-3, -1, 0, 1, 2])
-def test_a_bounce_on_a_closed_part_is_told_between_its_ends(check, turns):
-    found = admissible(check, [0, 1], [1 + Fraction(turns * 2 * pi), 3], 1, ROUND)
-    assert found == [((0, 1), (1, 3)), ((1, 3), (0, 1))]
+@pytest.mark.parametrize(("start", "at"), [(-1, 1), (-1, -3), ("1/2", 2), ("1/2", 7), ("-7/2", -10)])
+def test_a_bounce_on_a_closed_part_is_told_between_its_ends(check, turns, start, at):
+    """Which are `start` times pi and a turn more."""
+    found = admissible(check, [0, 1], [at + Fraction(turns * 2 * pi), 3], 1, ROUND, start=start)
+    assert found == [((0, at), (1, 3)), ((1, 3), (0, at))]
+
+
+@pytest.mark.parametrize("digits", [1, 20, 40])
+@pytest.mark.parametrize("over", [0, 1])
+def test_the_digits_that_are_stated_hold_a_width_of_one_of_the_last_of_them_and_no_more(
+    check, monkeypatch, digits, over
+):
+    """Of an orbit whose enclosure is made as wide as that, rounded down, or by one unit wider."""
+    given = json.loads((FOLDER / "minor-axis.json").read_text())
+
+    def solved(self):
+        low = self.boxes[1].lo
+        return [x.mid() for x in (*self.boxes, self.box)], [
+            self.boxes[0],
+            check.I(low, low + 2**self.p // 10**digits + over, self.p),
+        ]
+
+    monkeypatch.setattr(check.Cycle, "solved", solved)
+    monkeypatch.setattr(check.Cycle, "admissible", lambda *_: None)
+    if over:
+        with pytest.raises(check.Unproved, match="precise"):
+            check.checked(given | {"digits": digits})
+    else:
+        assert check.checked(given | {"digits": digits}).startswith("proved")
 
 
 @pytest.mark.parametrize(
@@ -178,7 +205,7 @@ def test_the_terms_of_a_round_along_a_curve_are_those_of_the_second_and_third_or
 @pytest.mark.parametrize(
     ("parts", "bounces", "boxes", "scene", "what", "name"),
     [
-        (2, ["0", "2*pi"], ["0", "0"], {"table": "cuspless"}, ("flip", 1, "lam"), "lambda-c"),
+        (2, ["0", "40*pi"], ["0", "0"], {"table": "cuspless"}, ("flip", 1, "lam"), "lambda-c"),
         (2, ["1/9", "1"], ["-1/9", "-1"], {"table": "egg"}, ("flip", 1, "alpha"), "alpha-tilde"),
         (2, ["1/9", "1"], ["-1/9", "-1"], {"table": "egg"}, ("focus", 1, "alpha"), "alpha-hat"),
         (2, ["1/9", "1"], ["-1/9", "-1"], {"table": "egg"}, ("fold", 1, "alpha"), None),

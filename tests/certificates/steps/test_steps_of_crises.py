@@ -142,6 +142,21 @@ def test_where_a_law_holds_is_one_place_of_each_box_at_both_ends_of_lam_alike(ch
             crisis.one(table, TURN, box, letter)
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("steep", "seen"), [("0", False), ("4/5", True)])
+def test_a_law_that_may_turn_back_in_a_box_is_not_seen_to_hold_once(check, crisis, monkeypatch, sign, steep, seen):
+    """Of a cube about 1/2, over `0 <= theta <= 1`, where its slope by intervals is within 3/4 of `steep`."""
+    middle = lambda theta: (theta if isinstance(theta, check.Jet) else check.Jet.of(theta, 0)) - Fraction(1, 2)  # noqa: E731
+    cube = lambda x: (x * x * x + x * Fraction(steep)) * sign  # noqa: E731
+    monkeypatch.setattr(crisis, "law", lambda table, turn, theta, lam: (cube(middle(theta)), None))
+    box = number(check, 0).hull(number(check, 1))
+    if seen:
+        crisis.one(SimpleNamespace(p=P), TURN, box, None)
+    else:
+        with pytest.raises(check.Unproved, match="not seen to be one cycle"):
+            crisis.one(SimpleNamespace(p=P), TURN, box, None)
+
+
 @pytest.mark.parametrize(("theta", "psi"), [("-1/5", "1/10"), ("3/7", "-1/6"), ("1", "0")])
 @pytest.mark.parametrize(("turn", "lam"), [(TURN, "3/5"), (2 * TURN, "1/4")])
 def test_the_derivative_of_a_bounce_and_a_turn_is_that_of_differences(check, crisis, theta, psi, turn, lam):

@@ -61,7 +61,9 @@ and a half (what `make test` runs; until seed 4 half a second), as far as fiftee
 that execute the mutated statement, then the others of their files, which may share what one of these has made. A test
 is stopped by its own seconds of processor, so that what else the machine does kills no mutant. Since seed 17 a mutant
 that survives these is asked the tests of `make slow` of up to half a minute, for a minute, before anybody reads it.
-`python benchmarks/mutation.py core --count 120 --seed 3` draws, asks and resumes.
+`python benchmarks/mutation.py core --count 120 --seed 3` draws, asks and resumes; `--part core` draws of balls, first
+hits, interval Newton, checklists, trapping regions, slap maps, judges and the second reader, `--part 'global dynamics'`
+of the other rooms alone.
 
 A sample says how good the tests are only once: when its survivors have been read, and tests been written for them, it
 is fitted. So each round draws another.

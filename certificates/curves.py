@@ -15,7 +15,7 @@ def halves(a, b):
 
 def covered(settled, most, why):
     """Proves a statement of all of [0, 1], piece by piece: one of which it is not seen is halved."""
-    queue, spent = [(Fraction(0), Fraction(1))], 0
+    spent, queue = 0, [(Fraction(0), Fraction(1))]
     while queue:
         spent += 1
         need(spent < most, why)

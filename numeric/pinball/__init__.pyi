@@ -3,7 +3,7 @@
 from . import sampling
 from .map import PinballMap
 from .orbits import HUGE, LARGE, PIECE, Course
-from .sampling import GENERIC, Growth, Starts, boundary, interior_starts, phase_grid, phase_starts
+from .sampling import GENERIC, Grid, Growth, Starts, boundary, interior_starts, phase_grid, phase_starts
 from .states import MEANINGS, STATUSES, UNITS, Exponents, Orbit, Slap, counted
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "UNITS",
     "Course",
     "Exponents",
+    "Grid",
     "Growth",
     "Orbit",
     "PinballMap",

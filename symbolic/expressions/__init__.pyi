@@ -2,6 +2,7 @@
 
 from . import text
 from .enclosures import UnboundedError, pole, root_integral, sign_in, sign_on
+from .identities import over_one_root
 from .numbers import Mask, NumberSystem, R, Real
 from .parts import parted
 from .signs import (
@@ -41,6 +42,7 @@ __all__ = [
     "kernel",
     "load",
     "nonnegative",
+    "over_one_root",
     "parted",
     "placed",
     "pole",

@@ -2,6 +2,7 @@
 
 from . import results
 from .dynamics import plotted
+from .layout import PAD, Grid, plain_minor_ticks
 from .results import Marked, drawn, outline
 from .sheet import (
     AXES,
@@ -46,12 +47,14 @@ __all__ = [
     "LIGHT",
     "MIDDLE",
     "OUTLINE",
+    "PAD",
     "PALETTE",
     "SMALL",
     "WIDTH",
     "Array",
     "Curve",
     "Fact",
+    "Grid",
     "Marked",
     "Panel",
     "Panels",
@@ -64,6 +67,7 @@ __all__ = [
     "ink",
     "legend",
     "outline",
+    "plain_minor_ticks",
     "plotted",
     "results",
     "scaled",

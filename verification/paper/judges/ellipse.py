@@ -1,7 +1,5 @@
 """Claims on the circle and the ellipse: their orbits, limit sets and slap maps. Paper: sections 3.1, 3.2 and 3.4."""
 
-from functools import cache
-
 from sympy import (
     Expr,
     Interval,
@@ -43,7 +41,6 @@ def explicit_map() -> Finding:
     return zero("the landing point is q0 + 2*cos(phi)*v", *gap)
 
 
-@cache
 def settles() -> Finding:
     """By induction: the closed form of the state after `n` bounces, and how far an even bounce is off its limit."""
     position, angle = after(n)

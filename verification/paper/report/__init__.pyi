@@ -3,7 +3,7 @@
 from . import report
 from .findings import escaped, letter, tables
 from .mathml import formula, formulas, remark
-from .page import Picture, diagrams, markdown
+from .page import Picture, diagrams, markdown, set_claims, set_result
 from .report import Result, codes, verify
 
 __all__ = [
@@ -18,6 +18,8 @@ __all__ = [
     "markdown",
     "remark",
     "report",
+    "set_claims",
+    "set_result",
     "tables",
     "verify",
 ]

@@ -37,3 +37,9 @@ def printed(check) -> ModuleType:
 @pytest.fixture(scope="session")
 def make() -> ModuleType:
     return loaded("make")
+
+
+@pytest.fixture(scope="session")
+def crisis(check) -> ModuleType:
+    """What proves a boundary crisis, and the branches of its saddles."""
+    return check.beside("crisis")

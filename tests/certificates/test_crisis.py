@@ -15,11 +15,6 @@ TURN, LOW, HIGH = Fraction(1, 3), Fraction(3, 5), Fraction(663, 1000)
 
 
 @pytest.fixture(scope="module")
-def crisis(check):
-    return check.beside("crisis")
-
-
-@pytest.fixture(scope="module")
 def tables(check):
     """The table of the file to 64 bits and to 256."""
     scene = {key: x for key, x in GIVEN["scene"].items() if key != "lam"}

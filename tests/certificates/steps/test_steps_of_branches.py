@@ -11,11 +11,6 @@ EGG = {"table": "egg", "shape": {"alpha": "2/25"}}
 TURN, P = Fraction(1, 3), 100
 
 
-@pytest.fixture(scope="module")
-def crisis(check):
-    return check.beside("crisis")
-
-
 def number(check, x, p=P):
     return check.I.of(Fraction(x), p)
 

@@ -211,7 +211,7 @@ class ArrayOps:
         """The square root; nothing is known where the ball reaches below zero."""
         with np.errstate(all="ignore"):
             m = np.sqrt(x.m)
-            r = (x.r / m + ROUNDING * m + TINY) * GROWTH
+            r = (x.r / m + ROUNDING * m) * GROWTH
         return BallArray(m, np.where(x.m - x.r > 0, r, np.inf))
 
     def sin(self, x: BallArray) -> BallArray:

@@ -168,7 +168,7 @@ def enclose(expression: Expr, values: Mapping[Symbol, Expr] | None = None, digit
     >>> (enclose(sqrt(Integer(2))) ** 2 - 2).contains(0)
     True
     """
-    with ctx.workprec(int(3.33 * digits) + 20):
+    with ctx.workprec(bits_of(digits, 20)):
         return _ball(expression.subs(values or {}))
 
 
@@ -236,7 +236,7 @@ def decimal(value: arb, digits: int) -> tuple[str, str]:
     >>> decimal(arb(1) / 3, 5)
     ('0.33333', '3.5e-6')
     """
-    with ctx.workprec(int(3.33 * digits) + 64):
+    with ctx.workprec(bits_of(digits, 64)):
         known = digits if value.is_exact() else max(int(0.302 * value.rel_accuracy_bits()) + 2, 1)
         shown = value.mid().str(min(digits, known), radius=False)
         gap = abs(value - arb(shown))

@@ -167,7 +167,7 @@ def dense(chain: Chain) -> arb_mat:
 
 BITS = 64
 SMALLEST = 2.0**-30
-Box = tuple[tuple[float, float], ...]  # midpoint and half width of the first bounce and of the gaps
+Box = tuple[tuple[float, float], ...]  # midpoint and half width of the first bounce, then of each gap
 ANGLES = 512  # pieces of the incidence angles
 Tick = Callable[[str], None]
 Reflection = Callable[[arb, arb], list[tuple[arb, arb, arb]]]
@@ -223,12 +223,9 @@ def no_others(
                     return Completeness(n, None, boxes, known)
                 if cover.settled(box, turns):
                     continue
-                widest = max(range(n), key=lambda i: box[i][1])
-                middle, half = box[widest]
-                if half < SMALLEST:
+                if max(half for _, half in box) < SMALLEST:
                     return Completeness(n, None, boxes, known)
-                for side in (-half / 2, half / 2):
-                    queue.append(tuple((middle + side, half / 2) if i == widest else x for i, x in enumerate(box)))
+                queue += halves(box)
     return Completeness(n, True, boxes, known)
 
 
@@ -241,6 +238,17 @@ def start(turn: int, n: int, gap: float) -> Box:
     reach, middle = np.ceil(2**10 * pi / turn) / 2**10, 3.125
     half = np.ceil(2**10 * (2 * pi - gap - middle)) / 2**10
     return ((0.0, float(reach)), *(((middle, float(half)),) * (n - 1)))
+
+
+def halves(box: Box) -> list[Box]:
+    """A box, cut across its longest side.
+
+    >>> halves(((0.0, 1.0), (3.0, 2.0)))
+    [((0.0, 1.0), (2.0, 1.0)), ((0.0, 1.0), (4.0, 1.0))]
+    """
+    longest = max(range(len(box)), key=lambda i: box[i][1])
+    (middle, half), rest = box[longest], box[longest + 1 :]
+    return [(*box[:longest], (end, half / 2), *rest) for end in (middle - half / 2, middle + half / 2)]
 
 
 def reflection(law: Law, contraction: arb, table: Table) -> Reflection:

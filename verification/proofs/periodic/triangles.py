@@ -44,7 +44,7 @@ from verification.arithmetic.iteration import Tick, Vector, silent
 from verification.cycles.critical import Small
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex
-from verification.proofs.periodic.interval_newton import Status, interval_newton
+from verification.proofs.periodic.interval_newton import Box, Status, halves, interval_newton
 
 BITS = 80
 
@@ -152,7 +152,6 @@ def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float])
 
 BITS_OF_COVER = 64
 SMALLEST = 2.0**-36  # ends of boxes must stay exact in floats
-Box = tuple[tuple[float, float], ...]  # midpoint and half width of: first bounce, first gap, second gap
 
 
 @dataclass(frozen=True)
@@ -213,12 +212,9 @@ def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick
             tick(share)
             continue
         smallest = min(smallest, *(half for _, half in box))
-        widest = max(range(3), key=lambda i: box[i][1])
-        middle, half = box[widest]
-        if half < SMALLEST:
+        if max(half for _, half in box) < SMALLEST:
             return Exclusion(None, boxes, done, smallest)
-        for side in (-half / 2, half / 2):
-            queue.append(tuple((middle + side, half / 2) if i == widest else x for i, x in enumerate(box)))
+        queue += halves(box)
     return Exclusion(None if queue else True, boxes, done, smallest)
 
 

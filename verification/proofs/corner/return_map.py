@@ -68,8 +68,9 @@ def _loaded() -> tuple[Angles, Angles, Angles, dict[int, arb]]:
     guessing = {pair: load(made, FLOAT64) for pair, made in kernels.items()}
     alone = {pair: load(chord_kernel(cuspless, *pair, 0), balls(BITS)) for pair in pairs}  # without slopes
     with working(BITS):
-        ends = load(ends_kernel(cuspless), balls(BITS))()
-    return enclosing, alone, guessing, {component: ends[2 * component + 1] + arb(0) for component in (ARC, WALL)}
+        values = load(ends_kernel(cuspless), balls(BITS))()
+        ends = {component: values[2 * component + 1] + arb(0) for component in (ARC, WALL)}
+    return enclosing, alone, guessing, ends
 
 
 class Flights:
@@ -120,14 +121,15 @@ class Flights:
             return None
         if abs(first.theta) < self.ends[first.component]:
             return [first]
-        wall = first if guess == "wall" else roots["wall"]()
+        roots[guess] = lambda: first
+        wall = roots["wall"]()
         if wall is None:
             return None
         found: list[Piece | None] = [wall]
         if not wall.theta > -self.ends[WALL]:  # the wall's parameter grows downwards
-            found.append(first if guess == "upper" else roots["upper"]())
+            found.append(roots["upper"]())
         if not wall.theta < self.ends[WALL]:
-            found.append(first if guess == "lower" else roots["lower"]())
+            found.append(roots["lower"]())
         return _all(*found)
 
     def _guess(self, start: float, phi: float, edge: float) -> str:

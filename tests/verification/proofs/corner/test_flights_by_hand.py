@@ -61,6 +61,18 @@ def test_from_the_arc_a_particle_lands_on_each_part_that_its_root_on_the_wall_le
         ]
 
 
+@pytest.mark.parametrize(("corner", "parts"), [(-1, [WALL, ARC]), (1, [WALL, ARC]), (0, [WALL])])
+def test_a_particle_that_may_meet_the_corner_itself_lands_on_both_parts(monkeypatch, corner, parts):
+    """The ends in numbers that balls hold exactly, so that the root on the wall is at the corner or is not."""
+    flights = Flights()
+    flights.ends = {ARC: arb(2), WALL: arb(0.5)}
+    roots = {WALL: Piece(WALL, corner * arb(0.5), arb(1), arb(0)), ARC: Piece(ARC, arb(2), arb(1), arb(0))}
+    monkeypatch.setattr(flights, "_root", lambda piece, target, low, high: roots[target])
+    for guess in ("wall", "upper" if corner < 0 else "lower"):
+        monkeypatch.setattr(flights, "_guess", lambda *given, guess=guess: guess)
+        assert [piece.component for piece in flights.landing(START)] == parts
+
+
 A, B, C = 0.5, -0.75, 0.25
 
 
@@ -120,8 +132,9 @@ def test_where_the_angle_may_not_vary_no_landing_is_told(monkeypatch):
 
 def test_the_ends_of_arc_and_wall_are_those_of_the_corners_and_the_map_is_odd():
     flights = Flights()
-    assert abs(flights.ends[ARC] - 2 * arb.pi() / 3) < 4e-15
-    assert abs(flights.ends[WALL] - arb(3).sqrt() / 4) < 1e-15
+    with working(100):
+        assert abs(flights.ends[ARC] - 2 * arb.pi() / 3) < 1e-18
+        assert abs(flights.ends[WALL] - arb(3).sqrt() / 4) < 1e-18
     assert flights.odd is True
     assert flights.lam == 0
 

@@ -187,7 +187,7 @@ def mistakes(node: ast.AST, text: Text) -> Iterator[tuple[str, str]]:
     elif isinstance(node, ast.BoolOp):
         yield from conditions(node, text)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.Not):
-        yield "Sign", text.spliced(text.first(node), text.first(node.operand), "")
+        yield "Sign", text.replaced(node, f"({ast.unparse(node.operand)})")
     elif isinstance(node, ast.Constant) and isinstance(node.value, bool):
         yield "Truth", text.replaced(node, str(not node.value))
     elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):

@@ -5,7 +5,23 @@ from hashlib import sha256
 from itertools import product
 
 import pytest
-from sympy import ImmutableMatrix, Integer, Interval, Matrix, Rational, S, Symbol, log, oo, pi, sqrt, symbols
+from sympy import (
+    ImmutableMatrix,
+    Integer,
+    Interval,
+    Matrix,
+    Rational,
+    S,
+    Symbol,
+    atan,
+    exp,
+    log,
+    oo,
+    pi,
+    sin,
+    sqrt,
+    symbols,
+)
 
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import alpha, lam, theta
@@ -223,6 +239,27 @@ def test_two_formulas_are_one_or_differ_at_a_witness_or_neither_is_known():
     assert judges.equal(log(6), log(2) + log(3), {}).outcome is Outcome.UNKNOWN
     gap = (lam - Rational(3, 10)) * (lam - Rational(2, 9))  # 0 at two witnesses: the third tells them apart
     assert judges.equal(gap, S.Zero, {}).at == ((lam, Rational(4, 11)),)
+
+
+AT_POLE = 1 / (9 * lam - 2)  # at the first witness
+
+
+@pytest.mark.parametrize(
+    "gap",
+    [AT_POLE, log(lam - Rational(2, 9)), sin(AT_POLE), atan(AT_POLE), exp(AT_POLE), abs(AT_POLE) + lam],
+    ids=str,
+)
+def test_where_a_formula_has_a_pole_another_witness_tells(gap):
+    """A pole by itself tells nothing: of formulas that are one it says nothing else, and of others the next witness."""
+    found = judges.equal(gap, S.Zero, {})
+    assert (found.outcome, found.at) == (Outcome.REFUTED, ((lam, Rational(3, 10)),))
+    assert judges.equal(gap * (lam + 1), gap * lam + gap, {}).outcome is Outcome.PROVED
+
+
+def test_of_formulas_with_a_pole_at_each_witness_nothing_is_told_unless_they_are_one():
+    poles = AT_POLE / ((10 * lam - 3) * (11 * lam - 4))
+    assert judges.equal(poles, 2 * poles, {}).outcome is Outcome.UNKNOWN
+    assert judges.equal(poles * (lam + 1), poles * lam + poles, {}).outcome is Outcome.PROVED
 
 
 def test_witnesses_are_these_shares_of_ranges():

@@ -9,7 +9,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from flint import fmpq
-from sympy import Expr, Interval, Matrix, Rational, S, Symbol, oo
+from sympy import AccumBounds, Expr, Interval, Matrix, Rational, S, Symbol, nan, oo, zoo
 from sympy.logic.boolalg import Boolean
 from sympy.logic.inference import satisfiable
 
@@ -19,6 +19,7 @@ from verification.paper.claims.claim import Claim, Judgement, Number
 
 Judge = Callable[[Claim], Judgement]
 JUDGES: dict[tuple[str, str], Judge] = {}  # by the module and the claim's id: two papers may use one id
+WITHOUT_VALUE = (zoo, nan, oo, -oo, AccumBounds)  # what SymPy makes of a formula at a pole
 
 
 def judges(*ids: str) -> Callable[[Judge], Judge]:
@@ -82,7 +83,10 @@ def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
     difference = left - right
     # A ball that excludes 0 is cheaper than a reduction, and there is none where the two agree.
     for point in witnesses(difference.free_symbols, box):
-        ball = enclose(difference, point)
+        value = difference.subs(point)
+        if value.has(*WITHOUT_VALUE):  # a pole: nothing can be told there
+            continue
+        ball = enclose(value)
         if ball.is_finite() and not ball.contains(0):
             where = ", ".join(f"{x} = {v}" for x, v in point.items()) or "this number"
             reason = f"at {where} the two differ by {ball.str(6, radius=False)}"

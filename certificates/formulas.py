@@ -38,12 +38,17 @@ def artanh(x):
     return total.wide(high)
 
 
+def twos(x):
+    """About how often log 2 goes into it: any whole number serves."""
+    return int(x.real() / 0.6931471805599453)
+
+
 def exp_at(x):
-    """At a point, 2**k times the exponential of what is left: at most log 2, by Taylor's series."""
+    """At a point, 2**k times the exponential of what is left: about log 2 at most, by Taylor's series."""
     need(x.lo < LARGEST << x.p, "an exponential is too large")
     if x.lo < -x.p << x.p:
         return I(0, 1, x.p)
-    k = int(x.real() / 0.6931471805599453)
+    k = twos(x)
     w = x.p + 64 + abs(k)
     r = I.of(x, w) - log2(w) * k
     total, term, n = I.of(1, w), I.of(1, w), 0
@@ -90,8 +95,6 @@ def series(name, x, p, exponent=None):
     """A function of a number or, by Taylor's series up to the third term, of a jet."""
     at = I.of(value(x), p)
     y = at_number(name, at, exponent)
-    if not isinstance(x, Jet):
-        return y
     if name == "exp":
         return taylor(x, [y, y, y / 2, y / 6])
     if name == "tanh":

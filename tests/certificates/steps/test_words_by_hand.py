@@ -51,14 +51,29 @@ def test_small_and_large_numbers_have_exponentials_and_logarithms_too(check, for
         assert narrow(context, formulas.exp_at(check.I(end, end, bits)), context.exp(at), 1)
 
 
+def test_the_exponential_of_what_is_far_below_0_takes_no_more_digits(check, formulas):
+    for end in (-(1 << 70), -(1 << 90)):
+        found = formulas.exp_at(check.I(end << 20, end << 20, 20))
+        assert (found.lo, found.hi, found.p) == (0, 1, 20)
+
+
+def test_an_exponential_is_enclosed_by_whichever_power_of_2_it_is_divided(check, formulas, context, monkeypatch):
+    for k in (-7, -1, 0, 3, 9):
+        monkeypatch.setattr(formulas, "twos", lambda x, k=k: k)
+        for text in ("-5/2", "0", "3/8", "4"):
+            found = formulas.exp_at(check.I.of(Fraction(text), 53))
+            assert narrow(context, found, context.exp(real(context, text)), 2)
+
+
 def test_the_logarithm_of_2_and_the_series_for_it_are_narrow(check, formulas, context):
     for bits in (1, 16, 53, 200):
         assert narrow(context, formulas.log2(bits), context.log(2), 1)
     for text in ("1/3", "-1/3", "1/5", "-1/100", "0"):
         found = formulas.artanh(check.I.of(Fraction(text), 200))
         assert narrow(context, found, context.atanh(real(context, text)), 400)
-    coarse = formulas.artanh(check.I.of(Fraction(1, 4), 6))  # after one term more, with what may follow
-    assert (coarse.lo, coarse.hi) == (15, 18)
+    for bits, ends in ((6, (15, 18)), (7, (31, 35))):  # after the first term below 2 units, with what may follow
+        coarse = formulas.artanh(check.I.of(Fraction(1, 4), bits))
+        assert (coarse.lo, coarse.hi) == ends
 
 
 def test_an_exponential_that_is_too_large_and_roots_and_logarithms_of_0_are_refused(check, formulas):

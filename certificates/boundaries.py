@@ -59,7 +59,7 @@ def times(x, y):
     """The product of two such sums where one of them is a fraction."""
     if x is None or {*x} <= {""}:
         x, y = y, x
-    return x and y and ({k: v * y[""] for k, v in x.items()} if {*y} == {""} else None)
+    return y and ({k: v * y[""] for k, v in x.items()} if {*y} == {""} else None)
 
 
 def plus(x, y, sign):
@@ -160,7 +160,7 @@ def settings(scene, p):
     """The numbers of a scene's parameters: nine times, from end to end, where one has a range."""
     ends = {name: text.partition("..") for name, text in scene.get("shape", {}).items()}
     ends = {name: [number(parse(at[k] or at[0]), {}, p) for k in (0, 2)] for name, at in ends.items()}
-    shares = [Fraction(k, 8) for k in range(9)] if ".." in "".join(scene.get("shape", {}).values()) else [Fraction(0)]
+    shares = [Fraction(k, 8) for k in range(9 if ".." in "".join(scene.get("shape", {}).values()) else 1)]
     return [{name: low + (high - low) * share for name, (low, high) in ends.items()} for share in shares]
 
 
@@ -200,8 +200,8 @@ def tip(part, end, names, p):
 
 def meet(one, other, p):
     """Are two points the same: exactly where they are fractions, and else as far as intervals see?"""
-    pairs = zip(one, other, strict=True)
-    return all(x == y if isinstance(x - y, Fraction) else 0 in I.of(x - y, p) for x, y in pairs)
+    gaps = [x - y for x, y in zip(one, other, strict=True)]
+    return all(not gap if isinstance(gap, Fraction) else 0 in I.of(gap, p) for gap in gaps)
 
 
 def positive(table):

@@ -95,6 +95,8 @@ def series(name, x, p, exponent=None):
     """A function of a number or, by Taylor's series up to the third term, of a jet."""
     at = I.of(value(x), p)
     y = at_number(name, at, exponent)
+    if not isinstance(x, Jet):
+        return y
     if name == "exp":
         return taylor(x, [y, y, y / 2, y / 6])
     if name == "tanh":

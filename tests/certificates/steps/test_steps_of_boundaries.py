@@ -147,7 +147,8 @@ def test_a_part_comes_round_by_its_formulas_and_its_ends(check, boundaries, part
         ("0**0", None), ("0**(-1)", None), ("1/0", None), ("b/(b - b)", None), ("pi", None), ("pi + 1", None),
         ("sin(b)", None),
         ("1 + sin(b)", None), ("b // 2", None), ("2**100000", 2**100000), ("2**500000", None), ("2**(-500000)", None),
-        ("2**(b*7)", 4), ("c*b", None), ("-pi", None), ("(-1)**3", -1),
+        ("2**(b*7)", 4), ("c*b", None), ("-pi", None), ("(-1)**3", -1), ("0**1", 0), ("1**499999", 1),
+        ("1**500000", None),
     ],
     ids=lambda x: x if isinstance(x, str) else "",
 )  # fmt: skip
@@ -199,6 +200,8 @@ DISC = [("5 + cos(theta)", "sin(theta)", "-pi", "pi")]
         (TRIANGLE + AWAY, {}, [(0, 3), (3, 5)]),
         (DISC + TRIANGLE + DISC, {}, [(0, 1), (1, 4), (4, 5)]),
         (DISC, {}, [(0, 1)]),
+        ([("theta - b", "0", "b", "1 + b"), *TRIANGLE[1:]], {"b": "0..4"}, [(0, 3)]),
+        ([("theta + b*pi*E - b*E*pi", "0", "0", "1"), *TRIANGLE[1:]], {"b": "1"}, [(0, 3)]),
         (TRIANGLE[:2], {}, "piece 2 ends where no other begins"),
         (TRIANGLE[1:] + AWAY, {}, "piece 2 ends where no other begins"),
         (AWAY + TRIANGLE[:2], {}, "piece 4 ends where no other begins"),
@@ -256,6 +259,9 @@ def test_the_tips_of_a_piece_and_whether_two_are_the_same(check, boundaries):
         ("sqrt(cos(theta) + 101/100)", 60),
         ("theta**2 + 1/50", 40),
         ("1/(theta**2 - theta + 1)", 40),
+        ("theta**2 - theta + 1", 40),
+        ("theta**2 + theta + 1", 40),
+        ("1/18446744073709551616", 1),
     ],
 )
 def test_a_positive_radius_is_seen_to_be_positive_on_few_pieces(check, boundaries, monkeypatch, radius, most):
@@ -277,6 +283,15 @@ def test_a_radius_that_is_0_somewhere_or_below_is_refused(check, boundaries, rad
     near = check.I.of(0, 64).wide(check.I.of(Fraction(1, 9), 64))
     with pytest.raises(check.Wrong, match="radius may not be positive"):
         boundaries.positive(SimpleNamespace(letters={"b": near}, parts=[[check.parse(radius)]]))
+
+
+@pytest.mark.parametrize("radius", ["-1", "0", "-2**(-64)", "-theta**2/10**9 - 1"])
+def test_a_radius_that_is_positive_nowhere_is_refused_at_once(check, boundaries, monkeypatch, radius):
+    looked, real = [], boundaries.evaluate
+    monkeypatch.setattr(boundaries, "evaluate", lambda *given: looked.append(given) or real(*given))
+    with pytest.raises(check.Wrong, match="radius may not be positive"):
+        boundaries.positive(SimpleNamespace(letters={}, parts=[[check.parse(radius)]]))
+    assert len(looked) == 1
 
 
 @pytest.mark.parametrize(

@@ -165,6 +165,29 @@ def test_a_formula_of_a_jet_has_its_taylor_coefficients(check, context, text):
             assert check.I.of(found.c[index], 130).real() == pytest.approx(float(wanted[order]), rel=1e-12, abs=1e-14)
 
 
+@pytest.mark.parametrize("text", JETS)
+def test_the_slope_of_a_formula_of_a_jet_has_the_taylor_coefficients_of_the_derivative(check, context, text):
+    at = Fraction(7, 8)
+    wanted = context.taylor(lambda x: JETS[text](context, x), real(context, at), 3)
+    for degree in (1, 2):
+        slope = check.evaluate(check.parse(text), {"theta": check.Jet.of(check.I.of(at, 130), degree, 0)}, 130)[1]
+        found = slope.c if isinstance(slope, check.Jet) else check.Jet.of(slope, degree).c
+        for order in range(degree + 1):
+            index = check.algebra(degree)[1][order, 0, 0]
+            true = float((order + 1) * wanted[order + 1])
+            assert check.I.of(found[index], 130).real() == pytest.approx(true, rel=1e-12, abs=1e-13)
+
+
+def test_a_square_is_not_below_0_and_the_slope_of_an_arctangent_not_below_that_at_the_farther_end(check, formulas):
+    around = check.I(-2 << 40, 3 << 40, 40)
+    for x, low, high in ((around, 0, 9), (-around, 0, 9), (check.I(2 << 40, 3 << 40, 40), 4, 9)):
+        found = formulas.square(x)
+        assert (found.lo, found.hi) == (low << 40, high << 40)
+    slope = check.evaluate(check.parse("atan(theta)"), {"theta": around}, 40)[1]
+    assert slope.lo <= Fraction(2**40, 10) <= slope.lo + 2
+    assert slope.hi - 2 <= 2**40 <= slope.hi
+
+
 @pytest.mark.parametrize(
     ("text", "at", "low", "high"),
     [
@@ -195,6 +218,10 @@ def test_at_0_nothing_that_moves_has_a_root_a_modulus_or_an_inverse(check, text)
         read(check, text, 0)
     with pytest.raises(check.Unproved):
         check.evaluate(check.parse(text), {"theta": check.Jet.of(check.I.of(0, 64), 1, 0)}, 64)
+    with pytest.raises(check.Unproved):  # nor has what moves with another letter than theta
+        check.evaluate(
+            check.parse(text.replace("theta", "b")), {"b": check.Jet.of(check.I.of(Fraction(0), 64), 1, 1)}, 64
+        )
     if text != "abs(theta)" and "-" in text:
         with pytest.raises(check.Unproved):
             check.evaluate(check.parse(text.replace("theta", "b")), {"b": check.I.of(0, 64)}, 64)

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 from flint import arb
-from sympy import Integer, Pow, Rational, pi, sqrt
+from sympy import CRootOf, Integer, Pow, Rational, S, Symbol, cbrt, pi, sqrt
 
 from numeric.backends import elementary
 from verification.arithmetic import balls as module
@@ -46,6 +46,16 @@ def test_a_power_of_any_exponent_is_that_of_doubles(power):
     found = enclose(Pow(Integer(5), power, evaluate=False), digits=30)
     assert float(found.real) == pytest.approx(5 ** float(power), rel=1e-14)
     assert found.real.rad() < 1e-27
+
+
+def test_a_root_of_a_polynomial_is_within_three_units_of_the_bits_that_are_worked_with():
+    """The real root of `x**3 - x - 1`, which Cardano's formula gives too."""
+    x = Symbol("x")
+    for digits in (10, 30, 60):
+        found = enclose(CRootOf(x**3 - x - 1, 0), digits=digits).real
+        assert 0 < found.rad() * 2 ** (int(3.33 * digits) + 20) < 3.5
+        root = sqrt(Rational(23, 108))
+        assert found.overlaps(enclose(cbrt(S.Half + root) + cbrt(S.Half - root), digits=80).real)
 
 
 def test_a_decimal_has_the_digits_that_are_asked_for_or_known_and_two_more():

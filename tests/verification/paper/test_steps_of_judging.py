@@ -86,7 +86,9 @@ def test_a_range_is_kept_for_letters_that_are_known_and_intervals_that_are_some(
         ("[1, oo)", Interval(1, oo)),
         ("(-1/2, 1/3]", Interval.Lopen(-Rational(1, 2), Rational(1, 3))),
         ("2/25", Interval(Rational(2, 25), Rational(2, 25))),
+        ("(1/2)", Interval(Rational(1, 2), Rational(1, 2))),
         *((text, None) for text in ("", "[", "everywhere", "[1, 2, 3]", "[1]", "[0, 1", "0, 1]", "{0, 1}", "[0 1]")),
+        *((text, None) for text in ("{0, 1]", "[0, 1}", "{0, 1)", "(0, 1}")),
     ],
 )
 def test_an_interval_is_read_with_its_brackets(text, interval):

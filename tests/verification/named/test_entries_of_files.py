@@ -10,6 +10,7 @@ from flint import arb
 from sympy import Rational
 
 from symbolic.tables.formula import LENGTH
+from verification.arithmetic.balls import working
 from verification.named import files, tangency_entries
 from verification.proofs.corner.corner_orbit import CornerClaim
 from verification.proofs.manifolds import claim as manifolds
@@ -71,6 +72,38 @@ def test_a_corner_orbit_and_equal_multipliers_have_names_near_the_known_ones_alo
     claim = files.claim_of(GIVEN[name])
     centre = tuple(x + arb(by) for x, by in zip(claim.centre, moved, strict=True))
     assert files.name_of(replace(claim, centre=centre)) == called
+
+
+@pytest.mark.parametrize("name", ["lambda-c", "alpha-tilde", "saddle-node"])
+def test_a_box_has_the_name_of_a_value_where_it_may_hold_it_and_nowhere_else(name, monkeypatch):
+    """Also one that is smaller than what is known of the value, to five digits more than are asked for."""
+    claim, asked, closed_form = files.claim_of(GIVEN[name]), [], files.closed_form
+    monkeypatch.setattr(files, "closed_form", lambda *given: asked.append(given[0]) or closed_form(*given))
+
+    def called(last, radius):
+        centre = (*(x + arb("0.1") for x in claim.centre[:-1]), last)
+        return files.name_of(replace(claim, centre=centre, radius=radius))
+
+    with working(claim.bits + 200):
+        assert called(claim.centre[-1], claim.radius) == name
+        true, unit = closed_form(asked[0], claim.digits + 50).mid(), arb(10) ** -claim.digits
+        for off, radius in ((0, 0), (unit / 2, unit), (-unit / 2, unit), (1, 2)):
+            assert called(true + off, arb(radius)) == name
+        for off, radius in ((unit / 10**4, 0), (unit * 2, unit), (-unit * 2, unit), (2, 1)):
+            assert called(true + off, arb(radius)).startswith(GIVEN[name]["kind"])
+
+
+def test_a_file_bears_the_name_of_its_claim_and_no_other_nor_none():
+    claim = files.claim_of(GIVEN["saddle-node"])
+    files._rightly_named(GIVEN["saddle-node"], claim)
+    for given in ({"schema": 4, "name": "saddle"}, {"schema": 4, "name": None}, {"schema": 4}):
+        with pytest.raises(ValueError, match="is not what it states, which is 'saddle-node'"):
+            files._rightly_named(given, claim)
+
+
+def test_a_claim_of_another_kind_has_the_name_that_tangencies_have(monkeypatch):
+    monkeypatch.setattr(tangency_entries, "name_of", lambda claim, schema: (claim, schema))
+    assert files.name_of("a claim", 3) == ("a claim", 3)
 
 
 @pytest.mark.parametrize("schema", [files.FIRST, files.SECOND, files.THIRD])

@@ -59,7 +59,7 @@ def times(x, y):
     """The product of two such sums where one of them is a fraction."""
     if x is None or {*x} <= {""}:
         x, y = y, x
-    return y and ({k: v * y[""] for k, v in x.items()} if {*y} == {""} else None)
+    return x and y and ({k: v * y[""] for k, v in x.items()} if {*y} == {""} else None)
 
 
 def plus(x, y, sign):

@@ -1,5 +1,6 @@
 """What judges of the two cardioids ask, with which numbers, and the map whose Newton iteration stops early."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -168,6 +169,36 @@ def test_averages_support_ergodicity_below_2_in_each_and_correlations_below_2_hu
     wanted = Verdict.SUPPORTED if supported else Verdict.OPEN
     assert judges.ergodic(CLAIMS["cardioid.elastic_ergodic"]).verdict is wanted
     assert asked == [("cardioid",)]
+
+
+def test_averages_of_a_made_up_orbit_are_those_that_sums_give(monkeypatch):
+    """Three particles, ten bounces, of which blocks of four make two; correlations after two bounces."""
+    for name, value in (("BALLS", 3), ("BOUNCES", 10), ("BLOCK", 4), ("LAG", 2)):
+        monkeypatch.setattr(judges, name, value)
+    rng, asked = np.random.default_rng(4), []
+    orbit = SimpleNamespace(theta=rng.random((11, 3)), phi=rng.random((11, 3)), component=rng.integers(0, 2, (11, 3)))
+    arclength = SimpleNamespace(s=lambda theta, component: theta + 5 * component, perimeter=7.0)
+    made = SimpleNamespace(arclength=arclength, orbit=lambda *given: asked.append(given) or orbit)
+    monkeypatch.setattr(judges, "PinballMap", lambda table, lam: asked.append((table, lam)) or made)
+    start = SimpleNamespace(theta="THETA", phi="PHI", component="PART")
+    monkeypatch.setattr(judges, "phase_starts", lambda *given: asked.append(given) or start)
+    means, errors, later = judges.averages("egg")
+    assert asked == [("egg", "1"), (made, 3, judges.SEED), ("THETA", "PHI", 10, "PART")]
+
+    turn = 2 * math.pi * (orbit.theta + 5 * orbit.component) / 7
+    functions = [
+        lambda n, k: math.sin(orbit.phi[n, k]) ** 2 - 1 / 3,
+        lambda n, k: math.cos(turn[n, k]),
+        lambda n, k: math.sin(orbit.phi[n, k]) * math.sin(turn[n, k]),
+    ]
+    for number, f in enumerate(functions):
+        for k in range(3):
+            first, second = (sum(f(n, k) for n in range(low, low + 4)) / 4 for low in (1, 5))
+            assert means[number, k] == pytest.approx(sum(f(n, k) for n in range(1, 11)) / 10)
+            assert errors[number, k] == pytest.approx(abs(first - second) / 2)  # of the mean of two
+        pairs = [f(n, k) * f(n + 2, k) for n in range(1, 9) for k in range(3)]
+        squares = [f(n, k) ** 2 for n in range(1, 11) for k in range(3)]
+        assert later[number] == pytest.approx(sum(pairs) / 24 / (sum(squares) / 30))
 
 
 def test_on_a_circle_the_first_guess_is_the_landing():

@@ -133,8 +133,9 @@ def averages(table: str, law: str = "1") -> tuple[Array, Array, Array]:
     turn = 2 * np.pi * map.arclength.s(orbit.theta, orbit.component) / map.arclength.perimeter
     sine = np.sin(orbit.phi)
     values = np.stack([sine**2 - 1 / 3, np.cos(turn), sine * np.sin(turn)])[:, 1:]
-    blocks = values[:, : BOUNCES // BLOCK * BLOCK].reshape(3, -1, BLOCK, BALLS).mean(axis=2)
-    errors = blocks.std(axis=1, ddof=1) / np.sqrt(blocks.shape[1])
+    count = BOUNCES // BLOCK
+    blocks = values[:, : count * BLOCK].reshape(3, count, BLOCK, BALLS).mean(axis=2)
+    errors = blocks.std(axis=1, ddof=1) / np.sqrt(count)
     later = np.mean(values[:, LAG:] * values[:, :-LAG], axis=(1, 2)) / np.mean(values**2, axis=(1, 2))
     return values.mean(axis=1), errors, later
 
@@ -168,7 +169,7 @@ def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float
     z, tangent = _boundary(theta, alpha)
     v = 1j * tangent / np.abs(tangent) * _turned(-phi)  # the inward normal, turned by phi towards the tangent
     landing = theta + np.pi - 2 * phi  # as in the circle; then Newton's method
-    going = np.full((*landing.shape[:-1], 1), True)
+    going: NDArray[np.bool_] = np.array(True)
     for _ in range(MOST):
         there, along = _boundary(landing, alpha)
         step = np.where(going, _cross(there - z, v) / _cross(along, v), 0.0)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from types import ModuleType
 
 import pytest
-from sympy import Rational, pi
+from sympy import Interval, Rational, pi
 
 from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables.table import alpha, lam, theta
@@ -120,6 +120,18 @@ def test_a_judge_asks_what_the_sentence_says_over_the_range_that_it_is_said_of(n
     """By hand: traces and determinants on the axes are those of the paper's table of eigenvalues."""
     judged(name)
     assert asked == ASKED[name]
+
+
+@pytest.mark.parametrize(
+    ("box", "told"),
+    [(None, OPEN_LAM), ({}, OPEN_LAM), ({lam: Interval(Rational(1, 4), Rational(1, 2))}, "lam in Interval(1/4, 1/2)")],
+    ids=["none", "empty", "some"],
+)
+def test_two_cycles_are_all_that_attracts_over_the_contractions_that_are_asked_or_all_between_0_and_1(
+    box: dict | None, told: str, asked: list[str]
+):
+    ellipse.two_cycles(box)
+    assert asked == [*LYAPUNOV, f"stable while nonnegative (a**2 - 2)**2/a**4 if {OPEN_A}; {told}", SADDLE + told]
 
 
 SHARED = {"circle.elastic_integrable", "circle.slap_period2", "map.elastic_measure", "map.focusing_and_flat"}

@@ -13,7 +13,6 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache, lru_cache
 from importlib import import_module
-from itertools import product
 from math import atan, isqrt, prod
 from pathlib import Path
 
@@ -43,6 +42,7 @@ SAYS |= {
     "through each other as lam varies.",
 }
 WHAT = {"fold": "the multiplier 1: a fold", "flip": "the multiplier -1: a flip", "focus": "two equal multipliers"}
+length = lambda degree: (degree + 1) * (degree + 2) * (degree + 3) // 6  # how many coefficients three letters have
 FACTORS = Fraction(1), Fraction(1), Fraction(1, 2), Fraction(1, 6)  # of Taylor's series
 WAYS, SHORT = ("table", "polar", "parametric", "component"), 32  # to say a boundary; bounces of a short cycle
 
@@ -139,7 +139,7 @@ class I(Number):
                 s, c = y.sin_cos()
                 y = (y + (x * c - s) / (c + x * s)).mid()
             s, c = y.sin_cos()
-            need(c > 0 and c + x * s > 0 and y > -2 and y < 2, "an angle too near pi/2")  # so cos(d) > 0
+            need(c > 0 and c + x * s > 0 and y.size() < 2, "an angle too near pi/2")  # so cos(d) > 0
             ends.append(y.wide((s - x * c) * 2))  # |d| <= (pi/2)*|sin(d)|
         return ends[0].hull(ends[1])
 
@@ -147,7 +147,7 @@ class I(Number):
 @cache
 def algebra(degree):
     """The exponents in order, where each stands, and of each the pairs that multiply to it."""
-    powers = [e for d in range(degree + 1) for e in product(range(d + 1), repeat=3) if sum(e) == d]
+    powers = [(a, b, d - a - b) for d in range(degree + 1) for a in range(d + 1) for b in range(d - a + 1)]
     at = {e: i for i, e in enumerate(powers)}
     rest = lambda e, d: at.get(tuple(a - b for a, b in zip(e, d)))
     return powers, at, [[(i, rest(e, d)) for i, d in enumerate(powers) if rest(e, d) is not None] for e in powers]
@@ -160,8 +160,8 @@ class Jet(Number):
         self.c, self.degree = c, degree
 
     @staticmethod
-    def of(x, degree, letter=3):  # 3: a number, none of the letters
-        return Jet([x, *(int(k == 3 - letter) for k in range(1, len(algebra(degree)[0])))], degree)
+    def of(x, degree, *letter):  # none: a number
+        return Jet([x, *(int(3 - k in letter) for k in range(1, length(degree)))], degree)
 
     def __add__(self, o):
         if isinstance(o, Jet):
@@ -180,8 +180,7 @@ class Jet(Number):
                     low, high = low + min(ends), high + max(ends)
                 elif x != 0 and y != 0:  # an interval never equals a number
                     total = x * y + total
-            found = I(low >> p, -(-high >> p), p) if p else 0
-            c.append(total + found if p and total != 0 else found if p else total)
+            c.append(total + I(low >> p, -(-high >> p), p) if p else total)
         return Jet(c, self.degree)
 
     __neg__ = lambda self: Jet([-a for a in self.c], self.degree)
@@ -189,14 +188,14 @@ class Jet(Number):
 
     def diff(self, letter):
         """The derivative by a letter, of one degree less."""
-        raised = (tuple(n + (k == letter) for k, n in enumerate(e)) for e in algebra(self.degree - 1)[0])
-        return Jet([self.c[algebra(self.degree)[1][e]] * e[letter] for e in raised], self.degree - 1)
+        at = algebra(self.degree)[1]
+        return Jet([self.c[i] * e[letter] for e, i in at.items() if e[letter]], self.degree - 1)
 
     def tighten(self, m, off, p):
         """The coefficients over boxes from those at their middle, m, and the next ones; or the value from another's."""
         for d in reversed(range(m.degree + 1 if off else 1)):  # the higher ones first, on which the lower ones rest
             slopes = [self.diff(k).c for k in range(3)] if off else []
-            for i in range(len(algebra(d - 1)[0]) if d else 0, len(algebra(d)[0])):
+            for i in range(length(d - 1), length(d)):
                 self.c[i] = I.of(self.c[i], p).meet(sum((s[i] * o for s, o in zip(slopes, off or ())), I.of(m.c[i], p)))
 
 
@@ -234,7 +233,7 @@ def implicit(off, near, degree):
             break
     need(sure, "exists: a landing is not enclosed")
     t = Jet.of(near, 0)
-    for k, n in [(k, len(algebra(k)[0])) for k in range(1, degree + 1)]:  # coefficients of degree k, from those below
+    for k, n in [(k, length(k)) for k in range(1, degree + 1)]:  # coefficients of degree k, from those below
         h, dh = off(Jet((t.c + [0] * n)[:n], k), lambda x, n=n, k=k: Jet(x.c[:n], k) if isinstance(x, Jet) else x)
         t = Jet(t.c + [-b / value(dh) for b in h.c[len(t.c) :]], k)
     return t
@@ -261,7 +260,7 @@ def evaluate(node, names, p):
         return node.value, 0
     if kind == "Name" and (node.id in names or node.id == "pi"):
         x = names.get(node.id) or pi(p)
-        return x if isinstance(x, Jet) or x.p == p else I.of(x, p), int(node.id == "theta")
+        return x if isinstance(x, Jet) else I.of(x, p), int(node.id == "theta")
     below = {"UnaryOp": ["operand"], "BinOp": ["left", "right"]}.get(kind, [])
     parts = [evaluate(part, names, p) for part in [getattr(node, key) for key in below] or getattr(node, "args", [])]
     mark = getattr(getattr(node, "func", node), "id", "") or type(getattr(node, "op", None)).__name__
@@ -269,7 +268,7 @@ def evaluate(node, names, p):
         return tuple(-x for x in parts[0])
     if kind == "BinOp":
         (x, dx), (y, dy) = parts
-        if mark == "Pow" and isinstance(y, Fraction) and y in range(1, 33):
+        if mark == "Pow" and y in range(1, 33):  # an interval or a jet is in none
             low = prod([x] * (int(y) - 1), start=I.of(1, p))
             return low * x, dx and low * dx * y
         if mark in ("Add", "Sub"):
@@ -279,7 +278,7 @@ def evaluate(node, names, p):
             dy = dy and -dy * y * y
         if mark == "Mult":
             return x * y, (dx and dx * y) + (dy and x * dy)
-    if kind == "Call" and len(parts) == 1 and mark in ("sin", "cos", "sqrt"):
+    if len(parts) == 1 and mark in ("sin", "cos", "sqrt"):
         x, dx = parts[0]
         if mark != "sqrt":
             s, c = function("sin", x, p), function("cos", x, p)
@@ -331,7 +330,7 @@ class Table:
         a, b, da, db = self.at(there, t, names, p)
         vx, vy = a - x, b - y
         across, psi = vx * db - vy * da, I.of(value(psi), p)
-        fair = psi < 2 and psi > -2 and value(c) > 0 and value(vx * ux + vy * uy) > 0
+        fair = psi.size() < 2 and value(c) > 0 and value(vx * ux + vy * uy) > 0
         need(fair and value(across) > 0, "admissible: a chord may not arrive from inside")
         psi = function("atan", (vx * da + vy * db) * function("inverse", across, p), p)
         return t, self.leaves(psi, names | {"eta": -psi, "theta": t})
@@ -364,7 +363,7 @@ class Table:
         is crossed once on the way from there; or it is halved. A closed curve has the period 2*pi."""
         start, end = ([(part, I.of(at, p)) for part, at in bounce] for bounce in (start, end))
         (x, y, *_), (u, v, *_) = (self.at(*bounce[0], names, p) for bounce in (start, end))
-        dx, dy, spent = u - x, v - y, 0
+        dx, dy, looks = u - x, v - y, iter(range(4000))
 
         def crossing(part, theta):
             qx, qy, tx, ty = self.at(part, theta, names, p)
@@ -373,7 +372,7 @@ class Table:
         def settled(part, piece):
             line, speed, along = crossing(part, piece)
             off = 0 not in line or along < 0 or along - (dx * dx + dy * dy) > 0
-            if off or 0 not in crossing(part, piece.mid())[0] + speed * (piece - piece.mid()):
+            if off or 0 not in crossing(part, piece.mid())[0].wide(speed * (piece - piece.mid())):
                 return True
             turns = lambda at: pi(p) * 2 * (self.closed[part] and round((piece - at).real() / 6.283185307179586))
             speeds = (crossing(part, piece.hull(at + turns(at)))[1] for other, at in start + end if other == part)
@@ -383,8 +382,7 @@ class Table:
             (low, high), queue = self.ends(part, p), [(Fraction(0), Fraction(1))]
             while queue:
                 a, b = queue.pop()
-                spent += 1
-                need(spent <= 4000, "admissible: a chord may meet the boundary on its way")
+                need(next(looks, None) is not None, "admissible: a chord may meet the boundary on its way")
                 try:
                     done = settled(part, low + (high - low) * I.of(a, p).hull(I.of(b, p)))
                 except Unproved:  # a formula may have no value on a wide piece

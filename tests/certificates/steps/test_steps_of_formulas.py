@@ -44,6 +44,12 @@ def encloses(check, x, true, units):
         ("cos(2)*theta", lambda m, t: m.cos(2) * t),
         ("theta*cos(theta)*sin(theta)", lambda m, t: t * m.cos(t) * m.sin(t)),
         ("sqrt(a)*theta", lambda m, t: m.sqrt(m.mpf(3) / 7) * t),
+        ("sqrt(2 + theta)", lambda m, t: m.sqrt(2 + t)),
+        ("(2 + theta)**(1/2)", lambda m, t: m.sqrt(2 + t)),
+        ("(2 + theta)**(5/3)", lambda m, t: (2 + t) ** (m.mpf(5) / 3)),
+        ("(1/2 + theta/4)**33", lambda m, t: (m.mpf(1) / 2 + t / 4) ** 33),
+        ("(2 + theta)**(-2)", lambda m, t: 1 / (2 + t) ** 2),
+        ("(2 + theta)**(0 - 1)", lambda m, t: 1 / (2 + t)),
         ("theta - theta", lambda m, t: t - t),
         ("(theta + 1) - (theta - 1)*2", lambda m, t: 3 - t),
         ("1.25e-1*theta", lambda m, t: t / 8),
@@ -55,6 +61,28 @@ def test_a_formula_has_its_value_and_its_slope_by_the_place(check, text, functio
     found = check.evaluate(check.parse(text), names, P)
     for x, true in zip(found, truth(function, at), strict=True):
         assert encloses(check, x, true, 200)
+
+
+@pytest.mark.parametrize("text", [
+    "theta", "-theta + a", "pi*theta - a", "theta/4 - 5", "theta**1", "theta**5", "a/theta", "theta/a", "a**3/7",
+    "(1 + theta)/(2 + theta**2)", "sin(3*theta)*a", "cos(theta - a)", "sqrt(2 + theta)", "sqrt(a)*theta",
+    "1/(a - 4*theta)", "a*theta - theta*a",
+])  # fmt: skip
+def test_a_formula_of_jets_has_the_slopes_of_a_formula_of_numbers_and_of_differences(check, text):
+    """By the place, a letter of jets, the jet of the slope is the derivative of the jet; by `a` a quotient."""
+    at, b = Fraction(5, 4), Fraction(3, 7)
+    place, letter = (check.Jet.of(check.I.of(x, P), 2, k) for k, x in enumerate((at, b)))
+    tree, one = check.parse(text), check.I.of(1, P)
+    found, slope = check.evaluate(tree, {"theta": place, "a": letter}, P)
+    found, slope = (check.Jet.of(0, 2) + x * one for x in (found, slope))
+    number, rate = check.evaluate(tree, {"theta": check.I.of(at, P), "a": check.I.of(b, P)}, P)
+    alike = [(found.c[0], number), (found.c[3], rate), *zip(found.diff(0).c, slope.c, strict=False)]
+    near = lambda x: check.evaluate(tree, {"theta": check.I.of(at, 400), "a": check.I.of(x, 400)}, 400)[0]  # noqa: E731
+    step = Fraction(1, 2**60)
+    alike.append((found.c[2], check.I.of((near(b + step) - near(b - step)) * 2**59, P)))
+    for x, y in alike:
+        gap = check.I.of(x - y, P)
+        assert gap.size().lo < 2**12
 
 
 @pytest.mark.parametrize(
@@ -83,7 +111,17 @@ def test_the_root_of_a_number_is_within_a_few_units(check, x, root):
     assert slope == 0
     assert found.real() == pytest.approx(root, abs=1e-15)
     assert found.width() <= 3
-    assert (found * found - check.evaluate(check.parse(x), {}, P)[0]).size().hi <= 2**33
+    low, high = Fraction(found.lo, 2**P), Fraction(found.hi, 2**P)
+    square = check.I.of(check.evaluate(check.parse(x), {}, P)[0], P)
+    assert low**2 <= Fraction(square.hi, 2**P)
+    assert Fraction(square.lo, 2**P) <= high**2
+
+
+def test_the_root_of_what_is_wide_is_that_of_both_ends(check):
+    wide = check.I.of(Fraction(1, 9), P).hull(check.I.of(Fraction(49, 16), P))
+    found, _ = check.evaluate(check.parse("sqrt(a)"), {"a": wide}, P)
+    assert found.lo <= Fraction(2**P, 3) < found.lo + 2
+    assert found.hi - 2 < Fraction(7 * 2**P, 4) <= found.hi
 
 
 @pytest.mark.parametrize(
@@ -95,6 +133,7 @@ def test_the_root_of_a_number_is_within_a_few_units(check, x, root):
         ("b", "Wrong", "not understood"),
         ("b*2", "Wrong", "not understood"),
         ("sin(a, a)", "Wrong", "characters"),
+        ("sin()", "Wrong", "not understood"),
         ("theta(a)", "Wrong", "not understood"),
         ("a % 2", "Wrong", "characters"),
         ("a // 2", "Wrong", "not understood"),
@@ -110,6 +149,22 @@ def test_the_root_of_a_number_is_within_a_few_units(check, x, root):
 def test_what_is_no_formula_is_refused_and_what_has_no_value_is_not_proved(check, text, error, why):
     with pytest.raises(getattr(check, error), match=why):
         check.evaluate(check.parse(text), {"a": check.I.of(Fraction(3, 7), P)}, P)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("pi*theta", "22/7*5/4"), ("theta**1", "5/4"), ("(4*theta/5)**32", 1), ("theta^2/theta", "5/4"),
+        ("1/theta", "4/5"),
+        ("-sqrt(0)", 0), ("sqrt(1/4) - 2*theta", -2), ("sin(0)*theta + cos(0)", 1), ("theta/(3/7)", "35/12"),
+    ],
+)  # fmt: skip
+def test_the_formulas_of_the_tables_of_the_paper_are_read_by_one_file_alone(check, monkeypatch, text, wanted):
+    monkeypatch.setattr(check, "beside", None)
+    for place in (check.I.of(Fraction(5, 4), P), check.Jet.of(check.I.of(Fraction(5, 4), P), 1, 0)):
+        value = check.value(check.evaluate(check.parse(text), {"theta": place}, P)[0])
+        true = check.evaluate(check.parse(str(wanted)), {}, P)[0]
+        assert abs(check.I.of(value, P).real() - true) < (0.002 if "pi" in text else 1e-20)
 
 
 def test_two_thousand_characters_are_read(check):

@@ -322,3 +322,35 @@ def test_a_landing_that_is_nowhere_or_everywhere_is_not_enclosed(check):
     for off in (lambda t, _: (t * t + 1, t * 2), lambda t, _: (t * t, t * 2), lambda t, _: (t * 0, t * 0)):
         with pytest.raises((check.Unproved, ZeroDivisionError)):
             check.implicit(off, near, 0)
+
+
+def looked_for(check, images, p=20):
+    """Where a zero is looked for, in units, when Newton's steps come to these images one after the other."""
+    seen, steps = [], iter(images)
+    unit = lambda low, high: check.I(low << 8, high << 8, p)  # noqa: E731
+
+    def off(t, cut):
+        if t.width() == 0:
+            return t - unit(*next(steps)), None  # the step is from a middle: to the image, by the slope 1
+        seen.append((t.lo >> 8, t.hi >> 8))
+        return None, check.I.of(1, p)
+
+    found = check.implicit(off, unit(0, 40), 0)
+    return seen, (found.c[0].lo >> 8, found.c[0].hi >> 8)
+
+
+def test_a_landing_is_looked_for_about_an_image_that_lies_outside_and_then_while_steps_more_than_halve(check):
+    """Outside: in the hull of both, by the width of the image wider at both ends. Inside: in what both have."""
+    seen, found = looked_for(check, [(30, 50), (-10, 30), (12, 50), (14, 23), (15, 16)])
+    assert (seen, found) == ([(0, 40), (-20, 70), (-10, 30), (12, 30)], (14, 23))
+    for outside in ((0, 20), (20, 40)):  # at an end of it is not inside
+        assert looked_for(check, [outside, (1, 39), (1, 39)])[0] == [(0, 40), (-20, 60), (1, 39)]
+
+
+def test_what_no_letter_reaches_stays_the_number_0(check):
+    """So it costs nothing: neither a product with an interval nor a sum of none makes an interval of it."""
+    p = 40
+    x, y = (check.Jet.of(check.I.of(k, p), 2, k) for k in (1, 2))
+    for jet in (x * y, y * x, x * x * y, (x + y) * x, x * Fraction(2, 3)):
+        for (in_x, _, _), c in zip(check.algebra(2)[0], jet.c, strict=True):
+            assert in_x == 0 or (type(c) is int and c == 0)

@@ -395,7 +395,7 @@ class Table:
 def newton(equations, box, p):
     """N, proved to lie in the interior of the box; `equations` gives three jets, of degree 1, or 0 at the middle."""
     middle, (a, b, c) = [x.mid() for x in box], (x.gradient(p) for x in equations(box, 1))
-    cross = [[v[k - 2] * w[k - 1] - v[k - 1] * w[k - 2] for k in range(3)] for v, w in ((b, c), (c, a), (a, b))]
+    cross = [[v[k - 2] * w[k - 1] - v[k - 1] * w[k - 2] for k, _ in enumerate(v)] for v, w in ((b, c), (c, a), (a, b))]
     values, one = [value(x) for x in equations(middle, 0)], 1 / sum(x * y for x, y in zip(a, cross[0]))  # Cramer's rule
     image = [m - sum(row[i] * x for row, x in zip(cross, values)) * one for i, m in enumerate(middle)]
     need(all(map(I.inside, image, box)), "exists, unique: interval Newton does not map the box into itself")
@@ -420,7 +420,7 @@ class Cycle:
         (a, b), (c, e) = ([x.diff(k) for k in (0, 1)] for x in (theta, psi))
         trace, det = a + e, a * e - b * c
         last = {
-            "cycle": Jet.of(unknowns[2], d, 2) - (self.lam or 0),
+            "cycle": Jet.of(unknowns[2], d, 2) - (self.lam or self.box),
             "corner": Jet.of(unknowns[0], d, 0) - self.table.ends(0, self.p)[1],
             "fold": 1 - trace + det,
             "flip": 1 + trace + det,
@@ -440,13 +440,13 @@ class Cycle:
         """Bounces on their components, free chords, and no shorter cycle."""
         table, p, placed = self.table, self.p, []
         apart = lambda part, x, y: 0 not in (((x - y) / 2).sin_cos()[0] if table.closed[part] else x - y)
-        for part, x in zip(self.parts * 2, bounces + [-x for x in bounces] * (self.sign < 0)):
+        for part, x in zip(self.parts + self.parts, bounces + [-x for x in bounces] * (self.sign == -1)):
             low, high = table.ends(part, p)
             if table.closed[part]:
                 x = x - (high - low) * round(((x * 2 - low - high) / (high - low)).real() / 2)
             need(table.closed[part] or x.inside(I(low.hi, high.lo, p)), "admissible: a bounce may be off its component")
             placed.append((part, x))
-        for here, there in zip(placed, placed[1:] + placed[:1]):
+        for here, there in zip(placed, [*placed[1:], placed[0]]):
             table.free([here], [there], self.names(letter))
         fit = all(part != other or apart(part, x, at) for part, x in placed for other, at in table.marks)
         need(fit, "admissible: the map may be undefined at a bounce")
@@ -460,10 +460,9 @@ class Cycle:
         (a, b, _), (c, d, _) = ((x * self.sign).gradient(self.p) for x in states[-1])
         det, one = a * d - b * c, (a - 1) * (d - 1) - b * c
         need(det < 1 and det > -1, "simple_multiplier, other_multiplier_stable: the other may be too large")
-        if self.kind == "flip":
-            v = next((v for v in ((b, -a - 1), (d + 1, -c)) if 0 not in v[0] or 0 not in v[1]), None)
-            w = next((w for w in ((c, -a - 1), (d + 1, -b)) if 0 not in w[0] or 0 not in w[1]), None)
-            need(v and w, "nondegenerate: no eigenvector is enclosed")
+        if self.kind == "flip":  # of two vectors one at least is not 0, or the determinant might be 1
+            v = next(v for v in ((b, -a - 1), (d + 1, -c)) if 0 not in v[0] or 0 not in v[1])
+            w = next(w for w in ((c, -a - 1), (d + 1, -b)) if 0 not in w[0] or 0 not in w[1])
             (e, f), _ = self.along(image, states, v, (0, 0))
             bend = (b * f - (d - 1) * e) / one, (c * e - (a - 1) * f) / one  # then a round leaves the square as it is
             cubic = sum(x * y for x, y in zip(w, self.along(image, states, v, bend)[1]))
@@ -473,7 +472,7 @@ class Cycle:
         """A round later on the curve `start + v*e + bend*e**2`: the coefficients of `e**2` and `e**3`."""
         launch = lambda e, *_: (*(e * y + e * e * z + x for x, y, z in zip(image, v, bend)), self.names(image[2]))
         last = self.table.orbit(launch, [I.of(0, self.p)] * 2 + [image[2]], self.way, 3, states)[-1]
-        return [[x.c[algebra(3)[1][k, 0, 0]] * self.sign for x in last] for k in (2, 3)]
+        return [[x.c[algebra(x.degree)[1][k, 0, 0]] * self.sign for x in last] for k in (2, 3)]
 
 
 def exact(pair):

@@ -28,11 +28,14 @@ FOLDER = Path(__file__).parents[2] / "certificates"
 def test_a_normal_form_has_one_critical_multiplier_and_a_coefficient_that_is_not_zero(
     check, kind, other, cubic, answer
 ):
-    """Of a round with the multipliers 1 or -1 and another: `(x, y) -> (m*x + cubic*x**3, other*y)`, in intervals."""
+    """Of a round with the multipliers 1 or -1 and another: `(x, y) -> (m*x + cubic*x**3, other*y)`, in intervals.
+
+    The coordinates are `x + 2*y` and `x + 3*y`, for which the matrix has four entries."""
     number = lambda text: check.I.of(Fraction(text), 100).wide(check.I.of(Fraction(1, 2**80), 100))  # noqa: E731
-    x, y = (check.Jet.of(number("0"), 1, k) for k in (0, 1))
+    u, v = (check.Jet.of(number("0"), 1, k) for k in (0, 1))
+    x, y = (u * 3 - v * 2) * number("1" if kind == "fold" else "-1"), (v - u) * number(other)
     cycle = SimpleNamespace(p=100, sign=1, kind=kind)
-    cycle.run = lambda *_: [None, (x * number("1" if kind == "fold" else "-1"), y * number(other))]
+    cycle.run = lambda *given: [None, None, (x + y * 2, x + y * 3)] if given == (image, 1) else None
     cycle.along = lambda *_: ([number("0")] * 2, [number(cubic), number("0")])
     image = [number("0")] * 3
 
@@ -50,13 +53,18 @@ def test_a_normal_form_has_one_critical_multiplier_and_a_coefficient_that_is_not
 def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, zero, unknown, holds):
     """Of `x - zero`, in one of three unknowns, over [-1, 1]: at an end of it, or beyond, nothing is proved."""
     box = [check.I.of(-1, 60).hull(check.I.of(1, 60))] * 3
-    line = lambda x, d: [check.Jet.of(v, d, k) - Fraction(zero) * (k == unknown) for k, v in enumerate(x)]  # noqa: E731
+    asked = []
+
+    def line(x, d):
+        asked.append((d, *{v.width() >> 60 for v in x}))
+        return [check.Jet.of(v, d, k) - Fraction(zero) * (k == unknown) for k, v in enumerate(x)]
 
     if holds:
         assert Fraction(zero) * 2**60 in range(check.newton(line, box, 60)[unknown].lo, 2**60)
     else:
         with pytest.raises(check.Unproved, match="exists, unique"):
             check.newton(line, box, 60)
+    assert asked == [(1, 2), (0, 0)]  # slopes over the box, values at its middle
 
 
 @pytest.mark.parametrize(
@@ -77,28 +85,41 @@ def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize(("a", "b", "c", "e"), [(2, 3, 5, 11), (-1, 4, 2, -3), (0, -1, 1, 0)])
 def test_the_equations_of_a_cycle_say_that_it_closes_and_what_its_multipliers_are(check, sign, a, b, c, e):
-    """Of a round `(x, y) -> (a*x + b*y + 7, c*x + e*y - 3)`, perhaps mirrored, at (1/2, 1/4), with lam = 1/8."""
-    p, at = 60, [check.I.of(Fraction(1, 2**k), 60) for k in (1, 2, 3)]
-    x, y = (check.Jet.of(at[k], 1, k) for k in (0, 1))
+    """Of `(x, y) -> (a*x + b*y + 7 + x*y, c*x + e*y - 3 + x*z)`, perhaps mirrored, at (1/2, 1/4, 1/8), with slopes."""
+    p, (x, y, z) = 60, (Fraction(1, 2**k) for k in (1, 2, 3))
+    at, asked = [check.I.of(number, p) for number in (x, y, z)], []
     cycle = check.Cycle.__new__(check.Cycle)
-    cycle.p, cycle.sign, cycle.lam, cycle.table = (
-        p,
-        sign,
-        check.I.of(Fraction(1, 9), p),
-        check.Table([["1", "-pi", "pi"]], {}, "", p),
-    )
-    cycle.run = lambda unknowns, d: [(x, y), ((x * a + y * b + 7) * sign, (x * c + y * e - 3) * sign)]
-    trace, det = a + e, a * e - b * c
-    wanted = {"fold": 1 - trace + det, "flip": 1 + trace + det, "focus": trace**2 - 4 * det}
-    wanted |= {"cycle": Fraction(1, 8) - Fraction(1, 9), "corner": None}
+    cycle.p, cycle.sign, cycle.table = p, sign, check.Table([["1", "-pi", "pi"]], {}, "", p)
+
+    def run(unknowns, d):
+        asked.append((unknowns, d))
+        u, v, w = (check.Jet.of(number, d, k) for k, number in enumerate(unknowns))
+        return [(u, v), None, ((u * a + v * b + 7 + u * v) * sign, (u * c + v * e - 3 + u * w) * sign)]
+
+    cycle.run = run
+    trace, det = a + y + e, (a + y) * e - (b + x) * (c + z)
+    of_det = -(c + z), e, -(b + x)
+    wanted = {
+        "fold": (1 - trace + det, *(m - n for m, n in zip(of_det, (0, 1, 0), strict=True))),
+        "flip": (1 + trace + det, *(m + n for m, n in zip(of_det, (0, 1, 0), strict=True))),
+        "focus": (trace**2 - 4 * det, *(2 * trace * n - 4 * m for m, n in zip(of_det, (0, 1, 0), strict=True))),
+        "cycle": (z - Fraction(1, 9), 0, 0, 1),
+        "corner": (None, 1, 0, 0),
+    }
+    closes = (a - 1) * x + b * y + 7 + x * y, c * x + (e - 1) * y - 3 + x * z
+    slopes = (a - 1 + y, b + x, 0), (c + z, e - 1, x)
     for kind, last in wanted.items():
         cycle.kind = kind
-        found = [check.I.of(check.value(f), p) for f in cycle.equations(at, 0)]
-        closes = Fraction(a - 1, 2) + Fraction(b, 4) + 7, Fraction(c, 2) + Fraction(e - 1, 4) - 3
-        for ours, true in zip(found, [*closes, *([] if last is None else [last])], strict=False):
-            assert Fraction(ours.lo, 2**p) <= true <= Fraction(ours.hi, 2**p)
-            assert ours.width() <= 2
-        assert kind != "corner" or abs(found[2].real() - 0.5 + 3.141592653589793) < 1e-12
+        cycle.lam, cycle.box = (check.I.of(Fraction(1, 9), p), None) if kind == "cycle" else (None, at[2])
+        for d in (0, 1):
+            found = cycle.equations(at, d)
+            for jet, true in zip(found, [*((f, *g) for f, g in zip(closes, slopes, strict=True)), last], strict=True):
+                for ours, number in zip([jet.c[0], *(jet.gradient(p) if d else ())], true, strict=False):
+                    ours = check.I.of(ours, p)
+                    assert number is None or Fraction(ours.lo, 2**p) <= number <= Fraction(ours.hi, 2**p)
+                    assert ours.width() <= 2
+            assert kind != "corner" or abs(check.value(found[2]).real() - 0.5 + 3.141592653589793) < 1e-12
+            assert asked.pop() == (at, d + 1)
 
 
 @pytest.mark.parametrize(("cubic", "degenerate"), [("-1/9", True), ("1/9", False), ("0", False)])
@@ -188,7 +209,8 @@ def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, 
     chance, p = random.Random(turn), 120
     a, b, d, m = (Fraction(chance.randint(1, 9), 10) * chance.choice([-1, 1]) for _ in range(4))
     c = Fraction(spare) - a * a - b * d / (1 - m)
-    known = {0: ((1, 0), (0, 1)), 4: ((1, 0), (2, 1)), 5: ((1, 2), (0, 1))}  # 4: the first entries of a row vanish
+    known = {0: ((1, 0), (0, 1)), 1: ((0, 1), (1, 0))}  # where entries of a row and of a column vanish
+    known |= {4: ((1, 0), (2, 1)), 5: ((1, 2), (0, 1))}
     (q, r), (s, t) = known.get(turn) or ((chance.randint(1, 3), 1), (-1, chance.randint(1, 3)))
     det = Fraction(q * t - r * s)
     number = lambda x: check.I.of(Fraction(x), p).wide(check.I.of(Fraction(1, 2**100), p))  # noqa: E731
@@ -201,9 +223,9 @@ def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, 
     image = [check.I.of(0, p)] * 3
     cycle = check.Cycle.__new__(check.Cycle)
     cycle.p, cycle.sign, cycle.kind, cycle.way, cycle.names = p, 1, "flip", [], lambda letter: {}
-    cycle.run = lambda *_: [None, around(*(check.Jet.of(image[k], 1, k) for k in (0, 1)))]
+    cycle.run = lambda at, d: [None, None, around(*(check.Jet.of(at[k], d, k) for k in (0, 1)))]
     launched = lambda launch, at, d: around(*launch(*(check.Jet.of(x, d, k) for k, x in enumerate(at)))[:2])  # noqa: E731
-    cycle.table = SimpleNamespace(orbit=lambda launch, at, way, d, states: [None, launched(launch, at, d)])
+    cycle.table = SimpleNamespace(orbit=lambda launch, at, way, d, states: [None, None, launched(launch, at, d)])
 
     if spare == "0":
         with pytest.raises(check.Unproved, match="nondegenerate"):

@@ -161,6 +161,7 @@ def test_the_digits_that_are_stated_hold_a_width_of_one_of_the_last_of_them_and_
         "may be undefined"),
         (([0, 2], [1, 2], 1, ROUND, [(0, 1 + Fraction(2 * pi))]), "may be undefined"),
         (([1, 2], [1, 2], -1, ROUND, [(1, -1)]), "may be undefined"),
+        (([0, 1], [Fraction(pi), 1], 1, ROUND), None), (([0, 1], [-Fraction(pi), 1], 1, ROUND), None),  # on the seam
     ],
 )  # fmt: skip
 def test_bounces_are_on_their_parts_off_the_marks_and_of_no_shorter_cycle(check, given, item):
@@ -174,7 +175,7 @@ def curve(check, launched, v, bend, sign=1, mirrored=False):
     def orbit(launch, at, way, d, states):
         asked.append(([x.real() for x in at], way, d, states))
         x, y, names = launch(*(check.Jet.of(x, d, k) for k, x in enumerate(at)))
-        return ["first", (x * x + y * y * y * 3, x * y - y + names["lam"])]
+        return ["first", "between", (x * x + y * y * y * 3, x * y - y + names["lam"])]
 
     cycle.table, cycle.p, cycle.sign, cycle.way, cycle.names = (
         SimpleNamespace(orbit=orbit),

@@ -518,8 +518,8 @@ def read_scene(scene, free, p):
 def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
     """The name of a value, from the equations alone: one that symmetry or its place tells, or what is stated of it."""
     same = lambda x, box: (x - pi(p) * 2 * round((x - box).real() / 6.283185307179586)).inside(box)
-    mirrored = sign > 0 and all(map(same, [-x for x in bounces], boxes))  # so it is its own image: there is no other
-    turned = sign > 0 and all(map(same, [x + pi(p) * Fraction(2, 3) for x in bounces], boxes[1:] + boxes[:1]))
+    mirrored = sign == 1 and all(map(same, [-x for x in bounces], boxes))  # so it is its own image: there is no other
+    turned = sign == 1 and all(map(same, [x + pi(p) * Fraction(2, 3) for x in bounces], boxes[1:] + boxes[:1]))
     what = scene.get("table") if scene.get("K", 3) == 3 and "law" not in scene else None, kind, free, len(parts)
     if kind == "corner":
         return beside("corner").called(free, bounces[1])
@@ -527,7 +527,7 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
     special |= {("egg", "flip", "alpha", 2): "alpha-tilde", ("egg", "focus", "alpha", 2): "alpha-hat"}
     if what in special and (turned if what[-1] == 3 else mirrored):
         return special[what]
-    half = "half of a symmetric cycle," if sign < 0 else "a cycle"
+    half = "half of a symmetric cycle," if sign == -1 else "a cycle"
     return f"{kind + ' of ' if free else ''}{half} of period {len(parts)}{' in ' + free if free else ''}: {title}"
 
 
@@ -552,10 +552,10 @@ def checked(given):
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
     sign, wanted = -1 if given.get("mirror") else 1, {"corner": 2, "tangency": 3}.get(kind, len(parts) + (free != ""))
     fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts)
-    fit = fit and (sign > 0 or ("table" in scene and not table.law) or beside("boundaries").symmetric(table, parts))
-    fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and sign < 0))
+    fit = fit and (sign == 1 or ("table" in scene and not table.law) or beside("boundaries").symmetric(table, parts))
+    fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and sign == -1))
     need(fit and len(centre) == wanted, "scene, components, centre or mirror do not fit", Wrong)
-    n = f"its {len(parts)} bounces" if sign > 0 else f"{len(parts)} bounces, and then their mirror images,"
+    n = f"its {len(parts)} bounces" if sign == 1 else f"{len(parts)} bounces, and then their mirror images,"
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))
     need(words == said, f"the statement must be: {said!a}", Wrong)
     boxes = [I.of(x - radius, p).hull(I.of(x + radius, p)) for x in centre]

@@ -64,6 +64,9 @@ def test_a_scene_is_called_by_all_that_is_told_of_it_and_by_nothing_that_is_free
     ("scene", "free", "why"),
     [
         ([], "", "the entries are one of"),
+        (None, "", "the entries are one of"),
+        ("table", "", "the entries are one of"),
+        ({"table": "circle", "shape": "a", "lam": "1"}, "", "the entries are one of"),
         ({"lam": "1"}, "", "the entries are one of"),
         ({"table": "circle", "polar": "1", "lam": "1"}, "", "the entries are one of"),
         ({"table": "circle", "lam": "1", "more": 1}, "", "the entries are one of"),

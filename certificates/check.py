@@ -492,7 +492,7 @@ def read_scene(scene, free, p):
     """The table and the contraction that a scene says, and how it is called in words."""
     known = isinstance(scene, dict) and isinstance(scene.get("shape", {}), dict)
     more = {"K"} if known and "table" in scene else {"undefined", "origin"}  # marks are of tables of one's own
-    way = [key for key in WAYS if known and key in scene and {*scene} <= {*WAYS, *more, "shape", "law", "lam"}]
+    way = [key for key in WAYS if known and key in scene and not {*scene} - {key, *more, "shape", "law", "lam"}]
     need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
     fit = not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)

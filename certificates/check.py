@@ -492,7 +492,7 @@ def read_scene(scene, free, p):
     """The table and the contraction that a scene says, and how it is called in words."""
     known = isinstance(scene, dict) and isinstance(scene.get("shape", {}), dict)
     more = {"K"} if known and "table" in scene else {"undefined", "origin"}  # marks are of tables of one's own
-    way = [key for key in WAYS if known and key in scene and not {*scene} - {key, *more, "shape", "law", "lam"}]
+    way = [key for key in WAYS if known and not {*scene} - {key, *more, "shape", "law", "lam"}]  # all, of none
     need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
     fit = not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
@@ -519,7 +519,7 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
     """The name of a value, from the equations alone: one that symmetry or its place tells, or what is stated of it."""
     same = lambda x, box: (x - pi(p) * 2 * round((x - box).real() / 6.283185307179586)).inside(box)
     mirrored = sign == 1 and all(map(same, [-x for x in bounces], boxes))  # so it is its own image: there is no other
-    turned = sign == 1 and all(map(same, [x + pi(p) * Fraction(2, 3) for x in bounces], boxes[1:] + boxes[:1]))
+    turned = sign == 1 and all(map(same, [x + pi(p) * Fraction(2, 3) for x in bounces], [*boxes[1:], boxes[0]]))
     what = scene.get("table") if scene.get("K", 3) == 3 and "law" not in scene else None, kind, free, len(parts)
     if kind == "corner":
         return beside("corner").called(free, bounces[1])

@@ -164,8 +164,9 @@ def test_an_angle_is_enclosed_as_tightly_as_its_tangent(check, bits):
 
 def test_a_fold_names_what_varies(check):
     given = json.loads((FOLDER / "saddle-node.json").read_text())
-    with pytest.raises(check.Wrong, match="free or radius is out of range"):
-        check.checked(given | {"free": ""})
+    for free in ("", 3, ["lam"], None):
+        with pytest.raises(check.Wrong, match="free or radius is out of range"):
+            check.checked(given | {"free": free})
 
 
 def test_the_status_of_the_second_reader_is_1_where_anything_is_not_proved(check, tmp_path, capsys):
@@ -271,6 +272,7 @@ def test_a_flight_runs_forwards_from_the_inward_side_and_its_angle_is_named_once
     "changed",
     [
         {"mirror": 1}, {"mirror": None}, {"components": [0]}, {"components": [0] * 1025}, {"components": "00"},
+        {"components": 2}, {"components": None},
         {"components": [0, 1]}, {"components": [0, -1]}, {"components": [0, True]}, {"bits": 15}, {"bits": True},
         {"bits": 160.0}, {"digits": 10.0}, {"digits": "10"},
         {"digits": 0}, {"bits": 10**6}, {"digits": 10**6}, {"radius": ["0", "0"]}, {"radius": ["-1", "-9"]},

@@ -161,3 +161,27 @@ def test_a_document_of_cells_or_of_a_crisis_is_read_by_the_file_of_its_form(chec
     monkeypatch.setattr(check, "beside", lambda name: Other if name == ("region" if runs else "crisis") else None)
     given = {"kind": kind} | runs
     assert check.checked(given) == ("cells" if runs else "crisis", given)
+
+
+@pytest.mark.parametrize("digits", [20, 60_000])
+def test_a_tangency_is_read_with_its_table_and_the_box_of_its_parameter(check, monkeypatch, digits):
+    """It has no bounces of its own among the entries: the contact and both saddles are the other file's."""
+    given, told, tangency = document("boundary-crisis"), [], check.beside("tangency")
+
+    def touching(*handed):
+        told.append(handed)
+        return [None, None, handed[2].mid().wide(check.I.of(Fraction(1, 10**30), handed[2].p))], "a contact"
+
+    monkeypatch.setattr(tangency, "touching", touching)
+    read = lambda: check.checked(given | {"name": "a contact", "digits": digits})  # noqa: E731
+    if digits > 30:
+        with pytest.raises(check.Unproved, match="precise"):
+            read()
+        return
+    lam, radius = check.exact(given["centre"][2]), check.exact(given["radius"])
+    assert read().startswith(f"proved: a contact = {float(lam):.12f}")
+    ((handed, table, box, title),) = told
+    assert handed == given | {"name": "a contact", "digits": digits}
+    assert given["statement"].startswith(title)
+    assert 0 <= check.I.of(lam - radius, table.p).lo - box.lo <= 2
+    assert 0 <= box.hi - check.I.of(lam + radius, table.p).hi <= 2

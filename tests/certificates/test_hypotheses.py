@@ -272,7 +272,7 @@ def test_a_flight_runs_forwards_from_the_inward_side_and_its_angle_is_named_once
     "changed",
     [
         {"mirror": 1}, {"mirror": None}, {"components": [0]}, {"components": [0] * 1025}, {"components": "00"},
-        {"components": 2}, {"components": None},
+        {"components": 2}, {"components": None}, {"components": [0, False]}, {"components": [0, 0.0]},
         {"components": [0, 1]}, {"components": [0, -1]}, {"components": [0, True]}, {"bits": 15}, {"bits": True},
         {"bits": 160.0}, {"digits": 10.0}, {"digits": "10"},
         {"digits": 0}, {"bits": 10**6}, {"digits": 10**6}, {"radius": ["0", "0"]}, {"radius": ["-1", "-9"]},

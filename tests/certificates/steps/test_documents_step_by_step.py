@@ -9,6 +9,7 @@ import pytest
 FOLDER = Path(__file__).parents[3] / "certificates"
 SHORT = (
     "minor-axis",
+    "egg-triangle",
     "saddle-node",
     "lambda-c",
     "alpha-hat",
@@ -16,6 +17,8 @@ SHORT = (
     "phi-star",
     "free-parameter",
     "own-mirror",
+    "moved-waves",
+    "law-in-all-words",
 )
 
 
@@ -29,10 +32,13 @@ class Solver:
     def __init__(self, check, moved=(), off=0):
         self.check, self.moved, self.off, self.asked = check, moved, off, []
 
-    def __call__(self, table, kind, parts, boxes, sign, letter, box, lam):
+    def __call__(self, table, kind, parts, boxes, sign, letter, box, lam, long=False):
         self.table, self.kind, self.parts, self.boxes, self.sign = table, kind, parts, boxes, sign
-        self.letter, self.box, self.lam, self.p = letter, box, lam, table.p
+        self.letter, self.box, self.lam, self.p, self.long = letter, box, lam, table.p, long
         return self
+
+    def Long(self, *given):
+        return self(*given, long=True)
 
     def solved(self):
         middle = [*(x.mid() for x in self.boxes[:2]), (self.box or self.boxes[0]).mid()]
@@ -53,7 +59,6 @@ class Solver:
 def solver(check, monkeypatch, given, **more):
     """A document checked with a solution that is made up, and named as it says."""
     made, beside = Solver(check, **more), check.beside
-    made.Long = made
     monkeypatch.setattr(check, "Cycle", made)
     monkeypatch.setattr(check, "beside", lambda name: made if name in ("long", "corner") else beside(name))
     monkeypatch.setattr(check, "named", lambda *told: made.asked.append(("named", *told)) or given["name"])
@@ -102,7 +107,9 @@ def test_all_is_asked_that_is_stated_of_a_solution_and_its_middle_is_told(check,
     )
 
 
-@pytest.mark.parametrize(("bits", "count", "tail"), [(16, 2, 0), (147, 2, 0), (16, 2, 4000), (16, 31, 9), (90, 40, 9)])
+@pytest.mark.parametrize(
+    ("bits", "count", "tail"), [(16, 2, 0), (147, 2, 0), (16, 2, 4000), (16, 32, 9), (16, 33, 9), (90, 40, 9)]
+)
 def test_numbers_have_the_bits_of_the_document_or_of_its_longest_number_and_some_for_each_bounce(
     check, monkeypatch, bits, count, tail
 ):
@@ -111,6 +118,7 @@ def test_numbers_have_the_bits_of_the_document_or_of_its_longest_number_and_some
     given |= {"centre": [["1", f"{-tail}"]] * count, "radius": ["1", "-9"]}
     given["statement"] = given["statement"].replace("2 bounces", f"{count} bounces")
     made, _ = solver(check, monkeypatch, given)
+    assert made.long == (count > 32)
     assert made.p == 16 * min(count, 32) + max(bits + 96, 10, tail + 1)
     given["radius"] = ["1", "-5000"]
     assert solver(check, monkeypatch, given)[0].p == 16 * min(count, 32) + 5001
@@ -185,3 +193,11 @@ def test_a_tangency_is_read_with_its_table_and_the_box_of_its_parameter(check, m
     assert given["statement"].startswith(title)
     assert 0 <= check.I.of(lam - radius, table.p).lo - box.lo <= 2
     assert 0 <= box.hi - check.I.of(lam + radius, table.p).hi <= 2
+
+
+@pytest.mark.parametrize("name", [*SHORT, "boundary-crisis"])
+def test_a_number_too_many_or_too_few_is_no_solution(check, name):
+    given = document(name)
+    for centre in ([*given["centre"], ["0", "0"]], given["centre"][:-1]):
+        with pytest.raises(check.Wrong, match="do not fit"):
+            check.checked(given | {"centre": centre})

@@ -573,7 +573,7 @@ def checked(given):
         true = named(kind, sign, parts, bounces, boxes, scene, free, title, p)
     found = image[1] if (kind, free) == ("corner", "phi") else image[2] if free else bounces[-1]
     within(free, image[2], scene.get("table")) if free else None
-    need(found.width() * 10**digits <= 1 << p, "precise: the enclosure is wider than the digits say")
+    need(found.width() <= (1 << p) // 10**digits, "precise: the enclosure is wider than the digits say")
     need(name == true, f"the name must be {true!a}", Wrong)
     decimal = Decimal(f"{round(Fraction(found.lo + found.hi, 2 << p) * 10**digits)}e-{digits}")
     return f"proved: {true}{' = ' if free else ', last bounce at '}{decimal:f}, within 1e-{digits}\n  {said}"

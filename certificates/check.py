@@ -139,7 +139,7 @@ class I(Number):
                 s, c = y.sin_cos()
                 y = (y + (x * c - s) / (c + x * s)).mid()
             s, c = y.sin_cos()
-            need(c > 0 and c + x * s > 0 and y.size() < 2, "an angle too near pi/2")  # so cos(d) > 0
+            need(c + x * s > 0 and y.size() < 2, "an angle too near pi/2")  # so cos(d) > 0, and abs(d) < 4
             ends.append(y.wide((s - x * c) * 2))  # |d| <= (pi/2)*|sin(d)|
         return ends[0].hull(ends[1])
 

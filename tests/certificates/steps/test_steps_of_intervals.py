@@ -124,6 +124,28 @@ def test_sines_and_cosines_are_within_two_units_of_the_true_ones(check, p):
             assert found.p == p
 
 
+@pytest.mark.parametrize(
+    ("name", "m"),
+    [
+        ("sin", 193230689), ("sin", 146495911), ("sin", 209319079), ("sin", 150459256), ("cos", 134396596),
+        ("cos", 258719516),
+    ],
+)  # fmt: skip
+def test_sines_and_cosines_that_are_hardest_to_round_are_enclosed(check, name, m):
+    """Of all `m/2**28` from 1/2 to 1 those whose value is nearest to a whole number of last places."""
+    x = Fraction(m, 2**28)
+    found = dict(zip(("sin", "cos"), check.I.of(x, 28).sin_cos(), strict=True))[name]
+    assert abs(precise(name, x) * 2**28 - round(precise(name, x) * 2**28)) < Fraction(1, 2**27)
+    assert holds(found, precise(name, x), None, 2)
+
+
+def test_nothing_is_asked_of_pi_for_angles_of_up_to_1_of_which_it_is_found(check, monkeypatch):
+    monkeypatch.setattr(check, "pi", None)
+    for x in (1, -1, Fraction(3, 4)):
+        for name, found in zip(("sin", "cos"), check.I.of(x, 77).sin_cos(), strict=True):
+            assert holds(found, precise(name, Fraction(x)), None, 4)
+
+
 @pytest.mark.parametrize("radius", [Fraction(1, 100), Fraction(1, 3), Fraction(2)])
 def test_sines_and_cosines_of_wide_angles_are_those_of_the_middle_give_or_take_the_radius(check, radius):
     p = 60

@@ -82,46 +82,6 @@ def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve
     assert check.read_scene(scene, "", 60)[0].closed == [closed]
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize(("a", "b", "c", "e"), [(2, 3, 5, 11), (-1, 4, 2, -3), (0, -1, 1, 0)])
-def test_the_equations_of_a_cycle_say_that_it_closes_and_what_its_multipliers_are(check, sign, a, b, c, e):
-    """Of `(x, y) -> (a*x + b*y + 7 + x*y, c*x + e*y - 3 + x*z)`, perhaps mirrored, at (1/2, 1/4, 1/8), with slopes."""
-    p, (x, y, z) = 60, (Fraction(1, 2**k) for k in (1, 2, 3))
-    at, asked = [check.I.of(number, p) for number in (x, y, z)], []
-    cycle = check.Cycle.__new__(check.Cycle)
-    cycle.p, cycle.sign, cycle.table = p, sign, check.Table([["1", "-pi", "pi"]], {}, "", p)
-
-    def run(unknowns, d):
-        asked.append((unknowns, d))
-        u, v, w = (check.Jet.of(number, d, k) for k, number in enumerate(unknowns))
-        return [(u, v), None, ((u * a + v * b + 7 + u * v) * sign, (u * c + v * e - 3 + u * w) * sign)]
-
-    cycle.run = run
-    trace, det = a + y + e, (a + y) * e - (b + x) * (c + z)
-    of_det = -(c + z), e, -(b + x)
-    wanted = {
-        "fold": (1 - trace + det, *(m - n for m, n in zip(of_det, (0, 1, 0), strict=True))),
-        "flip": (1 + trace + det, *(m + n for m, n in zip(of_det, (0, 1, 0), strict=True))),
-        "focus": (trace**2 - 4 * det, *(2 * trace * n - 4 * m for m, n in zip(of_det, (0, 1, 0), strict=True))),
-        "cycle": (z - Fraction(1, 9), 0, 0, 1),
-        "corner": (None, 1, 0, 0),
-    }
-    closes = (a - 1) * x + b * y + 7 + x * y, c * x + (e - 1) * y - 3 + x * z
-    slopes = (a - 1 + y, b + x, 0), (c + z, e - 1, x)
-    for kind, last in wanted.items():
-        cycle.kind = kind
-        cycle.lam, cycle.box = (check.I.of(Fraction(1, 9), p), None) if kind == "cycle" else (None, at[2])
-        for d in (0, 1):
-            found = cycle.equations(at, d)
-            for jet, true in zip(found, [*((f, *g) for f, g in zip(closes, slopes, strict=True)), last], strict=True):
-                for ours, number in zip([jet.c[0], *(jet.gradient(p) if d else ())], true, strict=False):
-                    ours = check.I.of(ours, p)
-                    assert number is None or Fraction(ours.lo, 2**p) <= number <= Fraction(ours.hi, 2**p)
-                    assert ours.width() <= 2
-            assert kind != "corner" or abs(check.value(found[2]).real() - 0.5 + 3.141592653589793) < 1e-12
-            assert asked.pop() == (at, d + 1)
-
-
 @pytest.mark.parametrize(("cubic", "degenerate"), [("-1/9", True), ("1/9", False), ("0", False)])
 def test_the_cubic_coefficient_of_a_doubling_counts_what_the_quadratic_terms_add(check, cubic, degenerate):
     """Of a round `(x, y) -> (-x + x**2/3 + cubic*x**3, y/2)`: its coefficient is `1/9 + cubic`."""

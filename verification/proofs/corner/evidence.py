@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from flint import arb
 from numpy.typing import NDArray
 
 from numeric import PinballMap
@@ -29,12 +28,12 @@ from verification.proofs.corner.border_collision import (
     extent,
     fixed_point,
     grown,
+    holds,
     hull,
     inward,
     kind,
     part,
     robust,
-    sides,
     strips,
     trapped,
 )
@@ -106,6 +105,9 @@ def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | N
         return strips(family, region) if trapped(family, region) else None
 
 
+REGION: Polygon = [(-1.0, -1.0), (1.0, -1.0), (7.0, 12.0), (4.0, 12.0)]  # about both orbits of period 4
+
+
 def saddles(last: float = 3e-6) -> dict[int, Row] | None:
     """The two orbits of period 4 that are born at `lambda-star`, for all `lam` up to `lambda-star + last`, proved.
 
@@ -116,14 +118,13 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
     >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
     {0: '-0.532', 1: '10.1'}
     """
-    region = [(-1.0, -1.0), (1.0, -1.0), (7.0, 12.0), (4.0, 12.0)]
     with working(BITS):
-        family = pieces(region, (0.0, last))
+        family = pieces(REGION, (0.0, last))
         found = {component: fixed_point(piece) for component, piece in family.items()}
-        for component, (u, v) in found.items():
+        for component, point in found.items():
             trace, determinant = family[component].trace, family[component].determinant
-            within = all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(region))
-            if not (within and inward(v, component) > 0 and abs(trace) > abs(1 + determinant)):
+            unstable = abs(trace) > abs(1 + determinant)
+            if not (holds(REGION, point) and inward(point[1], component) > 0 and unstable):
                 return None
         return found
 

@@ -170,7 +170,7 @@ class Inverted:
 
 def launching_points(cells: int) -> tuple[Matrix, Matrix]:
     """`g(-x)` and `g(x)` at the ends of cells, in cells, exact multiples of `1/GRAIN` and within that of the truth."""
-    if cells % 2 or not 0 < cells <= 4096:
+    if cells not in range(2, 4097, 2):
         raise ValueError(f"ulam: cells = {cells}; an even number of at most 4096 is needed")
     at = Branches(BITS)
     with working(BITS):

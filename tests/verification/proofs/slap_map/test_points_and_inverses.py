@@ -213,6 +213,7 @@ def test_shares_of_cells_are_those_between_launching_points(monkeypatch):
         (-1, [[0.5, 0], [0, 0.5]], [[1, 0], [0, 2]], 0.5, 2, 1),
         (-1, [[0.5, 0.25], [0, 0.5]], [[2, 1], [0, 2]], 0, 3, 2),
         (2, [[0.5, 0], [0, 0.5]], [[2, 0], [0, 2]], 0, 2, 1),
+        (1, [[0.5, 0.5], [0.5, 0.5]], [[2, 1], [1, 2]], 0, 1, 2),  # columns of norm 3, a distance of 1 from (1.5, 1.5)
     ],
 )
 def test_the_defect_of_an_inverse_is_what_is_left_what_floats_lose_and_what_displaced_points_move(
@@ -223,16 +224,43 @@ def test_the_defect_of_an_inverse_is_what_is_left_what_floats_lose_and_what_disp
     monkeypatch.setattr(transfer, "ulam", lambda *given: asked.append(given) or csc_matrix(np.array(matrix)))
     inverse = np.array(inverse, float)
     found = transfer.inverted(2, inverse, sign)
-    lost = (entries + 4) * UNIT * (2 * abs(inverse).sum(axis=0).max() + 1) + 12 / GRAIN * size
+    rounded = (entries + 4) * UNIT * (2 * abs(inverse).sum(axis=0).max() * BLANKET + 1) * BLANKET
+    lost = rounded + 12 / GRAIN * size * BLANKET
 
     assert asked == [(2, sign)]
     assert (found.cells, found.sign) == (2, sign)
-    assert found.defect - left * BLANKET == pytest.approx(lost, rel=1e-4 if left else 1e-8, abs=0)
+    assert found.defect - left * BLANKET == pytest.approx(lost, rel=1e-4 if left else 1e-14, abs=0)
     if left < 0.5 and sign in (1, -1):
         assert found.bound == pytest.approx(size / (1 - found.defect), rel=1e-8)
         assert found.bound > size / (1 - found.defect)
     else:
         assert found.bound is None
+
+
+def test_a_defect_bounds_an_inverse_when_it_is_below_one_half(monkeypatch):
+    """Two cells and floats that lose nothing: of `X = x` for the inverse 2 of all vectors `abs(1 - x/2)` is left."""
+    monkeypatch.setattr(transfer, "ulam", lambda cells, sign: csc_matrix(np.diag([0.5, 0.5])))
+    for name, value in (("UNIT", 0.0), ("GRAIN", np.inf), ("BLANKET", 1.0)):
+        monkeypatch.setattr(transfer, name, value)
+    for x, defect, bound in ((2.0, 0.0, 2.0), (1.5, 0.25, 2.0), (3.0, 0.5, None), (1.0, 0.5, None)):
+        assert transfer.inverted(2, np.diag([x, x]), -1) == Inverted(2, bound, defect, -1)
+
+
+@pytest.mark.parametrize("cells", [-2, 0, 1, 3, 4095, 4097, 4098])
+def test_cells_are_an_even_number_of_at_most_4096(cells):
+    with pytest.raises(ValueError, match="an even number of at most 4096"):
+        transfer.launching_points(cells)
+
+
+def test_the_fewest_and_the_most_cells_have_launching_points(monkeypatch):
+    below, above = transfer.launching_points(2)  # landings at 0, -pi/4, and at 0
+    middle = np.arctan(np.sqrt(2)) * 4 / np.pi
+    quarter = load(branch(False), FLOAT64)(-np.pi / 4)[0] * 4 / np.pi
+    assert below == pytest.approx([middle, quarter, 0], abs=1e-11)
+    assert above == pytest.approx([middle, 2], abs=1e-11)
+    monkeypatch.setattr(transfer, "Branches", lambda bits: lambda landing: (arb(1), arb(1)))
+    below, above = transfer.launching_points(4096)
+    assert (len(below), len(above)) == (4097, 2049)
 
 
 def test_norms_of_matrices_are_those_of_their_columns_from_above():
@@ -276,3 +304,6 @@ def test_launching_points_and_rates_are_sharp_up_to_the_ends_of_both_branches():
                 assert launch.rad() < (1e-40 if landing < 0 else 1e-25)  # it is near 0 at the cusp
                 assert rate.rad() < 1e-15
                 assert 0 <= rate < 1
+        for launch in (at(arb.pi() / 4)[0], at(arb_series([arb.pi() / 4, 1]))[0][0]):  # from the cusp
+            assert launch.overlaps(arb.pi() / 2)
+            assert launch.rad() < 1e-13

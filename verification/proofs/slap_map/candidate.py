@@ -100,6 +100,11 @@ def breaks(digits: int, bits: int) -> list[arb]:
     return made
 
 
+def precision(digits: int) -> int:
+    """The bits that balls are rounded to for a density of so many digits."""
+    return bits_of(digits, 64) + 2 * digits
+
+
 def candidate(digits: int) -> Pieces:
     """The approximate density, to about `digits` digits; its integral is near 1, and it is 0 at `pi/2`.
 
@@ -108,7 +113,7 @@ def candidate(digits: int) -> Pieces:
     ...     print(abs(near.integral() - 1) < 1e-3, near.value(0, arb(0)).mid().str(2, radius=False))
     True 1.1
     """
-    degree, bits = digits + SPARE, bits_of(digits, 64) + 2 * digits
+    degree, bits = digits + SPARE, precision(digits)
     with working(bits):
         ends = breaks(digits, bits)
         size, panels = degree + 1, len(ends) - 1

@@ -58,12 +58,12 @@ from flint import arb
 from symbolic.cycles.polygons import COSINE, centre_beyond_boundary, centre_far_inside
 from symbolic.expressions.text import kernel, load
 from symbolic.tables.table import alpha
-from verification.arithmetic.balls import balls, bits_of, working
+from verification.arithmetic.balls import balls, working
 from verification.arithmetic.iteration import Tick, silent
 from verification.proofs.corner.corner import ARC, BITS, WALL
 from verification.proofs.corner.return_map import Flights, Piece
 from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.slap_map.candidate import Judge, Pieces, candidate
+from verification.proofs.slap_map.candidate import Judge, Pieces, candidate, precision
 from verification.proofs.slap_map.transfer import Inverted, Variation, inverted, variation
 
 CELLS = 2048
@@ -121,7 +121,7 @@ def judged(near: Pieces, digits: int, inverse: Inverted, known: Variation | None
     the natural measure exists and is unique; the candidate has a positive mass; two digits were lost at most.
     """
     known = known or variation()
-    bits = bits_of(digits, 64) + 2 * digits
+    bits = precision(digits)
     with working(bits):
         near = near.grounded()
         judge = Judge(near, digits, bits)

@@ -122,6 +122,64 @@ def test_halves_of_a_box_are_cut_across_the_side_that_is_more_than_ten_times_the
     assert halves(((0.5, 1.0), (0.25, 0.0625))) == [((0.0, 0.5), (0.25, 0.0625)), ((1.0, 0.5), (0.25, 0.0625))]
     assert halves(((0.5, 0.5), (0.25, 0.0625))) == [((0.5, 0.5), (0.21875, 0.03125)), ((0.5, 0.5), (0.28125, 0.03125))]
     assert halves(((0.0, 5.0), (0.0, 0.5))) == [((0.0, 5.0), (-0.25, 0.25)), ((0.0, 5.0), (0.25, 0.25))]
+    assert halves(((0.0, 5.25), (0.0, 0.5))) == [((-2.625, 2.625), (0.0, 0.5)), ((2.625, 2.625), (0.0, 0.5))]
+
+
+def centres(monkeypatch, answer):
+    """The distances and the slope at a box of cosines and of shapes are `answer(c, shape)`; the boxes that are asked."""
+    asked = []
+    monkeypatch.setattr(exponent, "load", lambda *_: lambda c, shape: asked.append((c, shape)) or answer(c, shape))
+    return asked
+
+
+@pytest.mark.parametrize(
+    ("far", "k", "slope", "enough"),
+    [
+        (0.5, 0, 0, True),
+        (0, 0.5, 0, True),
+        (0, -0.5, 0, True),
+        (0, 0, -0.5, True),
+        (0, 0, 0, None),
+        (-1, 0, 0.5, None),
+        (arb(0.5, 0.5), arb(0.5, 0.5), arb(-0.5, 0.5), None),
+        (-1, arb(-0.5, 0.5), 1, None),
+        (-1, arb(0, 1), arb(0, 1), None),
+    ],
+)
+def test_one_zero_is_left_where_the_centre_is_far_inside_or_off_the_boundary_or_falls(
+    monkeypatch, far, k, slope, enough
+):
+    asked = centres(monkeypatch, lambda *_: [arb(far), arb(k), arb(slope)])
+    found = exponent.one_zero(budget=40)
+    assert found.proved is enough
+    assert found.boxes == (1 if enough else 41)
+    assert 1 <= len(asked) <= found.boxes  # those beyond one tenth are counted
+
+
+def test_all_cosines_and_all_shapes_up_to_one_tenth_are_asked(monkeypatch):
+    """In boxes that are short; those of shapes from one tenth on are left out, and each other one is asked once."""
+    asked = centres(monkeypatch, lambda c, shape: [arb(0), arb(shape.rad() < 0.01), arb(0)])
+    found = exponent.one_zero()
+    assert found.proved is True
+    short = [(c, shape) for c, shape in asked if shape.rad() < 0.01]
+    assert sum(float(c.rad() * shape.rad()) for c, shape in short) == pytest.approx(1.0 * 0.0625 * 7 / 8)
+    for c, shape in ((-1, 0), (1, 0), (-1, "0.1"), (1, "0.1"), (0.3, 0.05), (-0.7, "0.0999")):
+        assert any(box.contains(arb(c)) and high.contains(arb(shape)) for box, high in short)
+    assert all(shape.lower() < 0.1 for _, shape in asked)
+    assert exponent.one_zero(budget=found.boxes) == found
+    assert exponent.one_zero(budget=found.boxes - 1) == exponent.OneZero(None, found.boxes)
+
+
+@pytest.mark.parametrize(("shortest", "proved"), [(2.0**-27, True), (2.0**-30, True), (2.0**-31, None)])
+def test_boxes_are_halved_until_both_their_sides_are_too_short(monkeypatch, shortest, proved):
+    """About one place the answer is known only of a box whose cosines are within `shortest` of its middle."""
+
+    def answer(c, shape):
+        here = c.overlaps(arb(0.3)) and shape.overlaps(arb(0.05))
+        return [arb(0), arb(not here or c.rad() <= shortest * 1.0001), arb(0)]
+
+    centres(monkeypatch, answer)
+    assert exponent.one_zero(budget=2000).proved is proved
 
 
 def test_an_exponent_is_judged_from_a_candidate_and_two_inverses(monkeypatch):

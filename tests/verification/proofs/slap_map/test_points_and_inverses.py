@@ -78,6 +78,8 @@ def test_the_points_of_an_odd_map_are_told_with_their_mirror_images(monkeypatch)
     [
         lambda c, x: [(c, x, 1)],  # each point is fixed, and the slope 1
         lambda c, x: [(c, x * 2, 2), (c, x * 3, 3)],  # of two pieces no slope is told
+        lambda c, x: [(c, x * 2, 2), (1 - c, x, 3)],  # one of them returns
+        lambda c, x: [(c, arb(9), 2), (c, x * 3, 3)],
         lambda c, x: None,  # what is not enclosed
         lambda c, x: [(c, x * 2, arb("nan"))],
         lambda c, x: [(c, x * 2, arb(1, 1))],
@@ -111,6 +113,25 @@ def test_a_budget_of_boxes_that_ends_leaves_points_unknown(monkeypatch):
     assert periodic_points(1, budget=enough - 1) == PeriodicPoints(None, enough)
 
 
+@pytest.mark.parametrize(("shortest", "known"), [(2.0**-30, True), (2.0**-31, False)])
+def test_stretches_are_halved_until_they_are_too_short(monkeypatch, shortest, known):
+    """About the fixed point 1/4 the image is known only of a stretch that reaches no further than `shortest`."""
+    monkeypatch.setattr(exponent, "_end", float)
+
+    def image(component, x):
+        if component == ARC and x.overlaps(arb(0.25)) and x.rad() > shortest * 1.0001:
+            return None
+        return [(ARC, 3 * x - 0.5, 3) if component == ARC else (ARC, x, 3)]
+
+    slap(monkeypatch, image)
+    found = periodic_points(1)
+    assert (found.stretches is not None) is known
+    assert found.boxes < 200
+    if known:
+        ((_, low, high),) = found.stretches
+        assert low <= 0.25 <= high
+
+
 def test_a_sign_is_told_of_balls_on_one_side_of_0_and_an_end_lies_beyond():
     for ball, sign in ((arb(1, 0.5), 1), (arb(-1, 0.5), -1), (arb(0), 0), (arb(0, 1), 0), (arb("nan"), 0)):
         assert exponent._sign(ball) == sign
@@ -126,7 +147,7 @@ def test_halves_of_a_box_are_cut_across_the_side_that_is_more_than_ten_times_the
 
 
 def centres(monkeypatch, answer):
-    """The distances and the slope at a box of cosines and of shapes are `answer(c, shape)`; the boxes that are asked."""
+    """Distances and slope at a box of cosines and of shapes are `answer(c, shape)`; told are the boxes asked for."""
     asked = []
     monkeypatch.setattr(exponent, "load", lambda *_: lambda c, shape: asked.append((c, shape)) or answer(c, shape))
     return asked

@@ -58,7 +58,7 @@ from flint import arb
 from symbolic.cycles.polygons import COSINE, centre_beyond_boundary, centre_far_inside
 from symbolic.expressions.text import kernel, load
 from symbolic.tables.table import alpha
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import balls, between, working
 from verification.arithmetic.iteration import Tick, silent
 from verification.proofs.corner.corner import ARC, BITS, WALL
 from verification.proofs.corner.return_map import Flights, Piece
@@ -211,23 +211,24 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
         slap = Flights()
         found: list[tuple[int, float, float, int]] = []
         ends = {component: _end(slap.ends[component]) for component in (ARC, WALL)}
-        queue = [(part, end / 2, end / 2) if slap.odd else (part, 0.0, end) for part, end in ends.items()]
-        whole, boxes = sum(half for *_, half in queue), 0
+        queue = [(part, 0.0 if slap.odd else -end, end) for part, end in ends.items()]
+        whole, boxes = sum(high - low for _, low, high in queue), 0
         while queue:
-            component, middle, half = queue.pop()
+            component, low, high = queue.pop()
             boxes += 1
-            if boxes > budget or half < SMALLEST:
+            if boxes > budget or high - low < 2 * SMALLEST:
                 return PeriodicPoints(None, boxes)
-            box = arb(middle, half)
+            box = between(low, high)
             images = slap.iterated([Piece(component, box, arb(1), arb(0))], n)
             apart = images is not None and not any(p.component == component and p.theta.overlaps(box) for p in images)
-            sign = _sign(images[0].slope - 1) if images is not None and len(images) == 1 and half < 1e-2 else 0
+            sign = _sign(images[0].slope - 1) if images is not None and len(images) == 1 and high - low < 2e-2 else 0
             if sign and not apart:
-                found.append((component, middle - half, middle + half, sign))
+                found.append((component, low, high, sign))
             if apart or sign:
-                tick(half / whole)
+                tick((high - low) / whole)
                 continue
-            queue += [(component, middle - half / 2, half / 2), (component, middle + half / 2, half / 2)]
+            middle = (low + high) / 2  # rounded, but the same of either half: nothing is left out between them
+            queue += [(component, low, middle), (component, middle, high)]
         found += [(part, -high, -low, sign) for part, low, high, sign in found if slap.odd]
         return PeriodicPoints(_joined(sorted(found)), boxes)
 
@@ -245,7 +246,7 @@ def _joined(stretches: list[tuple[int, float, float, int]]) -> list[tuple[int, f
     """Touching stretches as one, where `(T0**n)' - 1` has one sign on both."""
     made: list[tuple[int, float, float, int]] = []
     for component, low, high, sign in stretches:
-        if made and (made[-1][0], made[-1][3]) == (component, sign) and low <= made[-1][2] + 1e-12:
+        if made and (made[-1][0], made[-1][3]) == (component, sign) and low <= made[-1][2]:
             made[-1] = component, made[-1][1], max(high, made[-1][2]), sign
         else:
             made.append((component, low, high, sign))

@@ -1,5 +1,6 @@
 """Periodic points of slap maps that are given; Ulam's matrix and the defect of an inverse, by hand."""
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -104,6 +105,33 @@ def test_points_beside_each_other_are_two_where_the_slope_changes_its_side_of_1(
     assert [component for component, *_ in found] == [ARC, ARC]
     assert found[0][2] == pytest.approx(0, abs=1e-9)
     assert found[1][1] == pytest.approx(0, abs=1e-9)
+
+
+def test_stretches_are_one_where_they_touch_on_one_component_with_one_sign():
+    for second, joined in (
+        ((ARC, 0.5, 0.75, 1), [(ARC, 0.25, 0.75)]),
+        ((ARC, 0.375, 0.5, 1), [(ARC, 0.25, 0.5)]),
+        ((ARC, 0.375, 0.4375, 1), [(ARC, 0.25, 0.5)]),  # within
+        ((ARC, 0.5 + 2.0**-50, 0.75, 1), None),
+        ((ARC, 0.5, 0.75, -1), None),
+        ((WALL, 0.5, 0.75, 1), None),
+    ):
+        first = (ARC, 0.25, 0.5, 1)
+        assert exponent._joined([first, second]) == (joined or [first[:3], second[:3]])
+    assert exponent._joined([]) == []
+
+
+def test_the_stretches_of_a_component_leave_nothing_out_between_them(monkeypatch):
+    """Those that touch begin where the one before ends, whatever floats do to thirds of halves."""
+    slap(monkeypatch, lambda c, x: [(c, x, 3 if x.mid() > -0.1 else 0.5)] if x.rad() < 0.004 else None, (1 / 3, 0.7))
+    ends = {part: exponent._end(arb(end)) for part, end in ((ARC, 1 / 3), (WALL, 0.7))}
+    monkeypatch.setattr(exponent, "_joined", lambda stretches: stretches)
+    found = periodic_points(1).stretches
+    for part, end in ends.items():
+        own = [(low, high) for component, low, high, _ in found if component == part]
+        assert own[0][0] == -end
+        assert own[-1][1] == end
+        assert all(a[1] == b[0] for a, b in pairwise(own))
 
 
 def test_a_budget_of_boxes_that_ends_leaves_points_unknown(monkeypatch):

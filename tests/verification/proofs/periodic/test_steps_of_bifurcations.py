@@ -9,6 +9,7 @@ import pytest
 from flint import arb
 from sympy import Interval, Rational, oo
 
+from symbolic.cycles.normal_forms import composed
 from symbolic.tables import cuspless, egg, ellipse
 from verification.arithmetic.balls import balls, working
 from verification.cycles.newton import refined
@@ -21,6 +22,7 @@ from verification.proofs.periodic.bifurcation import (
     OverInterval,
     Proof,
     Stability,
+    birkhoff_normal_form,
     over_interval,
     proved,
     twist,
@@ -360,3 +362,33 @@ def test_the_twist_of_the_axis_of_an_ellipse_is_the_same_begun_at_either_end():
         assert all(each.drift.contains(0) and each.drift.rad() < 1e-20 for each in made)
         assert abs(made[0].twist - made[1].twist) < 1e-20
         assert not made[0].twist.contains(0)
+
+
+def cubed(k):
+    """`p - k*x**3`, and no other terms: an area is kept."""
+    return {(1, 0): arb(1)}, {(0, 1): arb(1), (3, 0): arb(-k)}
+
+
+def squared(k):
+    """`p - k*x**2`: the quadratic map of [Henon1969] once it is turned."""
+    return {(1, 0): arb(1)}, {(0, 1): arb(1), (2, 0): arb(-k)}
+
+
+@pytest.mark.parametrize("angle", [0.75, -0.75, 1.25, 2.5, -2.75])
+@pytest.mark.parametrize("linear", [(1.0, 0.0, 0.0), (2.0, 0.5, 0.0), (0.5, -1.5, 0.25)])
+@pytest.mark.parametrize("k", [1.0, -2.0, 0.5])
+def test_the_twist_of_a_turned_power_is_known_in_any_coordinates(angle, linear, k):
+    """Of a cubed one `3*k/8`, of a squared one `-(3*cot(w/2) + cot(3*w/2))*k**2/16`: worked out by hand."""
+    scale, shear, back = linear
+    c, s = math.cos(angle), math.sin(angle)
+    real = lambda *rows: tuple({(1, 0): arb(a), (0, 1): arb(b)} for a, b in rows)  # noqa: E731
+    turn = real((c, s), (-s, c))
+    there = composed([real((scale, 0), (0, 1 / scale)), real((1, 0), (shear, 1)), real((1, back), (0, 1))])
+    again = composed([real((1, -back), (0, 1)), real((1, 0), (-shear, 1)), real((1 / scale, 0), (0, scale))])
+    quadratic = -(k**2) / 16 * (3 / math.tan(angle / 2) + 1 / math.tan(3 * angle / 2))
+    with working(80):
+        for power, wanted in ((cubed, 3 * k / 8), (squared, quadratic)):
+            found = birkhoff_normal_form(composed([again, power(k), turn, there]))
+            assert abs(found.trace - 2 * c) < 1e-12
+            assert float(found.twist) == pytest.approx(wanted, rel=1e-12)
+            assert abs(found.drift) < 1e-12

@@ -254,15 +254,14 @@ class Judge:
 
     def mean(self) -> arb:
         """The integral of `log F'` times the function."""
-        total = sum((self._integral(low, high) for low, high in self.stretches[:-1]), arb(0))
-        low, high = self.stretches[-1]
+        *inner, (low, high) = self.stretches
         rate = self.branches(-low)[1]  # grows off the cusp, and so does -rate*log(rate) below 1/e
         if not rate * 3 < 1:
             raise ArithmeticError(f"density: the tail from {low} on is too wide to be bounded")
         launches = self.branches(-low)[0].union(self.branches(-high)[0])
         values = sum((abs(self.pieces.value(k, launches)) for k in self._met(BELOW, low, high)), arb(0))
-        rest: arb = -rate * rate.log() * values * (high - low) * arb(0, 1)
-        return total + rest
+        rest = rate * rate.log() * values * (high - low) * arb(0, 1)
+        return sum((self._integral(*ends) for ends in inner), rest)
 
     def _longest(self, low: arb) -> float:
         """How long a stretch from `low` on should be, for its series to converge fast: a matter of precision only."""
@@ -286,10 +285,10 @@ class Judge:
     def _sides(self, low: arb, high: arb) -> tuple[dict[int, range], bool]:
         """The summands of the operator that are there, with the pieces that they meet; is it one piece for each?"""
         quarter = arb.pi() / 4
-        sides = (BELOW,) if low > quarter else (BELOW, ABOVE)
-        met = {side: self._met(side, low, high) for side in sides}
+        beyond = low > quarter
+        met = {side: self._met(side, low, high) for side in ((BELOW,) if beyond else (BELOW, ABOVE))}
         single = all(len(pieces) == 1 for pieces in met.values())
-        return met, single and bool(low > quarter or high < quarter)
+        return met, single and bool(beyond or high < quarter)
 
     def _part(self, side: int, piece: int) -> Function:
         """A summand of the operator with the polynomial of a piece, or the polynomial itself."""
@@ -337,7 +336,6 @@ class Judge:
 def _parted(low: arb, high: arb, longest: Callable[[arb], float]) -> Iterator[tuple[arb, arb]]:
     """A stretch in parts no longer than is said of their lower ends."""
     while low < high:
-        step = (low + longest(low)).mid()
-        end = step if step < high else high
+        end = min((low + longest(low)).mid(), high)
         yield low, end
         low = end

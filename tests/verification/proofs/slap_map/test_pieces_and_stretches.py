@@ -2,6 +2,7 @@
 
 from functools import cache
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -159,6 +160,47 @@ def test_on_each_stretch_the_residual_and_its_slope_and_the_logarithm_are_within
                 assert abs(integral.mid()) < 1e-6 * length
     assert singles > 20
     assert close > 0.9 * singles
+
+
+def test_where_pieces_change_the_parts_of_all_that_are_met_are_bounded_one_by_one():
+    """Such stretches are so short that bounds are values at a point: of the function, and of each summand."""
+    own, seen = judge(), 0
+    with working(BITS), taylor(2):
+        for low, high in own.stretches[:-1]:
+            met, single = own._sides(low, high)
+            if single:
+                continue
+            seen += 1
+            at = arb_series([(low + high) / 2, 1])
+            parts = [own._part(OWN, own._own(low, high))(at)]
+            parts += [own._part(side, k)(at) for side, held in met.items() for k in held]
+            for bound, k in zip(own._bounds(low, high), (0, 1), strict=True):
+                assert float(bound) == pytest.approx(float(sum(abs(part[k]) for part in parts)), rel=1e-9)
+            logs = [own._logarithmic(side, k)(at)[0] for side, held in met.items() for k in held]
+            integral = own._integral(low, high)
+            assert integral.contains(0)
+            assert float(integral.rad() / (high - low)) == pytest.approx(float(sum(map(abs, logs))), rel=1e-6)
+    assert seen > 4
+
+
+@pytest.mark.parametrize(("rate", "told"), [(0.25, True), (0.3, True), (0.34, False), (0.5, False), (0.9, False)])
+def test_the_tail_of_a_mean_is_bounded_where_the_rate_is_below_one_third(rate, told):
+    """By hand: the largest `-rate*log(rate)` times what two pieces may be between both launching points."""
+    launched = {-2.0: (arb(0.75), arb(rate)), -3.0: (arb(0.25), arb(0.125))}
+    own = SimpleNamespace(
+        stretches=[(arb(0), arb(1)), (arb(1), arb(2)), (arb(2), arb(3))],
+        branches=lambda landing: launched[float(landing)],
+        pieces=SimpleNamespace(value=lambda k, launch: launch * [1, -2][k]),
+        _met=lambda side, low, high: range(2) if (side, low, high) == (BELOW, 2, 3) else None,
+        _integral=lambda low, high: high + 4,
+    )
+    if not told:
+        with pytest.raises(ArithmeticError, match="too wide to be bounded"):
+            Judge.mean(own)
+        return
+    found = Judge.mean(own)
+    assert found.contains(11)
+    assert float(found.rad()) == pytest.approx(-rate * np.log(rate) * 0.75 * 3, rel=1e-6)
 
 
 def test_launching_points_meet_the_pieces_that_they_lie_in():

@@ -219,10 +219,7 @@ class EnclosedMap:
 
         middle = self._polished(flight, guess.theta)
         value, slope = flight(middle)
-        radius = self._reach(value / slope, middle)
-        if not radius.is_finite():  # nor is it where the slope may be 0
-            return None
-        box = arb(middle, radius.upper())
+        box = arb(middle, self._reach(value / slope, middle).upper())  # without end where the slope may be 0
         newton = middle - value / flight(box)[1]
         low, high = self.ends[guess.component]
         if not box.contains_interior(newton) or not (len(self.ends) == 1 or low < newton < high):
@@ -317,10 +314,9 @@ def _attempt(
 
 
 def _turns(map: PinballMap, start: Start) -> int:
-    """The whole turns by which a start on a closed curve lies beyond the range of its parameter."""
+    """The whole turns by which a start on a closed curve lies beyond the range of its parameter: 0 up to its ends."""
     low, high = map.states.ends[start[2]]
-    theta = float(start[0])
-    return 0 if len(map.states.ends) > 1 or low <= theta <= high else round((theta - (low + high) / 2) / (high - low))
+    return 0 if len(map.states.ends) > 1 else round((float(start[0]) - (low + high) / 2) / (high - low))
 
 
 def _text(number: arb, digits: int) -> str:

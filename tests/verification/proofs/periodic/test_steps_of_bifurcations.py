@@ -279,6 +279,15 @@ def test_a_doubling_curve_is_asked_piece_by_piece_until_all_of_it_is_covered(mon
         assert bifurcation.doubling_curve().supercritical is None
 
 
+@pytest.mark.parametrize(("shortest", "proved"), [(2.0**-40, True), (2.0**-41, None)])
+def test_pieces_of_a_curve_are_halved_until_they_are_too_short(monkeypatch, shortest, proved):
+    """About one contraction only a piece is proved that reaches no further than `shortest`."""
+    short = lambda K, lam, alpha: not lam.overlaps(arb(0.3)) or bool(lam.rad() <= shortest * 1.0001)  # noqa: E731
+    monkeypatch.setattr(bifurcation, "_supercritical", short)
+    monkeypatch.setattr(bifurcation, "load", lambda kernel, words: lambda lam: [lam])
+    assert bifurcation.doubling_curve(budget=400).supercritical is proved
+
+
 @pytest.mark.parametrize("ends", [(0.25, 0.75), (0.9, 0.5), (0.0, 0.001)])
 @pytest.mark.parametrize("hole", [None, 0.3125, 0.6])
 @pytest.mark.parametrize("wanted", [Stability.ATTRACTING, Stability.SADDLE])

@@ -124,12 +124,12 @@ def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
 
     Its coefficients may be polynomials in shape parameters, which have `ranges`.
     """
-    waves = coefficients(bend)
-    if waves is None or len(waves) < 2 or not all(isinstance(r, Interval) for r in ranges.values()):
+    waves, c = coefficients(bend) or {}, theta  # which then stands for the cosine
+    step = gcd(*waves)  # 0 where there is none
+    if not (step and all(isinstance(r, Interval) for r in ranges.values())):
         return False
     if not all(map(_rational, waves.values())):  # so those of k and -k, which are conjugate, are equal
         return False
-    step, c = gcd(*waves), theta  # which now stands for the cosine
     polynomial = sum((w * (2 if k else 1) * chebyshevt(k // step, c) for k, w in waves.items() if k >= 0), S.Zero)
     used = {p: r for p, r in ranges.items() if p in polynomial.free_symbols}
     return bool(nonnegative(polynomial, {c: Interval(-1, 1)} | used))

@@ -329,7 +329,8 @@ def over_interval(
     step, at = (end - lam) / 16, lam
     while lam != end:
         there = lam + step if abs(step) < abs(end - lam) else end
-        step, spent = there - lam, spent + 1
+        step = there - lam
+        spent += 1
         if spent > budget or abs(step) < 1e-9:
             return OverInterval(False, lam, spent)
         middle = lam + step / 2
@@ -357,7 +358,8 @@ def _proved(
     table: Table, components: tuple[int, ...], theta: list[float], middle: float, half: float, radii: list[float]
 ) -> Stability:
     with working(BITS_OF_INTERVAL):
-        wide = Problem(table, components, lam=arb(middle, half + ROUNDING))
+        reach = arb(0, half + ROUNDING)
+        wide = Problem(table, components, lam=arb(middle) + reach)
         thin = Problem(table, components, lam=arb(middle))
         centre = [arb(x) for x in theta]
         over = krawczyk(wide, centre, radii, BITS_OF_INTERVAL)
@@ -370,7 +372,7 @@ def _proved(
         slopes = _slopes(wide, over.zero)
         if slopes is None:
             return Stability.UNKNOWN
-        return stability(*(x + d * arb(0, half + ROUNDING) for x, d in zip(here, slopes, strict=True)))
+        return stability(*(x + d * reach for x, d in zip(here, slopes, strict=True)))
 
 
 def _slopes(problem: Problem, zero: list[arb]) -> tuple[arb, arb] | None:

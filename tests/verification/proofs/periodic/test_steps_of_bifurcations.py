@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import pairwise, product
+from operator import gt, lt
 from types import SimpleNamespace
 
 import pytest
@@ -27,6 +28,7 @@ from verification.proofs.periodic.bifurcation import (
     birkhoff_normal_form,
     over_interval,
     proved,
+    stability,
     twist,
 )
 from verification.proofs.periodic.interval_newton import Enclosure, Status, slope_bits
@@ -383,6 +385,25 @@ def test_a_step_along_contractions_needs_each_of_its_proofs(monkeypatch, fails):
         assert determinant.contains(arb(0.25) - arb(0.625))
         assert trace.rad() < 0.376
         assert determinant.rad() < 0.626
+
+
+REAL = [(0.5, -0.25), (-0.5, -0.5), (0.875, -0.875), (0.75, 0.875), (0, 0), (2, 0.5), (-2, 0.5), (-1.25, -0.75), (3, 0),
+        (2, 3), (-2, 3), (-2, -3), (1, 0.5), (-1, 0.5), (1, 1), (1, -1), (-1, -1), (1, 2), (-1, -2)]  # fmt: skip
+CIRCLES = [(0, 0.25), (1, 0.75), (-1.5, 0.875), (0, 1), (1, 1), (-1.5, 1), (0, 1.5), (1, 1.25), (-2, 4)]
+
+
+def test_a_cycle_attracts_or_is_a_saddle_by_where_its_multipliers_lie():
+    """Two real ones, by hand; or two that are conjugate, of which the determinant is the square of the size."""
+    for one, other in REAL:
+        inner, outer = (sum(compare(abs(m), 1) for m in (one, other)) for compare in (lt, gt))
+        wanted = {(2, 0): Stability.ATTRACTING, (1, 1): Stability.SADDLE}.get((inner, outer), Stability.UNKNOWN)
+        assert stability(arb(one + other), arb(one * other)) is wanted
+        assert stability(arb(one + other, 9), arb(one * other)) is Stability.UNKNOWN
+        assert stability(arb(one + other), arb(one * other, 9)) is Stability.UNKNOWN
+    for trace, determinant in CIRCLES:
+        assert trace**2 < 4 * determinant
+        wanted = Stability.ATTRACTING if determinant < 1 else Stability.UNKNOWN
+        assert stability(arb(trace), arb(determinant)) is wanted
 
 
 def test_slopes_along_a_cycle_are_those_of_neighbouring_contractions():

@@ -1,6 +1,7 @@
 """Convexity, joins, turns and chords: each step by itself, with what it rests on made to fail alone."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise, product
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 from flint import arb
 from sympy import Interval, Rational, S, Symbol, Union, cos, exp, oo, pi, sin, sqrt
 
-from symbolic.tables import egg, polar, sinai, square
+from symbolic.tables import cuspless, egg, polar, sinai, square
 from symbolic.tables.table import Component, Shape, Table, theta
 from verification.arithmetic.balls import working
 from verification.maps import first_hit
@@ -238,6 +239,9 @@ def test_tangents_at_the_joins_of_a_polygon_are_those_of_its_sides():
     assert found == [(4, -12), (4, 2), (4, -4)]
     half = Component("half", (cos(theta), sin(theta)), S(0), pi)
     assert list(first_hit.tangents(Table("half", (half,)))) == [(0, -1)]
+    whole = replace(half, end=2 * pi)
+    assert list(first_hit.tangents(Table("whole", (whole,)))) == []
+    assert list(first_hit.tangents(Table("both", (whole, half)))) == [(0, 1), (0, -1)]
 
 
 def test_a_whole_component_has_a_whole_turn_and_the_same_formula_after_it():
@@ -266,6 +270,11 @@ ODD = polar(1 + cos(theta / 2) / 4)  # of one component, which a whole turn chan
         (square(), 1, "1 +/- 0.1", True, None),
         (square(), 1, "0 +/- 0.1", True, None),
         (square(), 1, "0.5 +/- 0.5", True, None),
+        (square(), 1, "0", True, None),
+        (square(), 1, "1", True, None),
+        (cuspless, 1, "0.1", True, True),
+        (cuspless, 1, "2", True, False),
+        (cuspless, 0, "-3", True, False),
         (square(), 1, "1.2 +/- 0.1", True, False),
         (square(), 1, "-0.2 +/- 0.1", True, False),
         (ODD, 0, "1", True, True),
@@ -285,6 +294,19 @@ def test_a_bounce_is_inside_its_component_off_it_or_not_known(table, part, value
     if len(table.components) > 1:  # and one that is inside changes nothing, before or after
         assert inside(table, (0, part), [arb("0.5"), arb(value)], (), turns) is told
         assert inside(table, (part, 0), [arb(value), arb("0.5")], (), turns) is told
+
+
+def test_a_law_is_the_same_a_turn_further_on_where_nothing_else_is_said():
+    assert inside(egg(3).at(alpha="0.08"), (0,), [arb(4)]) is True
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 6])
+def test_a_cycle_is_minimal_where_its_word_is_no_shorter_one_again(n):
+    """Of bounces on two sides of a square, at the middle of each: by all words."""
+    table = square()
+    for word in product((0, 1), repeat=n):
+        again = any(word == word[:k] * (n // k) for k in range(1, n) if n % k == 0)
+        assert first_hit.minimal(table, word, [arb(0.5)] * n) is (None if again else True)
 
 
 def test_bounces_are_apart_on_different_components_or_where_their_gap_is_no_whole_turn():

@@ -5,6 +5,7 @@ import random
 from fractions import Fraction
 from itertools import pairwise
 
+import pytest
 from flint import arb
 
 from symbolic.tables import cuspless, egg, sinai
@@ -125,3 +126,94 @@ def test_a_chord_that_leaves_outwards_or_arrives_from_outside_is_not_asked_about
             boundary = Boundary(places, [(arb(-1), arb(1))] * 2)
             with working(96):
                 assert first_hit.free(boundary, (0, arb(0)), (1, arb(0))) is (first < 0 < last)
+
+
+def test_a_chord_is_given_up_where_too_many_pieces_or_too_short_ones_are_asked(monkeypatch):
+    walls = [lambda t: (arb(0), t, arb(0), arb(-1)), lambda t: (arb(1), t, arb(0), arb(1))]
+    boundary, chord = Boundary(walls, [(arb(0), arb(1))] * 2), ((0, arb(0.25)), (1, arb(0.25)))
+    monkeypatch.setattr(first_hit, "_passes", lambda place, piece, *_: bool(piece.rad() < 2.0**-4 * 1.0001))
+    with working(96):
+        for most, free in ((30, True), (29, False)):  # 1 + 2 + 4 + 8 on either wall
+            monkeypatch.setattr(first_hit, "PIECES_OF_CHORD", most)
+            assert first_hit.free(boundary, *chord) is free
+        for shortest, free in ((2.0**-5, True), (2.0**-4, True), (2.0**-4 * 1.5, False)):
+            monkeypatch.setattr(first_hit, "PIECES_OF_CHORD", 4000)
+            monkeypatch.setattr(first_hit, "SMALLEST", shortest)
+            assert first_hit.free(boundary, *chord) is free
+
+
+@pytest.mark.parametrize("size", [1, 8])
+def test_a_bounce_is_led_to_a_piece_through_the_seam_where_that_is_no_longer(size):
+    """On a closed component, in eighths of its length; on one with two ends there is no seam."""
+    boundary = Boundary([lambda t: (t - t, t - t), lambda t: (t, t)], [(arb(0), arb(size))] * 2)
+    assert boundary.closed == (True, False)
+    piece_of = lambda k: arb(k, 0.25) * size / 8  # noqa: E731
+    ends = lambda ball: tuple(float(x) * 8 / size for x in (ball.lower(), ball.upper()))  # noqa: E731
+    for at, piece, ways in (
+        (1, 4, [(1, 4.25)]),
+        (4, 1, [(0.75, 4)]),
+        (3, 3, [(2.75, 3.25)]),
+        (1, 5, [(4.75, 8), (0, 1)]),  # as long on either way
+        (5, 1, [(0, 1.25), (5, 8)]),
+        (1, 7, [(6.75, 8), (0, 1)]),
+        (7, 1, [(0, 1.25), (7, 8)]),
+    ):
+        found = first_hit._between(boundary, 0, arb(at) * size / 8, piece_of(piece))
+        assert [ends(way) for way in found] == [pytest.approx(way, abs=1e-6) for way in ways]
+        (found,) = first_hit._between(boundary, 1, arb(at) * size / 8, piece_of(piece))
+        assert ends(found) == pytest.approx((min(at, piece - 0.25), max(at, piece + 0.25)))
+
+
+def passes(place, near=(), d=(2, 0), piece=(0, 0.5)):
+    """Of a chord from (1, 1) in a direction."""
+    return first_hit._passes(place, arb(*piece), near, (arb(1), arb(1)), tuple(map(arb, d)))
+
+
+@pytest.mark.parametrize("d", [(2, 0), (0, -2), (1, 2)])
+def test_a_piece_passes_a_chord_that_it_is_off_or_not_between_the_ends_of(d):
+    """`along` it and `across`, in shares of the chord: where nothing is known of velocities these alone decide."""
+    for along, across, off in (
+        (0.5, 0, False), (0.125, 0, False), (0, 0, False), (1, 0, False),
+        (-0.25, 0, True), (1.25, 0, True), (0.5, 0.25, True), (0.5, -0.25, True), (0, 2.0**-40, True),
+        (arb(-1, 0.5), arb(0, 0.1), True), (arb(2, 0.5), arb(0, 0.1), True),
+        (arb(-1, 2), 0, False), (0.5, arb(0, 0.1), False), (0.5, arb(0.5, 0.25), True),
+    ):  # fmt: skip
+        x, y = (1 + along * a + across * b for a, b in zip(d, (-d[1], d[0]), strict=True))
+        at = arb(x), arb(y), arb("nan"), arb("nan")
+        assert passes(lambda t, at=at: at, d=d) is off
+
+
+def test_a_piece_next_to_a_bounce_crosses_the_chord_once_where_a_slope_keeps_its_sign():
+    """On the line of the chord, with the velocity `(2, t)`: the slope along `(1, 1)` is `t - 2`."""
+    on_line = lambda t: (arb(1.5), arb(1.5), arb(2), t)  # noqa: E731
+    for ways, once in (
+        ([[3]], True), ([[1]], True), ([[2]], False), ([[3, 4]], True), ([[1, -1]], True), ([[1, 3]], False),
+        ([[3, 1]], False), ([[2, 3]], False), ([[1, 2]], False), ([[2.5, 1.5]], False), ([[1.5, 2.5]], False),
+        ([[2.5, 2.25]], True), ([[1.5, 1.75]], True), ([[1, 3], [1]], True), ([[1], [1, 3]], True), ([], False),
+    ):  # fmt: skip
+        near = [[arb(t) for t in way] for way in ways]
+        assert passes(on_line, near, (1, 1)) is once
+    assert passes(on_line, [[arb(2, 0.5)]], (1, 1)) is False
+
+
+@pytest.mark.parametrize(
+    ("d", "v", "passed"),
+    [
+        ((2, 0), (0, 0), True),
+        ((2, 0), (1, 0.25), True),
+        ((2, 0), (1, 0.625), False),  # as far as 5/16 up to where the piece ends
+        ((2, 0), (1, -0.625), False),
+        ((1, 1), (2, 2), True),
+        ((1, 1), (2, 2.25), True),
+        ((1, 1), (-2, 2), False),
+        ((1, 1), (2, 0.5), False),
+    ],
+)
+def test_a_piece_of_which_only_the_middle_is_sharp_passes_where_its_velocity_leads_not_across(d, v, passed):
+    """A quarter above the chord at its middle; in a ball the place is anywhere about the chord."""
+
+    def place(t):
+        wide = t - t if t.rad() > 0 else arb(0)
+        return arb(1.5) + wide, arb(1.25 if d == (2, 0) else 1.75) + wide, arb(v[0]), arb(v[1])
+
+    assert passes(place, d=d) is passed

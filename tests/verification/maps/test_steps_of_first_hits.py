@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise, product
 from types import SimpleNamespace
 
@@ -410,6 +411,23 @@ def test_the_corners_of_a_polygon_turn_to_the_left_where_they_turn_far(monkeypat
     places = [lambda t, v=v: (arb(0), arb(0), arb(v[0]), arb(v[1])) for v in directions]
     monkeypatch.setattr(first_hit, "_boundary", lambda *_: Boundary(places, [(arb(0), arb(1))] * len(places)))
     assert first_hit._turns(None, ()) is once
+
+
+def test_an_arc_is_halved_until_no_tangent_is_as_far_as_a_right_angle_from_the_first(monkeypatch):
+    """Of sides of a square, on which nothing is known of a whole piece, or that it is at a right angle."""
+    for inner, once in (((0, 1), None), (("nan", "nan"), None), ((0.25, 1), True), (("0.5 +/- 0.5", 0), None)):
+        asked = []
+
+        def place(t, way, inner=inner, asked=asked):
+            u, v = (arb(1), arb(0)) if t.is_exact() else map(arb, inner)
+            asked.append(t)
+            return arb(0), arb(0), u * way[0] - v * way[1], u * way[1] + v * way[0]
+
+        places = [partial(place, way=way) for way in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+        monkeypatch.setattr(first_hit, "_boundary", lambda *_, p=places: Boundary(p, [(arb(0), arb(1))] * 4))
+        monkeypatch.setattr(first_hit, "PIECES", 5)
+        assert first_hit._turns(None, ()) is once
+        assert sum(not t.is_exact() for t in asked) == (4 if once else 6)
 
 
 def test_the_angle_from_one_velocity_to_another_is_left_of_it_or_a_small_one_to_the_right():

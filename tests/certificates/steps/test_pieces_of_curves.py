@@ -218,6 +218,19 @@ CROSSED = {
     ],
     "a vertex that is met a second time": [("theta", "0"), ("1 - theta", "theta"), ("0", "1 - theta"),
                                            ("theta*(1 - theta)", "-theta*(1 - theta)")],
+    "a side that turns back and is crossed early by the one after it": [
+        ("15*theta - 14*theta**2", "-theta**4"), ("1 + 4*theta", "4*theta - 1"), ("5 - 5*theta", "3 - 3*theta")
+    ],
+    "a side that is crossed late by the one before it": [
+        ("5*theta", "3*theta"), ("5 - 4*theta", "3 - 4*theta"),
+        ("15*(1 - theta) - 14*(1 - theta)**2", "-(1 - theta)**4"),
+    ],
+    "a side that comes back across the one before it": [
+        ("3*theta", "0"), ("3 - 4*theta", "2*theta**2 - theta"), ("theta - 1", "1 - theta")
+    ],
+    "a side across which the one after it began": [
+        ("-theta", "theta"), ("4*theta - 1", "2*(1 - theta)**2 - 1 + theta"), ("3 - 3*theta", "0")
+    ],
     "no movement": [("0*theta", "0"), ("0*theta", "0")],
 }  # fmt: skip
 

@@ -283,8 +283,7 @@ def _supercritical(K: int, lam: arb, alpha: arb) -> bool:
         bend = at.normal_form(balls(BITS)).bend
     except ZeroDivisionError:
         return False
-    chain = at.plain
-    return bool(math.prod((bend, *chain.upper, chain.diagonal[0])) > 0)  # turn has the other sign than u0*u1*d0
+    return bool(math.prod((bend, *at.plain.upper, at.plain.diagonal[0])) > 0)  # turn has the other sign than u0*u1*d0
 
 
 BITS_OF_INTERVAL = 96
@@ -364,9 +363,8 @@ def _proved(
         centre = [arb(x) for x in theta]
         over = krawczyk(wide, centre, radii, BITS_OF_INTERVAL)
         at = krawczyk(thin, centre, radii, BITS_OF_INTERVAL)
-        if not over.status is at.status is Status.UNIQUE or convex(table) is not True:
-            return Stability.UNKNOWN
-        if not inside(table, components, over.zero) or not minimal(table, components, over.zero):
+        sound = over.status is at.status is Status.UNIQUE and convex(table) is True
+        if not (sound and inside(table, components, over.zero) and minimal(table, components, over.zero)):
             return Stability.UNKNOWN
         here = trace_and_determinant(Linearised(thin, balls(BITS_OF_INTERVAL), at.zero).terms.rows)
         slopes = _slopes(wide, over.zero)

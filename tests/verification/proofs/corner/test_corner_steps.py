@@ -10,7 +10,7 @@ from sympy import Rational
 from symbolic.cycles.thresholds import lambda_c
 from verification.arithmetic.balls import FLOAT64, real_ball, working
 from verification.proofs.corner import corner, corner_orbit, evidence, half_return
-from verification.proofs.corner.border_collision import Expansion, Piece, _to_border, exactly_convex, fixed_point
+from verification.proofs.corner.border_collision import Expansion, Piece, _to_border, fixed_point
 from verification.proofs.corner.corner import ARC, WALL, Bounce, Corner, constant
 from verification.proofs.corner.corner_orbit import CornerClaim, corner_proved, doubled_branch
 from verification.proofs.corner.half_return import Step, TrappingRegion, _images
@@ -253,7 +253,6 @@ PLACES = {ARC: (arb(0.2), arb(-0.5)), WALL: (arb(5), arb(10))}
         ({}, {WALL: (arb(0.2), arb(-0.5))}, None),  # on the other side
         ({}, {ARC: (arb(0.2), arb(0, 0.1))}, None),
         ({}, {ARC: (arb(0.2), arb(0))}, None),  # at the corner
-        ({}, {WALL: (arb(1), arb(0))}, None),
     ],
 )
 def test_two_saddles_are_told_where_each_lies_on_its_side_within_the_polygon(monkeypatch, family, places, answer):
@@ -262,14 +261,6 @@ def test_two_saddles_are_told_where_each_lies_on_its_side_within_the_polygon(mon
     monkeypatch.setattr(evidence, "pieces", lambda *_: made)
     monkeypatch.setattr(evidence, "fixed_point", lambda piece: at[id(piece)])
     assert evidence.saddles() == (PLACES if answer else None)
-
-
-def test_saddles_are_sought_in_a_convex_polygon_across_the_border():
-    """Brouwer's theorem wants a convex one, counterclockwise, and the mean value theorem starts on `v = 0`."""
-    region = evidence.REGION
-    k = region.index(min(region))
-    assert exactly_convex(region) == region[k:] + region[:k]
-    assert min(v for _, v in region) < 0 < max(v for _, v in region)
 
 
 def test_the_one_sided_derivatives_are_difference_quotients_of_the_bounces_that_the_rules_say():

@@ -9,7 +9,7 @@ from flint import arb
 
 from verification.arithmetic.balls import cuts, working
 from verification.proofs.corner import evidence, half_return
-from verification.proofs.corner.border_collision import Expansion, Kind, Piece
+from verification.proofs.corner.border_collision import Expansion, Kind, Piece, exactly_convex
 from verification.proofs.corner.corner import ARC, WALL, Quantity
 from verification.proofs.corner.half_return import LONGEST_E, LONGEST_U, LONGEST_V, TINY
 
@@ -254,3 +254,11 @@ def test_exit_angles_count_with_the_outer_ends_of_their_balls(monkeypatch):
     monkeypatch.setattr(evidence, "angle", lambda here, there: (arb(1, 0.5), arb(0), arb(1)))
     low, high = evidence._angles([(0.0, -1.0), (0.0, 1.0), (-2.0, 0.0)])
     assert (low, high) == pytest.approx((-1.5, 0.0), abs=1e-7)  # the second is -1/2 + 2/4
+
+
+def test_saddles_are_sought_in_a_convex_polygon_across_the_border():
+    """Brouwer's theorem wants a convex one, counterclockwise, and the mean value theorem starts on `v = 0`."""
+    region = evidence.REGION
+    k = region.index(min(region))
+    assert exactly_convex(region) == region[k:] + region[:k]
+    assert min(v for _, v in region) < 0 < max(v for _, v in region)

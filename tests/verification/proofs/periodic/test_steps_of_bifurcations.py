@@ -3,16 +3,13 @@
 import math
 from dataclasses import replace
 from itertools import pairwise, product
-from operator import gt, lt
 from types import SimpleNamespace
 
 import pytest
 from flint import arb
-from sympy import Interval, Rational, S, cos, oo, pi, sin
+from sympy import Interval, Rational, oo
 
-from symbolic.cycles.normal_forms import composed
 from symbolic.tables import cuspless, egg, ellipse
-from symbolic.tables.table import Component, Table, theta
 from verification.arithmetic.balls import balls, working
 from verification.cycles.newton import refined
 from verification.cycles.problem import Linearised, NormalForm, Problem
@@ -24,11 +21,8 @@ from verification.proofs.periodic.bifurcation import (
     OverInterval,
     Proof,
     Stability,
-    Twist,
-    birkhoff_normal_form,
     over_interval,
     proved,
-    stability,
     twist,
 )
 from verification.proofs.periodic.interval_newton import Enclosure, Status, slope_bits
@@ -137,35 +131,6 @@ def test_of_a_box_without_a_proved_zero_nothing_else_is_told(monkeypatch, asked,
     assert (found.checks.pop("exists"), found.checks.pop("unique")) == (exists, exists)
     assert set(found.checks.values()) == {None}
     assert not {"_admissible", "minimal", "_form"} & set(asked)
-
-
-UNKNOWN = [arb(0), arb(0, 1), arb(0.5, 0.75), arb("nan"), arb("inf"), arb(0, "inf")]
-
-
-def test_numbers_of_a_normal_form_are_told_apart_from_0_and_its_multiplier_from_the_circle():
-    items = ("simple_multiplier", "transversal", "nondegenerate")
-    good = {"turn": arb(1), "speed": arb(-1), "bend": arb(-0.25, 0.125), "determinant": arb(0.5)}
-    told = lambda **other: bifurcation._generic(NormalForm(FLIP, **good | other))  # noqa: E731
-    assert told() == dict.fromkeys((*items, "other_multiplier_stable"), True)
-    for name, item in zip(("turn", "speed", "bend"), items, strict=True):
-        for number in UNKNOWN:
-            assert told(**{name: number}) == told() | {item: None}
-        assert told(**{name: arb(2.0**-200)}) == told()
-    for size, stable in ((0, True), (-0.5, True), (1.5, False), (-1.25, False), (3, False), (1, None), (-1, None)):
-        assert told(determinant=arb(size))["other_multiplier_stable"] is stable
-    for ball in (arb(1, 0.25), arb(-1, 0.25), arb("nan"), arb(0, "inf")):
-        assert told(determinant=ball)["other_multiplier_stable"] is None
-
-
-@pytest.mark.parametrize("trace", [1.5, -1.5, 1, -0.5, 0.5, -1.25])
-def test_an_island_has_a_twist_and_a_multiplier_of_which_no_power_up_to_the_fourth_is_1(trace):
-    drift, beside = arb(0), arb(trace)
-    for number in (0.5, -0.5, 2, -2, 2.0**-99, arb(0.5, 0.25)):
-        assert Twist(beside, arb(number), drift).islands is True
-        for power in (2, -2, -1, 0, 3, -3, "2 +/- 0.1", "-1 +/- 0.1", "0 +/- 0.1", "-2 +/- 0.1", "nan"):
-            assert Twist(arb(power), arb(number), drift).islands is None
-    for number in (0, "0 +/- 0.1", "nan"):
-        assert Twist(beside, arb(number), drift).islands is None
 
 
 @pytest.mark.parametrize("parts", [1, 2])
@@ -387,25 +352,6 @@ def test_a_step_along_contractions_needs_each_of_its_proofs(monkeypatch, fails):
         assert determinant.rad() < 0.626
 
 
-REAL = [(0.5, -0.25), (-0.5, -0.5), (0.875, -0.875), (0.75, 0.875), (0, 0), (2, 0.5), (-2, 0.5), (-1.25, -0.75), (3, 0),
-        (2, 3), (-2, 3), (-2, -3), (1, 0.5), (-1, 0.5), (1, 1), (1, -1), (-1, -1), (1, 2), (-1, -2)]  # fmt: skip
-CIRCLES = [(0, 0.25), (1, 0.75), (-1.5, 0.875), (0, 1), (1, 1), (-1.5, 1), (0, 1.5), (1, 1.25), (-2, 4)]
-
-
-def test_a_cycle_attracts_or_is_a_saddle_by_where_its_multipliers_lie():
-    """Two real ones, by hand; or two that are conjugate, of which the determinant is the square of the size."""
-    for one, other in REAL:
-        inner, outer = (sum(compare(abs(m), 1) for m in (one, other)) for compare in (lt, gt))
-        wanted = {(2, 0): Stability.ATTRACTING, (1, 1): Stability.SADDLE}.get((inner, outer), Stability.UNKNOWN)
-        assert stability(arb(one + other), arb(one * other)) is wanted
-        assert stability(arb(one + other, 9), arb(one * other)) is Stability.UNKNOWN
-        assert stability(arb(one + other), arb(one * other, 9)) is Stability.UNKNOWN
-    for trace, determinant in CIRCLES:
-        assert trace**2 < 4 * determinant
-        wanted = Stability.ATTRACTING if determinant < 1 else Stability.UNKNOWN
-        assert stability(arb(trace), arb(determinant)) is wanted
-
-
 def test_slopes_along_a_cycle_are_those_of_neighbouring_contractions():
     """By differences of trace and determinant at solutions of 30 digits."""
     step, found = Rational(1, 10**8), []
@@ -433,48 +379,3 @@ def test_the_twist_of_the_axis_of_an_ellipse_is_the_same_begun_at_either_end():
         assert all(each.drift.contains(0) and each.drift.rad() < 1e-20 for each in made)
         assert abs(made[0].twist - made[1].twist) < 1e-20
         assert not made[0].twist.contains(0)
-
-
-@pytest.mark.parametrize("angle", [0.75, -0.75, 1.25, 2.5, -2.75])
-@pytest.mark.parametrize("linear", [None, (2.0, 0.5, 0.0), (0.5, -1.5, 0.25)])
-@pytest.mark.parametrize("k", [1.0, -2.0])
-def test_the_twist_of_a_turned_power_is_known_in_any_coordinates(angle, linear, k):
-    """Of a cubed one `3*k/8`, of a squared one `-(3*cot(w/2) + cot(3*w/2))*k**2/16`: worked out by hand.
-
-    In coordinates that are turned by a right angle the power is added to `x`, and `p` has none.
-    """
-    c, s = math.cos(angle), math.sin(angle)
-    real = lambda *rows: tuple({(1, 0): arb(a), (0, 1): arb(b)} for a, b in rows)  # noqa: E731
-    turn, quadratic = real((c, s), (-s, c)), -(k**2) / 16 * (3 / math.tan(angle / 2) + 1 / math.tan(3 * angle / 2))
-    with working(80):
-        for power, wanted in ((3, 3 * k / 8), (2, quadratic)):
-            kicked = {(1, 0): arb(1)}, {(0, 1): arb(1), (power, 0): arb(-k)}
-            other = {(1, 0): arb(1), (0, power): arb(k * (-1) ** (power + 1))}, {(0, 1): arb(1)}
-            ways = [[turn, kicked], [kicked, turn], [turn, other]]
-            if linear:
-                scale, shear, back = linear
-                there = [real((scale, 0), (0, 1 / scale)), real((1, 0), (shear, 1)), real((1, back), (0, 1))]
-                again = [real((1, -back), (0, 1)), real((1, 0), (-shear, 1)), real((1 / scale, 0), (0, scale))]
-                ways = [[*again, kicked, turn, *there]]
-            for way in ways:
-                found = birkhoff_normal_form(composed(way))
-                assert abs(found.trace - 2 * c) < 1e-12
-                assert float(found.twist) == pytest.approx(wanted, rel=1e-12)
-                assert abs(found.drift) < 1e-12
-
-
-def test_the_twist_of_a_cycle_is_the_same_along_any_parameters_and_wherever_the_table_lies():
-    """The minor axis of an ellipse that is turned and moved, with other parameters, which are 0 at either end."""
-
-    def moved(t):
-        x, y = 3 * sin(t), cos(t)
-        return (4 * y - 3 * x) / 5 + 7, (4 * x + 3 * y) / 5 - 2
-
-    ends = [theta / 2 + theta**2 / 3, pi + 2 * theta - theta**2 / 4]  # from the upper end
-    table = Table("turned", tuple(Component(f"end {k}", moved(t), S(-1), S(1)) for k, t in enumerate(ends)))
-    with working(100):
-        known = twist(ellipse.at(a=3), (0, 0), [arb.pi() / 2, -arb.pi() / 2], 100)
-        found = twist(table, (0, 1), [arb(0), arb(0)], 100)
-        assert abs(found.trace - known.trace) < 1e-24
-        assert abs(found.twist - known.twist) < 1e-22
-        assert abs(found.drift) < 1e-22

@@ -87,7 +87,8 @@ def test_the_twist_of_a_turned_power_is_known_in_any_coordinates(angle, linear, 
         for power, wanted in ((3, 3 * k / 8), (2, quadratic)):
             kicked = {(1, 0): arb(1)}, {(0, 1): arb(1), (power, 0): arb(-k)}
             other = {(1, 0): arb(1), (0, power): arb(k * (-1) ** (power + 1))}, {(0, 1): arb(1)}
-            ways = [[turn, kicked], [kicked, turn], [turn, other]]
+            sheared, straight = (({(1, 0): arb(1)}, {(1, 0): arb(k), (0, 1): arb(1)}) for k in (0.5, -0.5))
+            ways = [[turn, kicked], [kicked, turn], [turn, other], [straight, turn, kicked, sheared]]
             if linear:
                 scale, shear, back = linear
                 there = [real((scale, 0), (0, 1 / scale)), real((1, 0), (shear, 1)), real((1, back), (0, 1))]

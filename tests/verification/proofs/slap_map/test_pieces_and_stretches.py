@@ -186,11 +186,11 @@ def test_where_pieces_change_the_parts_of_all_that_are_met_are_bounded_one_by_on
 @pytest.mark.parametrize(("rate", "told"), [(0.25, True), (0.3, True), (0.34, False), (0.5, False), (0.9, False)])
 def test_the_tail_of_a_mean_is_bounded_where_the_rate_is_below_one_third(rate, told):
     """By hand: the largest `-rate*log(rate)` times what two pieces may be between both launching points."""
-    launched = {-2.0: (arb(0.75), arb(rate)), -3.0: (arb(0.25), arb(0.125))}
+    launched = {-2.0: (arb(0.125), arb(rate)), -3.0: (arb(0.75), arb(0.0625))}
     own = SimpleNamespace(
         stretches=[(arb(0), arb(1)), (arb(1), arb(2)), (arb(2), arb(3))],
         branches=lambda landing: launched[float(landing)],
-        pieces=SimpleNamespace(value=lambda k, launch: launch * [1, -2][k]),
+        pieces=SimpleNamespace(value=lambda k, launch: [launch, 2 * launch - 2][k]),
         _met=lambda side, low, high: range(2) if (side, low, high) == (BELOW, 2, 3) else None,
         _integral=lambda low, high: high + 4,
     )
@@ -200,7 +200,7 @@ def test_the_tail_of_a_mean_is_bounded_where_the_rate_is_below_one_third(rate, t
         return
     found = Judge.mean(own)
     assert found.contains(11)
-    assert float(found.rad()) == pytest.approx(-rate * np.log(rate) * 0.75 * 3, rel=1e-6)
+    assert float(found.rad()) == pytest.approx(-rate * np.log(rate) * (0.75 + 1.75), rel=1e-6)
 
 
 def test_launching_points_meet_the_pieces_that_they_lie_in():

@@ -118,11 +118,10 @@ class Branches:
 
     def __call__(self, landing: Any) -> tuple[Any, Any]:
         """The launching half angle and the rate of a landing half angle."""
-        if isinstance(landing, arb_series):
-            found = self.of_series[not landing[0] < TURN](landing)
-        else:
-            found = self.of_balls[not landing < TURN](landing)
-        return found[0], found[1]
+        series = isinstance(landing, arb_series)
+        above = not (landing[0] if series else landing) < TURN
+        launch, rate = (self.of_series if series else self.of_balls)[above](landing)
+        return launch, rate
 
     def landing(self, launch: arb, bits: int) -> arb:
         """About where a particle lands that left at an exact half angle: Newton's method, not enclosed."""

@@ -1,5 +1,7 @@
 """Boxes of cosines and shapes that are covered, stretches that touch, and how many cells a matrix may have."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from flint import arb
@@ -9,7 +11,8 @@ from symbolic.cycles.cardioid_slap import branch
 from symbolic.expressions.text import load
 from verification.arithmetic.balls import FLOAT64
 from verification.proofs.slap_map import exponent, transfer
-from verification.proofs.slap_map.transfer import Inverted
+from verification.proofs.slap_map.candidate import Residual
+from verification.proofs.slap_map.transfer import Inverted, Variation
 
 
 def test_stretches_are_one_where_they_touch_on_one_component_with_one_sign():
@@ -107,3 +110,29 @@ def test_the_fewest_and_the_most_cells_have_launching_points(monkeypatch):
     monkeypatch.setattr(transfer, "Branches", lambda bits: lambda landing: (arb(1), arb(1)))
     below, above = transfer.launching_points(4096)
     assert (len(below), len(above)) == (4097, 2049)
+
+
+@pytest.mark.parametrize(
+    ("mass", "width", "items"),
+    [
+        (arb(0.5), 0.0049, set()),  # a radius of 0.0098, of which 10**-2 is asked
+        (arb(0.5), 0.0051, {"precise"}),
+        (arb(0), 0.0, {"mass", "precise"}),
+        (arb(0, 1), 0.0, {"mass", "precise"}),
+    ],
+)
+def test_an_exponent_is_precise_to_two_digits_fewer_and_its_density_has_a_mass(monkeypatch, mass, width, items):
+    made = SimpleNamespace(residual=lambda: Residual(arb(0), arb(0)), mean=lambda: arb(1, width))
+    near = SimpleNamespace(grounded=lambda: SimpleNamespace(integral=lambda: mass))
+    monkeypatch.setattr(exponent, "Judge", lambda *_: made)
+    found = exponent.judged(near, 4, Inverted(1000, 9.0, 0.0, 1), Variation(arb(0.5), arb(1), True))
+    assert {item for item, value in found.checks.items() if value is None} == items
+
+
+def test_a_density_is_at_most_so_far_away_as_the_upper_end_of_what_is_enclosed(monkeypatch):
+    made = SimpleNamespace(residual=lambda: Residual(arb(0), arb(0.5, 0.25)), mean=lambda: arb(1))
+    near = SimpleNamespace(grounded=lambda: SimpleNamespace(integral=lambda: arb(1)))
+    monkeypatch.setattr(exponent, "Judge", lambda *_: made)
+    monkeypatch.setattr(exponent, "gap", lambda *_: arb(0.5))
+    found = exponent.judged(near, 4, Inverted(1000, 9.0, 0.0, 1), Variation(arb(0.5), arb(1), True))
+    assert float(found.distance) == pytest.approx(0.75 / (0.5 * 0.5), rel=1e-6)

@@ -336,6 +336,6 @@ class Judge:
 def _parted(low: arb, high: arb, longest: Callable[[arb], float]) -> Iterator[tuple[arb, arb]]:
     """A stretch in parts no longer than is said of their lower ends."""
     while low < high:
-        end = min((low + longest(low)).mid(), high)
+        end = min(high, (low + longest(low)).mid())  # all of `high`, unless what comes before is surely less
         yield low, end
         low = end

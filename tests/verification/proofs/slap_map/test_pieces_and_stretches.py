@@ -127,7 +127,7 @@ def test_parts_of_a_stretch_are_as_long_as_is_said_of_their_lower_ends_and_the_l
     assert found == [(1, 1.5), (1.5, 2.25), (2.25, 3.375), (3.375, 4)]
     assert list(_parted(arb(1), arb(1), lambda low: 1.0)) == []
     assert [(float(a), float(b)) for a, b in _parted(arb(0), arb(1), lambda low: 1.0)] == [(0, 1)]
-    ((_, end),) = _parted(arb(0), arb(1, 0.25), lambda low: 1.0)  # a step that ends within the end leaves none of it out
+    ((_, end),) = _parted(arb(0), arb(1, 0.25), lambda low: 1.0)  # a step within the end leaves none out
     assert end.contains(arb(1, 0.25))
 
 

@@ -14,6 +14,8 @@ GRID, MOST = (342, 512), 60_000  # columns for a part of the table that turns on
 CUTS, PIECES = 16, 96  # of lam; of the branch
 AWAY, SAMPLES, LONG = 0.1, 400, 60  # how far from the saddle the pieces are; orbits along the branch that are tried
 SMALL, TINY, MORE = 24, 240, 1200  # bits by which the local branch is small; more of them for one orbit along it
+WHERE, NEAR, STEP = Fraction(1, 10**5), Fraction(1, 2**36), 0.381966  # a saddle is said, and sought; samples of a round
+LANDING, TRIED, UNITS = Fraction(1, 2**12), Fraction(1, 80), 1 << 24  # where a landing and a saddle are sought
 
 
 def crisis(given):
@@ -32,8 +34,8 @@ def crisis(given):
     taken = both.grow(both.met(*(I.of(Fraction(x), BITS) for x in given["sink"])))
     first = Branch(finer, Fraction(turns, q), low, saddle[0], SMALL)
     kept = below.grow(cell for box in first.pieces(side, below) for cell in below.met(*box))
-    around = {((column + i) % GRID[0], row + j) for column, row in kept for i in (-1, 0, 1) for j in (-1, 0, 1)}
-    need(not around & taken, "apart: the two sets may have a common point")
+    touched = {(i % GRID[0], j) for i, row in kept for i in range(i - 1, i + 2) for j in range(row - 1, row + 2)}
+    need(not touched & taken, "apart: the two sets may have a common point")
     rough, last = (Branch(t, Fraction(turns, q), high, saddle[1], k) for t, k in ((table, SMALL), (finest, TINY)))
     need(last.leaves(side, both, taken, rough), "leaves: no orbit along the branch is seen to enter the other set")
     return f"proved: {true}\n  {len(kept)} cells are kept at {low}, {len(taken)} are trapping up to {high}."
@@ -51,7 +53,7 @@ def said(given):
     fit = fit and type(turns) is type(q) is int and 0 < turns < q and scene.get("K", 3) % q == 0
     need(fit, "saddle: a round is not one bounce and a turn of the table", Wrong)
     fit = given["side"] in (1, -1) and all(type(x) is float and abs(x) < 10 for x in numbers) and len(numbers) == 4
-    fit = fit and len(ends) == 2 and all(str(Fraction(x)) == x for x in ends)
+    fit = fit and all(str(Fraction(x)) == x for x in ends)
     fit = fit and all(type(given[key]) is int and 1 <= given[key] <= 8192 for key in ("columns", "rows", "parts"))
     low, high = map(Fraction, ends)
     need(fit and 0 < low < high < 1, "side, lam, start, sink or the grid is out of range", Wrong)
@@ -62,7 +64,6 @@ def said(given):
 def law(table, turn, theta, lam):
     """The exit angle of the chord from a place to the next, less what the law says; and that angle."""
     p = table.p
-    theta = theta if isinstance(theta, Jet) else Jet.of(theta, 0)
     (x, y, tx, ty), (u, v, sx, sy) = (table.at(0, z, table.letters, p) for z in (theta, theta + pi(p) * (turn * 2)))
     dx, dy = u - x, v - y
     ahead, behind = dy * tx - dx * ty, dx * sy - dy * sx
@@ -97,11 +98,11 @@ def derivative(table, turn, state, lam):
     """That of a bounce and a turn back over a box of states, and its determinant.
 
     With the angle `tau` of the tangent the law is `psi1 = -lam*(psi + tau1 - tau - pi)`."""
-    p, names = table.p, table.letters | {"lam": I.of(1, table.p)}
-    way = [(0, state[0]), (0, (state[0] + pi(p) * (turn * 2)).wide(I.of(Fraction(1, 2**12), p)))]
+    p, (theta, _), names = table.p, state, table.letters | {"lam": lam}
+    way = [(0, theta), (0, (theta + pi(p) * (turn * 2)).wide(I.of(LANDING, p)))]
     launch = lambda x, y, _: (x, y, names)  # noqa: E731
-    there = table.orbit(launch, [*state, lam], way, 2)[-1][0]
-    (a, b, _), here, then = there.gradient(p), bend(table, state[0]), bend(table, value(there))
+    _, (there, _) = table.orbit(launch, [*state, lam], way, 2)
+    (a, b, _), here, then = there.gradient(p), bend(table, theta), bend(table, value(there))
     return (a, b), ((here - then * a) * lam, (then * b + 1) * -lam), (a + b * here) * -lam
 
 
@@ -111,8 +112,8 @@ def continued(table, turn, low, high, at):
     ends = [low + (high - low) * Fraction(k, CUTS) for k in range(CUTS + 1)]
     for lam in ends:
         places.append(found(table, turn, I.of(lam, p), places[-1].real() if places else at))
-    near = [x.wide(I.of(Fraction(1, 2**36), p)) for x in places]
-    need(near[0].inside(I.of(Fraction(at), p).wide(I.of(Fraction(1, 10**5), p))), "saddle: it is not where it is said")
+    near = [x.wide(I.of(NEAR, p)) for x in places]
+    need(near[0].inside(I.of(Fraction(at), p).wide(I.of(WHERE, p))), "saddle: it is not where it is said")
     for k in range(CUTS):
         lam = I.of(ends[k], p).hull(I.of(ends[k + 1], p))
         box = near[k].hull(near[k + 1])
@@ -121,8 +122,8 @@ def continued(table, turn, low, high, at):
         for x, end in zip(near[k : k + 2], ends[k : k + 2], strict=True):  # the same cycle on both sides of a join
             one(table, turn, x, I.of(end, p))
             need(x.inside(box), "saddle: the cycle at an end may be another")
-        out = value(law(table, turn, box.mid(), lam)[1])
-        out = out + law(table, turn, Jet.of(box, 1, 0), lam)[1].gradient(p)[0] * (box - box.mid())
+        slope = law(table, turn, Jet.of(box, 1, 0), lam)[1].gradient(p)[0]
+        out = value(law(table, turn, box.mid(), lam)[1]).wide(slope * (box - box.mid()))
         (a, b), (_, d), det = derivative(table, turn, (box, out), lam)
         trace = a + d
         need(1 - trace + det < 0 and 1 + trace + det > 0 and 0 not in b, "saddle: its multipliers are not seen")
@@ -138,18 +139,24 @@ class Branch:
     def __init__(self, table, turn, lam, near, small):
         p, self.table, self.turn, self.lam = table.p, table, turn, I.of(lam, table.p)
         at = found(table, turn, self.lam, near.real())
-        self.theta = at.wide(I.of(Fraction(1, 2 ** (p - 24)), p))
+        self.theta = at.wide(I(UNITS, UNITS, p))
         one(table, turn, self.theta, self.lam)
         need(self.theta.inside(I.of(near, p)), "manifold: the saddle may be another")
         self.psi = value(law(table, turn, self.theta, self.lam)[1])
-        (a, b), (_, d), det = derivative(table, turn, (at, self.psi.mid()), self.lam)
+        self.grows, self.along, self.across = self.frame()
+        self.reach, self.slope = Fraction(1, 2**small), Fraction(256, 2**small)  # so `x` has the sign of theta
+        self.most = self.proved()
+
+    def frame(self):
+        """About the multiplier that grows, and both directions."""
+        p, state = self.table.p, (self.theta.mid(), self.psi.mid())
+        (a, b), (_, d), det = derivative(self.table, self.turn, state, self.lam)
         a, b, trace, det = (x.mid() for x in (a, b, a + d, det))
         root = (trace * trace - det * 4).mid()
         root = I(isqrt(root.lo << p), isqrt(root.lo << p), p)
-        self.grows = ((trace + root) / 2).mid()
-        self.along, self.across = (((half - a) / b).mid() for half in (self.grows, (trace - root) / 2))
-        self.reach, self.slope = Fraction(1, 2**small), Fraction(256, 2**small)
-        self.most = self.proved()
+        grows, falls = (trace + root) / 2, (trace - root) / 2
+        along, across = (((half - a) / b).mid() for half in (grows, falls))
+        return grows.mid(), along, across
 
     def state(self, x, y):
         return x + y + self.theta, x * self.along + y * self.across + self.psi
@@ -174,7 +181,7 @@ class Branch:
             way.append((0, here[0].wide(I.of(Fraction(1, 2**9), p))))
             if until(here):
                 break
-            there = I.of(Fraction(map.guess(here[0].real(), here[1].real())), p).wide(I.of(Fraction(1, 80), p))
+            there = I.of(Fraction(map.guess(here[0].real(), here[1].real())), p).wide(I.of(TRIED, p))
             here = [value(z).mid() for z in self.table.flight(0, (0, there), [Jet.of(z, 0) for z in here], names)]
         return way, here
 
@@ -201,7 +208,7 @@ class Branch:
         down = ceil((TINY - SMALL) / log2(self.grows.real()))
         enters = lambda box: {*map.met(*(I.of(z, BITS) for z in box))} <= cells  # noqa: E731
         for k in range(SAMPLES):
-            x = rough.reach / Fraction(float(rough.most) ** (k * 0.381966 % 1))
+            x = rough.reach / Fraction(float(rough.most) ** (k * STEP % 1))
             try:
                 if enters(rough.sampled(I.of(x, BITS) * side, rounds, map, enters)[1]):
                     far = I.of(x, MORE) * side

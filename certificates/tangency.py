@@ -10,11 +10,12 @@ from check import I, Jet, Table, Wrong, algebra, evaluate, exact, function, impl
 
 def composed(f, letters):
     """A polynomial of three letters with jets in their place."""
-    total = letters[0] * 0
-    for e, c in zip(algebra(f.degree)[0], f.c):
+    total = 0
+    for e, at in algebra(f.degree)[1].items():
+        term = f.c[at]
         for letter in (letter for letter, n in zip(letters, e) for _ in range(n)):
-            c = letter * c
-        total = total + c
+            term = letter * term
+        total = total + term
     return total
 
 
@@ -88,9 +89,9 @@ class Manifold:
 
     def on(self, f):
         """A jet along the manifold, as one in x and lam, to second order."""
-        (_, x, lam, xx, mixed), letters = self.w, [Jet.of(0, 2, k) for k in range(3)]
-        w = [0, lam, x, 0, 0, mixed, xx, 0, 0, 0] if self.own else [0, lam, 0, x, 0, 0, 0, mixed, 0, xx]
-        letters[self.other] = Jet(w, 2)
+        (_, w_x, w_lam, bend, turn), letters = self.w, [Jet.of(0, 2, k) for k in (0, 1, 2)]
+        x, lam = letters[self.own], letters[2]
+        letters[self.other] = x * w_x + lam * w_lam + x * x * bend + x * lam * turn
         return composed(f, letters)
 
 

@@ -87,6 +87,13 @@ def test_the_branch_grows_by_the_multiplier_of_the_saddle(crisis, tables, branch
     assert float(branch.most) >= branch.grows.real()
 
 
+def test_a_local_branch_is_short_and_leaves_its_saddle_to_one_side(branch):
+    """In a cone about its direction whose slope is far below 1: so `theta` grows where the coordinate does."""
+    assert (branch.reach, branch.slope) == (Fraction(1, 2**24), Fraction(1, 2**16))
+    assert 0 in branch.theta - branch.theta.mid()
+    assert branch.theta.width() == 2**25
+
+
 @pytest.mark.parametrize("small", [1, 3])
 def test_a_local_branch_that_is_too_large_is_not_proved(check, crisis, tables, branch, small):
     near = branch.theta.wide(check.I.of(Fraction(1, 2**30), branch.theta.p))

@@ -1,6 +1,7 @@
 """Steps of the second reader's tangencies, each by itself: frames, graphs under a round, equations of a contact."""
 
 from fractions import Fraction
+from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
@@ -136,6 +137,7 @@ def plane(a=3, b="1/4", d="1/2", bend=0, moved=0, pushed=0):
         ({"moved": "3/50"}, {}, "remainder"),
         ({"d": "11/10"}, {}, "remainder"),
         ({"a": "12/5"}, {}, "saddle"),
+        ({"a": "3/2", "d": "1/4"}, {"inner": "7/1000"}, None),  # an expansion by less than 2 is one
         ({"b": 0}, {"inner": "0.0033334"}, None),
         ({"b": 0, "pushed": "1/2"}, {"inner": "0.0033334"}, "saddle"),
         ({"d": "19/20", "b": "1/2"}, {}, None),
@@ -213,10 +215,11 @@ def contact(check, tangency, monkeypatch, **changed):
     """All that `touching` asks of a contact, and the equations that it solves."""
 
     def polynomial(k, d):
-        return check.Jet([number(check, Fraction(k + (j * k) % 7, 8)) for j in range(len(check.algebra(d)[0]))], d)
+        numbers = [number(check, Fraction(d * k + (j * k) % 7, 8)) for j in range(len(check.algebra(d)[0]))]
+        return check.Jet(numbers, d)
 
-    runs = [lambda d: [(polynomial(1, d), 0), (polynomial(2, d), polynomial(3, d))],
-            lambda d: [(polynomial(4, d), 0), (polynomial(5, d), polynomial(6, d))]]  # fmt: skip
+    runs = [lambda d: [(polynomial(1, d), 0), (polynomial(7, d), 0), (polynomial(2, d), polynomial(3, d))],
+            lambda d: [(polynomial(4, d), 0), (polynomial(8, d), 0), (polynomial(5, d), polynomial(6, d))]]  # fmt: skip
     reach = [number(check, x) for x in changed.get("reach", ("1/2", "1/4"))]
     sides = [Side(tangency, r, [(number(check, x), 0) for x in (k, k + 1, k + 2)], run)
              for k, (r, run) in enumerate(zip(reach, runs, strict=True))]  # fmt: skip
@@ -292,8 +295,8 @@ def test_chords_of_both_saddles_and_of_all_starts_in_the_box_have_to_be_free(che
     assert all(part == 0 for start, end, _ in ends for part, _ in (start, end))
     assert all(names is found.table.letters for *_, names in ends)
     places = [(start[1].real(), end[1].real()) for start, end, _ in ends]
-    first = [check.value(found.polynomial(k, 3)).real() for k in (1, 2, 4, 5)]
-    assert places == [(0, 1), (1, 2), (1, 2), (2, 3), (first[0], first[1]), (first[2], first[3])]
+    ways = [[check.value(found.polynomial(k, 3)).real() for k in way] for way in ((1, 7, 2), (4, 8, 5))]
+    assert places == [(0, 1), (1, 2), (1, 2), (2, 3), *(chord for way in ways for chord in pairwise(way))]
 
 
 @pytest.mark.parametrize(
@@ -333,3 +336,9 @@ def test_a_start_may_reach_as_far_as_its_manifold(check, tangency, monkeypatch):
 def test_backwards_under_the_papers_law_an_angle_is_divided_by_lam(check, tangency):
     back = tangency.Back(SimpleNamespace(law=None))
     assert holds(back.leaves(number(check, "2/7"), {"1/lam": number(check, "3/2"), "lam": number(check, "2/3")}), "3/7")
+
+
+def test_backwards_of_two_angles_the_one_next_to_0_is_told(check, tangency):
+    """`eta - eta**3/2` is 31/128 at 1/4 and at 1.26..., and largest between them."""
+    back = tangency.Back(SimpleNamespace(law=check.parse("eta - eta**3/2"), p=P))
+    assert holds(check.value(back.leaves(check.Jet.of(number(check, "-31/128"), 0), {})), "1/4")

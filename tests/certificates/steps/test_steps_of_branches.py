@@ -35,6 +35,7 @@ def branch(check, crisis, along="0", across="1", reach="1/16", slope="1/64"):
         ((3, 0, "1/32", "1/2"), None),
         ((3, 0, "-3/64", "1/2"), "cone"), ((3, 0, 0, 4), "cone"), ((3, 0, 0, "-4"), "cone"), ((3, 100, 0, "1/2"),
         "cone"),
+        (("3/2", 40, 0, "1/8"), "cone"), ((5, 32, "5/64", 0), "cone"), ((3, 0, "3/64", 0), "cone"),
         ((5, 33, 0, "1/2"), None), ((8, 33, 0, "2/5"), None), ((8, 33, 0, "1/2"), "closer"),
     ],
 )  # fmt: skip
@@ -95,7 +96,7 @@ def test_what_is_followed_begins_in_the_cone_over_its_interval_and_not_beyond_th
     assert theta.real() == pytest.approx(0.5 - 3 / 64)
     assert psi.real() == pytest.approx(-0.25 - 3 / 32)
     for far in (
-        number(check, "1/16") + number(check, Fraction(1, 2**80)),
+        number(check, "1/16") + number(check, Fraction(1, 2**P)),
         number(check, -1),
         x.hull(number(check, "1/8")),
     ):
@@ -121,13 +122,13 @@ def test_pieces_of_a_branch_run_from_a_point_to_beyond_its_image_without_a_gap(c
     assert pieces[-1][1] - pieces[0][0] < high * side - low * side + Fraction(1, 2**90)
 
 
-def leaving(check, crisis, monkeypatch, near, far, side=1, fails=()):
+def leaving(check, crisis, monkeypatch, near, far, side=1, fails=(), more=True):
     """Orbits of which the rough one enters at the samples `near`, the fine one at those of `far`; what was asked."""
     asked, samples = [], []
     for key, x in (("SAMPLES", 4), ("TINY", 44), ("SMALL", 24), ("LONG", 5), ("MORE", 200)):
         monkeypatch.setattr(crisis, key, x)
     rough, fine = branch(check, crisis, reach=Fraction(1, 2**24)), branch(check, crisis, reach=Fraction(1, 2**44))
-    rough.most, fine.grows = Fraction(2), check.I.of(2, 200)
+    rough.most, fine.grows = Fraction(2), check.I.of(4, 200)
 
     def sampled(x, rounds, map, until):
         samples.append(x)
@@ -141,7 +142,7 @@ def leaving(check, crisis, monkeypatch, near, far, side=1, fails=()):
     cells = {"in": {(1, 2), (3, 4)}, "out": {(1, 2), (5, 6)}}
     map = SimpleNamespace(met=lambda *box: cells["".join(box)])
     monkeypatch.setattr(crisis, "I", SimpleNamespace(of=lambda z, p: z if isinstance(z, str) else check.I.of(z, p)))
-    return fine.leaves(side, map, {(1, 2), (3, 4), (7, 8)}, rough), samples, asked
+    return fine.leaves(side, map, cells["in"] | {(7, 8)} if more else cells["in"], rough), samples, asked
 
 
 @pytest.mark.parametrize(
@@ -163,7 +164,11 @@ def test_a_branch_leaves_where_an_orbit_that_was_looked_for_is_enclosed_in_the_s
         assert x.real() * 2**24 == pytest.approx(side / 2 ** (k * 0.381966 % 1))
     wanted = [x.real() for k, x in enumerate(samples) if k in near and k not in fails]
     assert [x.real() * 2**20 for x, _ in asked] == [pytest.approx(x) for x in wanted]  # as many bits nearer
-    assert {rounds for _, rounds in asked} <= {5 + 21 + 20}  # 2 to the 21 is 0.1*2**24, and more
+    assert {rounds for _, rounds in asked} <= {5 + 21 + 10}  # 2 to the 21 is 0.1*2**24, and more; 4 to the 10 is 2**20
+
+
+def test_a_branch_leaves_also_where_its_orbit_meets_all_of_the_set(check, crisis, monkeypatch):
+    assert leaving(check, crisis, monkeypatch, (1,), (1,), more=False)[0]
 
 
 @pytest.mark.parametrize("letters", [("1/8", "1/16"), ("-1/8", "0"), ("0", "1/16")])
@@ -189,6 +194,22 @@ def test_cells_are_those_of_one_part_of_the_table_and_the_others_are_turned_into
             number(check, -pi + 2 * pi * (column + 0.6) / 60, 64)
         )
         assert map.met(theta, map.top * Fraction(1, 32)) == {(1, 8)}
+
+
+def test_a_set_grows_by_the_images_of_whole_cells_each_asked_once(check, crisis, monkeypatch):
+    """Of a map of columns that doubles their number, which has two cycles of three among seven."""
+    map, asked = grown(check, crisis, monkeypatch), []
+    monkeypatch.setattr(map, "images", lambda *square: asked.append(square) or {(square[0] * 2 % 7, square[1])})
+    cells = [(1, 5), (2, 5), (3, 8), (4, 5), (5, 8), (6, 8)]
+    assert sorted(map.grow([(1, 5), (3, 8)])) == cells
+    assert sorted(asked) == [(*cell, 1, crisis.HALVINGS) for cell in cells]
+    for most, fits in ((6, True), (5, False)):
+        monkeypatch.setattr(crisis, "MOST", most)
+        if fits:
+            map.grow([(1, 5), (3, 8)])
+        else:
+            with pytest.raises(check.Unproved, match="the cells have no end"):
+                map.grow([(1, 5), (3, 8)])
 
 
 @pytest.mark.parametrize("depth", [0, 1, 2, 3])

@@ -7,6 +7,7 @@ from math import hypot
 from check import I, Unproved, evaluate, need, pi
 
 NEAR, SHORT = Fraction(1, 2**20), Fraction(1, 2**16)  # of a marked point, where a radius may vanish; of an arc
+SKEW = 3  # of a ray, which no axis or diagonal is
 
 
 def halves(a, b):
@@ -79,7 +80,7 @@ def beyond(table, names, p):
         gaps = [gap - pi(p) * 2 * round(gap.real() / 6.283185307179586) for gap in gaps]
         if any(gap.size().lo <= I.of(NEAR, p).lo for gap in gaps):
             return True
-        return radius(theta.mid())[0] + radius(theta)[1] * (theta - theta.mid()) > 0
+        return radius(theta.mid())[0].wide(radius(theta)[1] * (theta - theta.mid())) > 0
 
     covered(settled, 4000, "admissible: the boundary may cross itself, where its radius may not be positive")
 
@@ -116,8 +117,8 @@ def embedded(table, curve, names, p):
         one, other = queue.pop()
         if seen(settled, one, other):
             continue
-        long = min(b - a for _, (a, b) in (one, other)) > SHORT  # two arcs that cross end here at once
-        need(long and spent < 20000, "admissible: the boundary may cross itself")
+        _, (a, b) = one  # the other one is as long
+        need(b - a > SHORT and spent < 20000, "admissible: the boundary may cross itself")  # two that cross end at once
         (first, second), (third, fourth) = ([(part, ends) for ends in halves(*whole)] for part, whole in (one, other))
         pairs = [(first, first), (first, second), (second, second)]
         queue += pairs if one == other else [(k, m) for k in (first, second) for m in (third, fourth)]
@@ -133,10 +134,10 @@ def inside(table, x, y, names):
     simple(table, names, p)
 
     def place(part, theta):
-        """Along the ray, which no axis or diagonal is, and across."""
+        """To one side, and across the ray."""
         qx, qy, *_ = table.at(part, theta, names, p)
         dx, dy = qx - x, qy - y
-        return dx * 3 + dy, dy * 3 - dx
+        return dx, dy * SKEW - dx
 
     def sign(z):
         """0 where it is not known."""

@@ -131,11 +131,10 @@ class Inside:
             ends[0].gradient(self.p),
             (theta - theta.mid(), phi - phi.mid()),
         )
-        landing = value(ends[0]).meet(a * u + b * v + x)
+        landing = value(ends[0]).meet(x.wide(a * u).wide(b * v))
         need(landing.lo <= landing.hi, "images_enclosed: the middle does not land where the square does")
         turn = bend(self.table, landing)
-        psi = psi - (turn * a - bend(self.table, theta)) * u - (turn * b + 1) * v
-        return landing, psi
+        return landing, psi.wide((turn * a - bend(self.table, theta)) * u).wide((turn * b + 1) * v)
 
     def covered(self, theta, phi):
         """Do the cells hold a rectangle and all that is next to it?"""

@@ -226,9 +226,9 @@ def test_the_middle_of_a_square_has_to_land_where_the_square_does(check, region)
 
 
 def met(check, region, theta, phi, columns=8, rows=2):
-    """Of the strip between -1 and 1, ends in units of the last place."""
-    made = SimpleNamespace(columns=columns, rows=rows, p=64, top=check.I.of(1, 64))
-    return region.Inside.met(made, check.I(*theta, 64), check.I(*phi, 64))
+    """Of the strip between -2 and 2, ends in units of the last place, or in two of them across."""
+    made = SimpleNamespace(columns=columns, rows=rows, p=64, top=check.I.of(2, 64))
+    return region.Inside.met(made, check.I(*theta, 64), check.I(*(2 * x for x in phi), 64))
 
 
 ONE = 1 << 64

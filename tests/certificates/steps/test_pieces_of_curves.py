@@ -146,6 +146,14 @@ def test_two_arcs_that_are_not_told_apart_are_refused_when_one_of_them_is_short(
     assert len(shortest) < 20000
 
 
+def test_an_arc_that_is_never_settled_is_halved_down_to_the_shortest_and_then_refused(check, curves, monkeypatch):
+    asked = []
+    monkeypatch.setattr(curves, "seen", lambda _, *arcs: asked.append(arcs))
+    with pytest.raises(check.Unproved, match="the boundary may cross itself"):
+        curves.embedded(SimpleNamespace(), range(1), {}, P)
+    assert [{b - a for _, (a, b) in arcs} for arcs in asked] == [{Fraction(1, 2**k)} for k in range(17)]
+
+
 def radius(check, curves, text, marks=(), low="-pi", high="pi"):
     """Asks of a radius whether it is positive but near the marks."""
     table = check.Table([], {}, None, P)
@@ -169,6 +177,7 @@ def radius(check, curves, text, marks=(), low="-pi", high="pi"):
         ("1 - cos(theta - 1/2)", ("-5.783185307179586476925286766559",), True),
         ("1 - cos(theta - 1/2)", ("13.066370614359172953850573533118",), True),
         ("1 - cos(theta - 1/2)", ("3.641592653589793238462643383279",), False),  # half a turn on
+        ("1 - cos(theta - 1/2)", ("25.632741228718345907701147066236",), True),  # four turns on
         ("(theta - 1/2)**2 - 2**(-46)", ("1/2",), True),  # negative nearer than 2**-23
         ("(theta - 1/2)**2 - 2**(-38)", ("1/2",), False),  # and within 2**-19
         ("3 - theta + 2*theta - theta - 3 + 10**(-6)", (), True),  # small, by its slope
@@ -231,6 +240,15 @@ CROSSED = {
     "a side across which the one after it began": [
         ("-theta", "theta"), ("4*theta - 1", "2*(1 - theta)**2 - 1 + theta"), ("3 - 3*theta", "0")
     ],
+    "a second side that bends back across the first one": [
+        ("4*theta", "0"), ("4 - 4*theta", "theta/2 - theta**2"), ("0", "-1/2 + theta/2")
+    ],
+    "a side that turns back, and the next one crosses where it began": [
+        ("4*theta - 4*theta**2", "-theta**2"), ("16*theta", "16*theta - 1"), ("16 - 16*theta", "15 - 15*theta")
+    ],
+    "a side that crosses where the next one ends, which turns back": [
+        ("16*theta", "15*theta"), ("16 - 16*theta", "15 - 16*theta"), ("4*theta - 4*theta**2", "-(1 - theta)**2")
+    ],
     "no movement": [("0*theta", "0"), ("0*theta", "0")],
 }  # fmt: skip
 
@@ -290,3 +308,26 @@ def test_of_two_curves_round_a_point_one_has_to_be_a_hole(check, curves):
         else:
             with pytest.raises(check.Unproved, match="does not run once round a chord"):
                 curves.inside(table, *map(Fraction, point), table.letters)
+
+
+@pytest.mark.parametrize(
+    ("piece", "counted"),
+    [
+        (("0*theta - 3", "-1 - theta"), False),  # from the ray on
+        (("0*theta - 3", "-theta"), False),  # as far as the ray
+        (("0*theta - 3", "-3/2 - theta"), True),  # beside it
+        (("0*theta + 3", "2*theta"), True),  # across what lies opposite
+    ],
+)  # fmt: skip
+def test_a_piece_that_begins_or_ends_on_the_ray_is_not_counted(check, curves, monkeypatch, piece, counted):
+    """Beside a circle round 0, from which the ray runs through (-3, -1)."""
+    table = check.Table([], {}, None, 128)
+    formulas = ("5*cos(theta)", "5*sin(theta)", "-pi", "pi"), (*piece, "0", "1")
+    table.parts, table.curves = [[check.parse(text) for text in part] for part in formulas], []
+    real = curves.covered
+    monkeypatch.setattr(curves, "covered", lambda settled, _, why: real(settled, 100, why))
+    if counted:
+        curves.inside(table, Fraction(0), Fraction(0), {})
+    else:
+        with pytest.raises(check.Unproved, match="the boundary may run through a chord"):
+            curves.inside(table, Fraction(0), Fraction(0), {})

@@ -14,6 +14,7 @@ from check import Cycle, I, Jet, Wrong, algebra, function, need, value
 from tangency import composed
 
 SHIFT, OFF = 64, Fraction(1, 2**40)  # bits of the approximate inverse after the point; beside a singular matrix
+ROUNDS, GAIN = 2, 24  # of improvement; bits that one gains, and more
 
 
 class Linear:
@@ -25,13 +26,11 @@ class Linear:
         halves = [[(j, x.lo + x.hi, x.hi - x.lo) for j, x in row.items()] for row in rows]  # twice middle and radius
         self.sums = []
         for i, row in enumerate(self.inverse):
-            middles, off = [0] * len(rows), 0
-            middles[i] = -(2 << (p + SHIFT))
+            middles = [-(2 << (p + SHIFT)) * (i == j) for j in range(len(rows))]
             for c, entries in zip(row, halves):
-                size = abs(c)
-                for j, m, r in entries:
+                for j, m, _ in entries:
                     middles[j] += c * m
-                    off += size * r
+            off = sum(abs(c) * r for c, entries in zip(row, halves) for *_, r in entries)
             self.sums.append((sum(map(abs, middles)) + off >> SHIFT + 1) + 1)
         self.norm = I(max(self.sums), max(self.sums), p)
         need(self.norm < 1, "exists, unique: a linear system may be singular")
@@ -92,7 +91,7 @@ class Long(Cycle):
     def chords(self, bounces, letter, degree):
         """Of each chord, and of the first a round later, its angle and, by the law, that of the next one."""
         p, n, found = self.p, len(self.parts), []
-        ends = [*bounces, *(x * self.sign for x in bounces[:2])]
+        ends = self.round(bounces, 1)
         for k in range(n + 1):
             here, there = (Jet.of(x, degree, place) for place, x in enumerate(ends[k : k + 2]))
             names = self.names(Jet.of(letter, degree, 2) if self.free else letter)
@@ -118,13 +117,13 @@ class Long(Cycle):
         rows = []
         for k in range(1, len(self.parts) + 1):
             row = {}
-            for jet, first, sign in ((chords[k][0], k, 1), (chords[k - 1][1], k - 1, -1)):
+            for jet, first in ((chords[k][0], k), (-chords[k - 1][1], k - 1)):
                 slopes = jet.gradient(self.p)
                 for place in (0, 1):
                     column, by = self.turned(first + place, twist)
-                    row[column] = row.get(column, 0) + slopes[place] * (by * sign)
+                    row[column] = row.get(column, 0) + slopes[place] * by
                 if free:
-                    row[len(self.parts)] = row.get(len(self.parts), 0) + slopes[2] * sign
+                    row[len(self.parts)] = row.get(len(self.parts), 0) + slopes[2]
             rows.append(row)
         return rows
 
@@ -149,7 +148,7 @@ class Long(Cycle):
     def vectors(self, chords):
         """What the linearised R take to 0, from the right and from the left, up to g; one entry of each is 1."""
         system, over = self.bordered(self.matrix(chords, self.twist, False), self.border)
-        return system.solve(self.end, 2)[:-1], Linear(over, self.p).solve(self.end, 2)[:-1]
+        return [x.solve(self.end, ROUNDS)[:-1] for x in (system, Linear(over, self.p))]
 
     def solved(self):
         """Exactly one solution in the boxes: enclosures of it, in the order of `Cycle`, and of all bounces."""
@@ -165,19 +164,19 @@ class Long(Cycle):
         if self.free:
             near = self.matrix(point, self.twist, False)
             self.border = self.edge(near)
-            values.append(self.bordered(near, self.border)[0].solve(self.end, 4 + p // 30)[n])
+            values.append(self.bordered(near, self.border)[0].solve(self.end, p // GAIN)[n])
             rows.append(self.moving(over, *self.vectors(over)))
         system, image = Linear(rows, p), []
+        radius = max((x - x.mid()).size().lo for x in unknowns)
         for m, step, total, box in zip(middle, system.times(values), system.sums, unknowns):
-            reach = I(total, total, p) * Fraction(max(x.width() for x in unknowns) + 1, 2 << p)
-            image.append((m - step).wide(reach))
+            image.append((m - step).wide(I(total, total, p) * I(radius, radius, p)))
             need(image[-1].inside(box), "exists, unique: interval Newton does not map the box into itself")
         self.bounces = image[:n]
         return [image[0], None, image[-1] if self.free else self.box], self.bounces
 
     def round(self, vector, twist):
         """A vector, and the first two entries of it a round later."""
-        return vector + [x * self.sign * twist for x in vector[:2]]
+        return vector + [x * (self.sign * twist) for x in vector[:2]]
 
     def moving(self, chords, w, u):
         """The derivatives of g by the bounces and the free parameter: those of the matrix, between both vectors."""
@@ -196,24 +195,24 @@ class Long(Cycle):
         n, p, chords = len(self.parts), self.p, self.chords(self.bounces, image[2], 3)
         det = I.of(1, p)
         for k in range(n):
-            det = det * chords[k][1].gradient(p)[0] / chords[k + 1][0].gradient(p)[1] * -1
+            det = det * chords[k][1].gradient(p)[0] / chords[k + 1][0].gradient(p)[1]  # up to its sign
         need(det < 1 and det > -1, "simple_multiplier, other_multiplier_stable: the other may be too large")
         if self.kind == "flip":
             w, u = self.vectors(chords)
             zero = [I.of(0, p)] * n
             second = [-x for x, _ in self.along(chords, w, zero)]
-            h = Linear(self.matrix(chords, 1, False), p).solve(second, 2)
+            h = Linear(self.matrix(chords, 1, False), p).solve(second, ROUNDS)
             cubic = sum(x * y for x, (_, y) in zip(u, self.along(chords, w, h)))
             need(0 not in cubic, "nondegenerate: the cubic coefficient of the normal form may be 0")
 
     def along(self, chords, w, h):
         """Of each R, along w*e + h*e**2, the coefficients of e**2 and e**3."""
-        found, w, h, at = [], self.round(w, self.twist), self.round(h, 1), algebra(3)[1]
+        found, w, h = [], self.round(w, self.twist), self.round(h, 1)
         e = Jet.of(0, 3, 0)
         ways = [e * a + e * e * b for a, b in zip(w, h)]
         for k in range(1, len(self.parts) + 1):
             gap = composed(chords[k][0], [*ways[k : k + 2], e * 0]) - composed(
                 chords[k - 1][1], [*ways[k - 1 : k + 1], e * 0]
             )
-            found.append([gap.c[at[n, 0, 0]] for n in (2, 3)])
+            found.append([gap.c[algebra(gap.degree)[1][n, 0, 0]] for n in (2, 3)])
         return found

@@ -84,7 +84,7 @@ def test_what_is_followed_begins_in_the_cone_over_its_interval_and_not_beyond_th
 
     def orbit(launch, boxes, way, degree):
         asked.append((launch(*boxes), boxes, way, degree))
-        return [None, [check.Jet.of(number(check, k), 0) for k in (8, 9)]]
+        return [None, *([check.Jet.of(number(check, x), 0) for x in (k, k + 1)] for k in (3, 8))]
 
     made.table.orbit = orbit
     x = number(check, "-1/16").hull(number(check, "-1/32"))

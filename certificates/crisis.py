@@ -12,10 +12,9 @@ from region import BITS, HALVINGS, Inside, bend, convex
 ENTRIES = {"schema", "name", "kind", "scene", "saddle", "side", "lam", "columns", "rows", "parts", "start", "sink"}
 GRID, MOST = (342, 512), 60_000  # columns for a part of the table that turns onto the next, and rows; cells of a set
 CUTS, PIECES = 16, 96  # of lam; of the branch
-AWAY, SAMPLES, LONG = 0.1, 400, 60  # how far from the saddle the pieces are; orbits along the branch that are tried
+AWAY, SAMPLES, LONG, STEP = 0.1, 400, 60, 0.381966  # how far from the saddle the pieces are; orbits that are tried
 SMALL, TINY, MORE = 24, 240, 1200  # bits by which the local branch is small; more of them for one orbit along it
-WHERE, NEAR, STEP = Fraction(1, 10**5), Fraction(1, 2**36), 0.381966  # a saddle is said, and sought; samples of a round
-LANDING, TRIED, UNITS = Fraction(1, 2**12), Fraction(1, 80), 1 << 24  # where a landing and a saddle are sought
+WHERE, NEAR, LANDING, TRIED = (Fraction(1, n) for n in (10**5, 2**36, 2**12, 80))  # about a saddle, about landings
 
 
 def crisis(given):
@@ -100,8 +99,7 @@ def derivative(table, turn, state, lam):
     With the angle `tau` of the tangent the law is `psi1 = -lam*(psi + tau1 - tau - pi)`."""
     p, (theta, _), names = table.p, state, table.letters | {"lam": lam}
     way = [(0, theta), (0, (theta + pi(p) * (turn * 2)).wide(I.of(LANDING, p)))]
-    launch = lambda x, y, _: (x, y, names)  # noqa: E731
-    _, (there, _) = table.orbit(launch, [*state, lam], way, 2)
+    _, (there, _) = table.orbit(lambda x, y, _: (x, y, names), [*state, lam], way, 2)
     (a, b, _), here, then = there.gradient(p), bend(table, theta), bend(table, value(there))
     return (a, b), ((here - then * a) * lam, (then * b + 1) * -lam), (a + b * here) * -lam
 
@@ -139,7 +137,7 @@ class Branch:
     def __init__(self, table, turn, lam, near, small):
         p, self.table, self.turn, self.lam = table.p, table, turn, I.of(lam, table.p)
         at = found(table, turn, self.lam, near.real())
-        self.theta = at.wide(I(UNITS, UNITS, p))
+        self.theta = at.wide(I(1 << 24, 1 << 24, p))
         one(table, turn, self.theta, self.lam)
         need(self.theta.inside(I.of(near, p)), "manifold: the saddle may be another")
         self.psi = value(law(table, turn, self.theta, self.lam)[1])
@@ -155,11 +153,9 @@ class Branch:
         root = (trace * trace - det * 4).mid()
         root = I(isqrt(root.lo << p), isqrt(root.lo << p), p)
         grows, falls = (trace + root) / 2, (trace - root) / 2
-        along, across = (((half - a) / b).mid() for half in (grows, falls))
-        return grows.mid(), along, across
+        return grows.mid(), *(((half - a) / b).mid() for half in (grows, falls))
 
-    def state(self, x, y):
-        return x + y + self.theta, x * self.along + y * self.across + self.psi
+    state = lambda self, x, y: (x + y + self.theta, x * self.along + y * self.across + self.psi)  # noqa: E731
 
     def proved(self):
         """What no factor of a round along the curve exceeds, when all is proved of it."""
@@ -250,6 +246,5 @@ class Grown(Inside):
         except Unproved as why:
             need(more, why)
         half = size / 2
-        return set().union(
-            *(self.images(x, y, half, more - 1) for x in (column, column + half) for y in (row, row + half))
-        )
+        corners = [(x, y) for x in (column, column + half) for y in (row, row + half)]
+        return set().union(*(self.images(*at, half, more - 1) for at in corners))

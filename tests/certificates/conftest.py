@@ -40,6 +40,12 @@ def make() -> ModuleType:
 
 
 @pytest.fixture(scope="session")
+def long(check) -> ModuleType:
+    """What proves cycles of many bounces."""
+    return check.beside("long")
+
+
+@pytest.fixture(scope="session")
 def crisis(check) -> ModuleType:
     """What proves a boundary crisis, and the branches of its saddles."""
     return check.beside("crisis")

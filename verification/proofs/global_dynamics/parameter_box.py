@@ -125,12 +125,10 @@ class Landings:
     def of(self, boxes: Boxes, find: Callable[[Boxes], Landing]) -> Landing:
         """The landings, those that are new by `find`."""
         keys = np.stack([*boxes.x, *boxes.y], axis=-1).view("V32").ravel().tolist()
-        new = np.array([i for i, key in enumerate(keys) if key not in self.index], dtype=np.int64)
-        if new.size:
-            for i in new:
-                self.index[keys[i]] = len(self.index)
-            (x0, x1), (y0, y1) = boxes.x, boxes.y
-            piece, theta, eta, _ = find(Boxes(boxes.chart[new], (x0[new], x1[new]), (y0[new], y1[new])))
+        new = {key: i for i, key in enumerate(keys) if key not in self.index}  # once, where a box is there twice
+        if new:
+            self.index |= {key: len(self.index) + count for count, key in enumerate(new)}
+            piece, theta, eta, _ = find(boxes.chosen(np.array([*new.values()])))
             columns = np.broadcast_arrays(piece.low, piece.high, theta.m, theta.r, eta.m, eta.r)
             self.known = np.concatenate([self.known, np.stack(columns)], axis=1)
         low, high, *balls = self.known[:, [self.index[key] for key in keys]]

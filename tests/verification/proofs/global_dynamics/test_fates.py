@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,10 +11,20 @@ from scipy.sparse import csr_matrix
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import BallArray
+from verification.proofs.global_dynamics import fates
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
-from verification.proofs.global_dynamics.fates import Cluster, Fate, _contraction, _reach, _staying, clusters, holding
-from verification.proofs.global_dynamics.flights import Piece, Slopes
-from verification.proofs.global_dynamics.graph import Grid, Transitions
+from verification.proofs.global_dynamics.fates import (
+    Cluster,
+    Fate,
+    _contraction,
+    _reach,
+    _rectangles,
+    _staying,
+    clusters,
+    holding,
+)
+from verification.proofs.global_dynamics.flights import Piece, Slopes, matrix
+from verification.proofs.global_dynamics.graph import Cells, Grid, Transitions
 
 ONE = np.ones(1)
 HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))
@@ -92,6 +103,77 @@ def test_factors_of_linear_maps_are_those_worked_out_by_hand():
             0.75, abs=1e-6
         )
     assert _staying(slopes((1, 0), (-1, 0)), np.zeros(2, dtype=np.int64), graph(1, (0, 0))) is None  # it folds
+
+
+LINKS = (0, 1), (1, 2), (2, 0), (1, 0), (2, 2)  # of three clusters
+
+
+def random_slopes(random, wide):
+    """Derivatives on seven pieces of three clusters, each stretched one way; the balls are so wide."""
+    where = np.array([0, 0, 1, 1, 1, 2, 2])
+    sign = random.choice([-1, 1], 3)[where]
+    stretch, law = random.uniform(2.5, 3.5, 7) * sign, random.uniform(0.2, 0.4, 7)
+    others = random.uniform(-0.5, 0.5, (3, 7))
+    drift = random.uniform(-0.3, 0.3, 7)
+    balls = [BallArray(x, np.full(7, wide)) for x in (stretch, *others, law, drift)]
+    return where, Slopes(*balls)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cones_hold_all_slopes_that_come_to_a_cluster_and_walks_are_summed_by_the_least_growth(monkeypatch, seed):
+    """Of horizontal vectors over all walks of six bounces; what is found is no less than that, and hardly more."""
+    monkeypatch.setattr(fates, "WALKS", 3)
+    where, s = random_slopes(np.random.default_rng(seed), 0.0)
+    by_theta, by_phi, here, there, law, drift = (ball.m for ball in s)
+    come = [[0.0], [0.0], [0.0]]
+    for _ in range(6):
+        after = [list(some) for some in come]
+        for a, b in LINKS:
+            for k in np.flatnonzero(where == a):
+                for slope in come[a]:
+                    stretch = by_theta[k] + by_phi[k] * slope
+                    image = drift[k] - law[k] * (there[k] - (here[k] - slope) / stretch)
+                    after[b].append(image)
+        come = [[min(some), max(some)] for some in after]
+    least = [
+        min(abs(by_theta[k] + by_phi[k] * x) for k in np.flatnonzero(where == a) for x in come[a]) for a in range(3)
+    ]
+    sums = np.ones(3)
+    for _ in range(3):
+        sums = np.array([sum(sums[b] for a, b in LINKS if a == k) / least[k] for k in range(3)])
+    found = _staying(s, where, graph(3, *LINKS))
+    assert sums.max() < found < sums.max() * 1.05
+    wide = random_slopes(np.random.default_rng(seed), 0.02)[1]
+    assert found < _staying(wide, where, graph(3, *LINKS)) < found * 1.3
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_contraction_along_a_round_is_the_root_of_that_of_its_product_and_no_less(seed):
+    """Of three clusters in a round, with two pieces each: of the greatest absolute values of the entries."""
+    random = np.random.default_rng(seed)
+    by_theta, by_phi, here, there, law, drift = random.uniform(-1, 1, (6, 6))
+    radius = random.uniform(0, 0.1, 6)
+    s = Slopes(BallArray(by_theta, radius), *(BallArray(x, 0 * x) for x in (by_phi, here, there, law, drift)))
+    entries = matrix(s)
+    size = np.array([[np.abs(x.m) + x.r for x in row] for row in entries])
+    each = [np.maximum(size[:, :, 2 * k], size[:, :, 2 * k + 1]) for k in range(3)]
+    root = np.max(np.abs(np.linalg.eigvals(each[2] @ each[1] @ each[0]))) ** (1 / 3)
+    found = _contraction(s, np.repeat(np.arange(3), 2), graph(3, (0, 1), (1, 2), (2, 0)))
+    assert root < found < root * (1 + 1e-7)
+    assert _contraction(slopes((0.5, 0), (0.25, 0)), np.zeros(2, dtype=int), graph(1, (0, 0))) > 0.5
+    unknown = s._replace(by_theta=BallArray(by_theta, np.where(np.arange(6) == 3, np.inf, radius)))
+    with np.errstate(invalid="ignore"):
+        assert _contraction(unknown, np.repeat(np.arange(3), 2), graph(3, (0, 1), (1, 2), (2, 0))) == np.inf
+
+
+def test_the_rectangle_of_a_cluster_is_the_least_about_its_boxes_on_their_chart():
+    """Of three clusters on two charts, of boxes of two sizes."""
+    grid = Grid((Chart("a", (0.0, 4.0), (0.0, 4.0)), Chart("b", (10.0, 14.0), (-4.0, 0.0))), 4, 4)
+    rows = [(0, 0, 0, 2), (0, 3, 3, 1), (0, 2, 1, 1), (1, 1, 2, 1), (1, 3, 0, 1)]
+    cells = Cells(*(np.array(field) for field in zip(*rows, strict=True)))
+    found = _rectangles(SimpleNamespace(grid=grid), cells, np.array([0, 2, 0, 1, 1]), 3)
+    assert found.chart.tolist() == [0, 1, 0]
+    assert np.allclose(np.transpose([*found.x, *found.y]), [(0, 3, 0, 2), (11, 14, -4, -1), (3, 4, 3, 4)])
 
 
 def test_where_as_many_walks_go_on_as_stretching_thins_points_out_nothing_is_proved():

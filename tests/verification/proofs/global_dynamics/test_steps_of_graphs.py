@@ -137,6 +137,7 @@ def test_a_cycle_is_held_by_a_sink_where_no_other_part_holds_one_of_its_points()
     for parts in ([sink], [sink, far], [far, sink, far], [cluster(True, (5, 6, 0, 1)), sink]):
         assert holding(parts, points) is sink
     assert holding([sink], points[:1]) is None  # a cluster without a point
+    assert holding([sink], [points[0], (0, 0.25, 0.25)]) is None  # or with both
     assert holding([cluster(True, (0, 3, 0, 1), (2, 3, 0, 1))], points) is None  # or a point in both
 
 

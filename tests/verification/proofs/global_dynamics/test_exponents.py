@@ -12,7 +12,7 @@ from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics import regions as statements
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
-from verification.proofs.global_dynamics.flights import Slopes
+from verification.proofs.global_dynamics.flights import Piece, Slopes
 from verification.proofs.global_dynamics.graph import Grid, Transitions, morse_graph, refined
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import (
@@ -22,6 +22,7 @@ from verification.proofs.global_dynamics.regions import (
     expansion,
     factors,
     least_mean,
+    shares,
 )
 
 
@@ -243,6 +244,69 @@ def test_a_bound_holds_for_every_vector_of_a_cone_along_every_walk(monkeypatch, 
     missing = True  # of the edges some are not there: orbits may walk elsewhere
     unknown = expansion(One(), Graph(), np.array([True, True, True, False]))
     assert (unknown.low, unknown.high) == (-np.inf, np.inf)
+
+
+@pytest.mark.parametrize(("block", "most"), [(1, 9), (20, 18), (1 << 14, 72)])
+def test_derivatives_are_told_of_each_part_of_each_block_with_its_chart(monkeypatch, block, most):
+    """In pieces: of a box that lands on two charts there are two rows."""
+    monkeypatch.setattr(statements, "BLOCK", block)
+    charts, asked = (Chart("a", (0.0, 2.0), (0.0, 2.0)), Chart("b", (5.0, 7.0), (1.0, 3.0))), []
+
+    def derivatives(boxes):
+        asked.append(boxes.chart.size)
+        every = np.arange(boxes.chart.size)
+        for on, chart in ((every, boxes.chart[every] + 10), (every[boxes.x[0] > 1], 20 + boxes.chart[boxes.x[0] > 1])):
+            middle = [BallArray((low[on] + high[on]) / 2) for low, high in (boxes.x, boxes.y)]
+            piece = Piece(on, chart, 0.0 * on, 0.0 * on, True)
+            yield piece, Slopes(*middle, BallArray(3.0, 0.5), *(BallArray(0.0 * on + k) for k in (4, 5)))
+
+    grid = Grid(charts, 2, 2)
+    found = statements.derivatives(SimpleNamespace(derivatives=derivatives), grid, grid.whole(), 3)
+    assert max(asked) == most
+    assert sum(asked) == 8 * 9
+    boxes, wanted = grid.boxes(grid.whole()), []
+    for k in range(8):
+        chart, left, bottom = boxes.chart[k], boxes.x[0][k], boxes.y[0][k]
+        for i, j in np.ndindex(3, 3):
+            row = k, chart + 10, left + (i + 0.5) / 3, bottom + (j + 0.5) / 3
+            wanted += [row, (k, chart + 20, *row[2:])] if left + i / 3 > 1 + 1e-9 or chart else [row]
+    rows = sorted(zip(found.source, found.chart, found.slopes.by_theta.m, found.slopes.by_phi.m, strict=True))
+    assert np.allclose(rows, sorted(wanted), atol=1e-12)
+    assert {*found.slopes.bend_here.m, *found.slopes.bend_here.r} == {3.0, 0.5}
+    assert {*found.slopes.bend_there.m} == {4.0}
+    assert {*found.slopes.law.m} == {5.0}
+    assert {*found.slopes.drift.m} == {0.0}
+
+
+def test_a_document_has_no_more_boxes_than_fit_and_a_region_is_cut_no_finer_than_said(monkeypatch):
+    monkeypatch.setattr(statements, "MOST_BOXES", 5)
+    assert statements._unrolled([[0, 1, 0, 0, 3], [0, 1, 1, 0, 2]], 1, 8, 6).chart.size == 5
+    with pytest.raises(ValueError, match="runs is no list"):
+        statements._unrolled([[0, 1, 0, 0, 3], [0, 1, 1, 0, 3]], 1, 8, 6)
+    map = SimpleNamespace(scene=Scene("circle"), range=(Fraction(1, 2), Fraction(1, 2)))
+    assert statements.region(map, walks((0, 1), (1, 0)), 0).parts == 1
+    assert statements.region(map, walks((0, 1), (1, 0)), 0, 3).parts == 3
+
+
+@pytest.mark.parametrize("edges", [[(0, 1), (1, 0)], [(0, 1), (1, 0), (2, 3)]])
+def test_a_set_is_refused_as_soon_as_one_of_its_boxes_has_no_edge_within_it(edges):
+    """Box 2 leads nowhere, or to a box outside of the set."""
+    graph = walks(*edges).transitions
+    members = np.isin(np.arange(9), (0, 1, 2))
+    with pytest.raises(ValueError, match="no edge within the set"):
+        expansion(SimpleNamespace(charts=graph.grid.charts), graph, members)
+
+
+def test_shares_count_each_box_by_its_area_and_only_leaves():
+    """Of two charts the first is three times as large; the other boxes lead outside, and one of them was cut."""
+    graph = walks((0, 0), (1, 0), (4, 4), (5, 4), (5, 0), *((k, 8) for k in (2, 3, 6, 7, 8)))
+    graph.transitions.leaf[3] = False
+    found = [shares(graph, k) for k in range(2)]
+    rest = {(0,): (6 / 13, 7 / 13), (4,): (1 / 13, 2 / 13)}
+    for some, (low, high) in zip(graph.sets[:2], found, strict=True):
+        assert (low, high) == pytest.approx(rest[tuple(some)], abs=1e-8)
+        assert low < rest[tuple(some)][0]
+        assert rest[tuple(some)][1] < high
 
 
 def walks(*edges):

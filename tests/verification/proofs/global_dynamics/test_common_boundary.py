@@ -142,6 +142,26 @@ def test_an_orbit_enters_a_disc_when_a_landing_is_proved_to_lie_in_it_or_a_copy(
     assert min(sum(seen), len(seen) - sum(seen)) > 30
 
 
+@pytest.mark.parametrize(
+    ("theta", "phi", "held"), [(0.5, 0, False), (0.4375, 0, True), (0, -0.5, False), (0, 0.25, True)]
+)
+def test_the_edge_itself_of_a_disc_is_no_part_of_it(monkeypatch, theta, phi, held):
+    whole = SimpleNamespace(
+        start=lambda *_: None, orbit=lambda *_: iter([SimpleNamespace(theta=arb(theta), phi=arb(phi))])
+    )
+    monkeypatch.setattr(common_boundary, "EnclosedMap", lambda *_: whole)
+    monkeypatch.setattr(common_boundary, "PinballMap", lambda *_, lam: None)
+    one = Disc((0.0, 0.0), ((1.0, 0.0), (0.0, 1.0)), 0.5)
+    assert common_boundary.enters(FOUND.scene, FOUND.lam, (arb(0), arb(0)), one, (Fraction(0),)) is held
+
+
+def test_a_disc_without_a_point_is_taken_nowhere():
+    """Of a radius below 0 the image would be smaller whatever the norm."""
+    unit = ((1.0, 0.0), (0.0, 1.0))
+    assert not attracts(stub([[1.5, 0], [0, 1.5]], (0.0, 0.0)), Disc((0.0, 0.0), unit, -1.0), 0.0)
+    assert attracts(stub([[0.5, 0], [0, 0.5]], (0.0, 0.0)), Disc((0.0, 0.0), unit, 1.0), 0.0)
+
+
 def off(at, centre, part):
     """From the middle of a copy turned by thirds, up to whole turns."""
     theta = at[0] - centre[0] - tau * part / 3

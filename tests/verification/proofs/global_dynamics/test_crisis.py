@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -144,6 +145,7 @@ def test_a_damaged_document_is_refused(found, change):
         {"side": 0},
         {"lam": (Fraction(0), ABOVE)},
         {"lam": (ABOVE, BELOW)},
+        {"lam": (BELOW, BELOW)},
         {"lam": (BELOW, Fraction(1))},
         {"start": 1.5},
         {"saddle": replace(TRIANGLE, start=TRIANGLE.start * 2)},
@@ -184,10 +186,15 @@ class Cycle:
 @pytest.mark.parametrize("wrong", [None, *range(6)])
 def test_a_saddle_is_continued_only_while_every_two_that_overlap_are_proved_to_be_one_cycle(monkeypatch, wrong):
     """Of three parts of the range each is compared with the saddle at its lower and at its upper end."""
-    asked = []
+    asked, lams = [], []
+
+    def enclosed(orbit, map, lam):
+        lams.append(lam.real)
+        return Cycle(orbit, (acb(orbit.start[0]),))
+
     monkeypatch.setattr(crisis, "CUTS", 3)
     monkeypatch.setattr(crisis, "complex_balls", lambda _: None)
-    monkeypatch.setattr(crisis, "enclosed_saddle", lambda orbit, map, lam: Cycle(orbit, (acb(orbit.start[0]),)))
+    monkeypatch.setattr(crisis, "enclosed_saddle", enclosed)
     monkeypatch.setattr(crisis, "one_cycle", lambda *pair: asked.append(pair) or len(asked) - 1 != wrong)
     monkeypatch.setattr(BoundaryCrisis, "map", type("", (), {"over": lambda *_: None})())
     stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (0.0, 0.0))
@@ -197,6 +204,13 @@ def test_a_saddle_is_continued_only_while_every_two_that_overlap_are_proved_to_b
         assert first.points[0].real.contains(arb(TRIANGLE.start[0]))
         assert len(asked) == 6
         assert first is not last
+        ends = [BELOW + (ABOVE - BELOW) * Fraction(k, 3) for k in range(4)]
+        for k, at in enumerate(ends):
+            assert abs(lams[2 * k] - arb(at.numerator) / at.denominator) < 1e-15
+        for around, low, high in zip(lams[1::2], lams[::2], lams[2::2], strict=False):
+            assert around.contains(low)
+            assert around.contains(high)
+            assert float(around.rad()) * 2 < float(high - low) * 1.001
     else:
         with pytest.raises(TooWideError, match="the cycle at an end may be another"):
             stated._continued()
@@ -260,7 +274,7 @@ def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wr
 
         return made
 
-    where = (arb(0), arb(0))
+    where, asked = (arb(0), arb(0)), []
     stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (2.0 if wrong == "seed" else 0.0, 0.0))
     monkeypatch.setattr(crisis, "PinballImages", lambda scene, lam: lam)
     monkeypatch.setattr(crisis, "boxed", lambda points: None if wrong == "seed" and points[0][0] > 1 else points)
@@ -269,7 +283,7 @@ def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wr
     steps = {
         "_continued": unless("_continued", (None, None)),
         "_branch": unless("_branch", "branch"),
-        "_launched": lambda *_: [where],
+        "_launched": lambda self, *given: asked.append(given) or [where],
         "_turned": lambda self, points: points,
         "_leaves": lambda *_: wrong != "_leaves",
         "_grown": lambda self, lam, start: None if wrong == ("kept" if lam == (BELOW, BELOW) else "taken") else lam,
@@ -280,6 +294,11 @@ def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wr
     assert {item for item, value in stated.checks.items() if value is not True} == MISSING[wrong]
     assert set(stated.checks.values()) <= {True, None}
     assert stated.proved is (wrong == "")
+    if wrong == "":  # all of a piece from a point to its image is followed
+        ((branch, low, high),) = asked
+        assert (branch, low[0], high[-1]) == ("branch", 0, 1)
+        assert np.array_equal(low[1:], high[:-1])
+        assert np.all(low < high)
 
 
 def test_boxes_about_phase_points_hold_them_up_to_whole_turns():
@@ -295,10 +314,28 @@ def test_boxes_about_phase_points_hold_them_up_to_whole_turns():
                 low, high = (arb(float(end[k])) + by * 2 * arb.pi() for end in ends)
                 assert low < x.lower()
                 assert x.upper() < high
-                assert high - low < 2 * x.rad() + 1e-10
+                assert high - low < 2 * x.rad() + 2.5e-14 * (1 + 2 * np.pi * abs(by))
             assert abs(middle) <= np.pi + 1e-9
     for bad in ((arb("nan"), arb(0)), (arb(0), arb(0, "inf"))):
         assert boxed([(arb(0), arb(0)), bad]) is None
+
+
+def test_an_orbit_along_the_branch_leaves_from_its_start_at_the_upper_contraction(monkeypatch):
+    asked, stated = [], BoundaryCrisis(EGG, TRIANGLE, -1, (BELOW, ABOVE), *GRID, 0.25, (0.0, 0.0))
+    branch = SimpleNamespace(points=lambda *given: asked.append(given) or [("theta", "phi")])
+    for held in (True, False):
+        monkeypatch.setattr(crisis, "enters", lambda *given, held=held: asked.append(given) or held)
+        assert stated._leaves(branch, "taken") is held
+    assert asked == [(-1, [0.25], [0.25]), (EGG, ABOVE, ("theta", "phi"), "taken")] * 2
+    monkeypatch.setattr(crisis, "grown", lambda *given: given)
+    assert stated._grown("map", "start") == ("map", GRID, "start")
+    again = BoundaryCrisis.from_dict(json.loads(json.dumps(stated.to_dict())))
+    assert again == stated
+    ends = replace(stated, columns=crisis.GRID["columns"], rows=crisis.GRID["rows"], parts=16)
+    assert BoundaryCrisis.from_dict(ends.to_dict()) == ends
+    for name in ("columns", "rows", "parts"):
+        with pytest.raises(ValueError, match=f"{name} holds"):
+            BoundaryCrisis.from_dict(ends.to_dict() | {name: getattr(ends, name) + 1})
 
 
 class Thirds:

@@ -95,6 +95,7 @@ def test_factors_of_linear_maps_are_those_worked_out_by_hand():
     assert _contraction(slopes((4, 0), (0.2, 0)), each, round) < 1  # 0.8 in a round
     assert _contraction(slopes((4, 0), (0.3, 0)), each, round) > 1
     assert _staying(slopes((2, 0), (2, 0)), each, round) == pytest.approx(2.0**-64, rel=1e-6)
+    assert _staying(slopes((2, 0), (2, 0)), each, round) > 2.0**-64 * (1 + 64 * 1.5e-9)  # with room for roundings
     assert _staying(slopes((4, 0), (0.2, 0)), each, round) > 1
     for sign in (1, -1):  # of all derivatives in the balls the least favourable one
         wide = slopes((2 * sign, 0), (2 * sign, 0), radius=0.5)
@@ -147,6 +148,18 @@ def test_cones_hold_all_slopes_that_come_to_a_cluster_and_walks_are_summed_by_th
     assert found < _staying(wide, where, graph(3, *LINKS)) < found * 1.3
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_cone_grows_until_it_holds_what_comes_when_that_comes_from_one_side_alone(side):
+    """`slope' = side/10 + slope/(2 - side*slope/2)`: from 0 on one end stays, and the other one nears a fixed point."""
+    one = lambda x: BallArray(np.array([float(x)]), np.zeros(1))  # noqa: E731
+    found = _staying(Slopes(*map(one, (-2, side / 2, 0, 0, 1, side / 10))), np.zeros(1, dtype=int), graph(1, (0, 0)))
+    slope = 0.0
+    for _ in range(200):
+        slope = side / 10 + slope / (2 - side * slope / 2)
+    least = 2 - abs(slope) / 2
+    assert least**-64.0 < found < (least - 0.01) ** -64.0
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_contraction_along_a_round_is_the_root_of_that_of_its_product_and_no_less(seed):
     """Of three clusters in a round, with two pieces each: of the greatest absolute values of the entries."""
@@ -160,7 +173,7 @@ def test_a_contraction_along_a_round_is_the_root_of_that_of_its_product_and_no_l
     root = np.max(np.abs(np.linalg.eigvals(each[2] @ each[1] @ each[0]))) ** (1 / 3)
     found = _contraction(s, np.repeat(np.arange(3), 2), graph(3, (0, 1), (1, 2), (2, 0)))
     assert root < found < root * (1 + 1e-7)
-    assert _contraction(slopes((0.5, 0), (0.25, 0)), np.zeros(2, dtype=int), graph(1, (0, 0))) > 0.5
+    assert _contraction(slopes((0.5, 0), (0.25, 0)), np.zeros(2, dtype=int), graph(1, (0, 0))) > 0.5 * (1 + 1.5e-9)
     unknown = s._replace(by_theta=BallArray(by_theta, np.where(np.arange(6) == 3, np.inf, radius)))
     with np.errstate(invalid="ignore"):
         assert _contraction(unknown, np.repeat(np.arange(3), 2), graph(3, (0, 1), (1, 2), (2, 0))) == np.inf
@@ -280,6 +293,17 @@ def test_boxes_that_return_are_judged_only_where_all_of_them_land_on_one_arc_les
         assert part.factor == pytest.approx(0.5, abs=1e-6)
         assert np.all(part.boxes.x[1] - part.boxes.x[0] == pytest.approx(np.pi / 4))
         assert np.all(part.boxes.y[1] - part.boxes.y[0] == pytest.approx(0.5))
+
+
+def test_among_some_vertices_those_that_are_passed_once_are_no_part_of_what_stays():
+    """Where 5 leads to 9, and 9 to itself; 17, which returns too, is not among them."""
+    grid = Grid((Chart("turning", (-np.pi, np.pi), (-1.0, 1.0), True, True),), 8, 4)
+    made = Transitions(grid, grid.whole(), np.ones(32, dtype=bool), graph(33, (5, 9), (9, 9), (17, 17)))
+    assert [part.factor for part in clusters(Landings(), made, 0, np.isin(np.arange(33), (5, 9)))] == [
+        pytest.approx(0.5)
+    ]
+    assert len(clusters(Landings(), made, 0)) == 2
+    assert clusters(Landings(), made, 0, np.isin(np.arange(33), (5,))) == []
 
 
 @pytest.mark.parametrize(("edges", "complete"), [([(4, 5), (5, 6), (6, 4)], False), ([(4, 5), (5, 6), (6, 6)], True)])

@@ -66,6 +66,37 @@ def test_of_two_enclosures_of_an_exit_the_common_part_is_taken():
     assert np.allclose(row[4:], [[-0.15, -0.2], [-0.1, -0.18]], atol=1e-14)
 
 
+def test_a_landing_whose_only_angle_is_that_of_the_strips_edge_is_kept():
+    map, eta = bare(top=0.5), BallArray(np.array([1.25]), np.array([0.125]))
+    map.top = -float(map.exit(eta, None).upper()[0])
+    piece = Piece(np.arange(1), np.zeros(1, dtype=int), np.zeros(1), np.ones(1), False)
+    on, *_, low, high = map.row(piece, about([0], [1]), eta, None)
+    assert (on.tolist(), low.tolist(), high.tolist()) == ([0], [-map.top], [-map.top])
+
+
+def test_exit_angles_are_asked_to_stay_below_a_quarter_turn_over_all_pieces(monkeypatch):
+    law = SimpleNamespace(check=lambda *_: None, places=lambda _: ())
+    pieces = [(BallArray(np.array([0.25, -0.75])),), (BallArray(np.array([0.5])),)]
+    map = bare(
+        scene=SimpleNamespace(law=law), map=SimpleNamespace(table=None), range=(0, 1), incidences=lambda: pieces,
+        exit=lambda ball: ball,
+    )  # fmt: skip
+    size = float(pieces[0][0].magnitude().max())
+    monkeypatch.setattr(images, "QUARTER", size)
+    with pytest.raises(ValueError, match="by a margin"):
+        map._steepest()
+    monkeypatch.setattr(images, "QUARTER", float(np.nextafter(size, 1)))
+    assert map._steepest() == size
+
+
+@pytest.mark.parametrize(("measured", "along"), [(True, None), (False, 1), (True, 1)])
+def test_a_law_along_the_boundary_that_is_no_formula_of_its_parameter_is_refused(monkeypatch, measured, along):
+    scene = Scene("circle", lam="1/2")
+    monkeypatch.setattr(type(scene.law), "on", lambda *_: SimpleNamespace(measured=measured, along=along))
+    with pytest.raises(ValueError, match="boxes know theta"):
+        PinballImages(scene)
+
+
 LAWS = {"-lam*sin(eta) - atan(eta)/4": False, "-lam*eta*(1 + cos(3*theta)/4) + sin(theta)/8": True}
 
 
@@ -115,9 +146,9 @@ def test_exits_and_slopes_of_a_law_over_pieces_are_enclosed_and_hardly_more(othe
 def test_a_law_is_invertible_where_its_slope_keeps_one_sign_on_all_pieces(low, high, held):
     """Over two pieces; also of those where only one end is not away from 0."""
     pieces = [(about([a], [b]), None) for a, b in zip(low, high, strict=True)]
-    for some in (pieces, pieces[::-1]):
-        map = SimpleNamespace(law=1, incidences=lambda some=some: iter([(k,) for k in some]), slopes=lambda one: one)
-        assert invertible(map) is held
+    for some in (pieces, pieces[::-1], [(about(low, high), None)], [(about(low[::-1], high[::-1]), None)]):
+        every = lambda some=some: iter([(k,) for k in some])  # noqa: E731
+        assert invertible(SimpleNamespace(law=1, incidences=every, slopes=lambda one: one)) is held
     assert invertible(SimpleNamespace(law=None))
 
 

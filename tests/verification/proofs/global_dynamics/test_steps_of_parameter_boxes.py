@@ -23,10 +23,10 @@ from verification.proofs.global_dynamics.database import (
     database,
     same_order,
 )
-from verification.proofs.global_dynamics.flights import Piece
+from verification.proofs.global_dynamics.flights import Flights, Piece
 from verification.proofs.global_dynamics.graph import Grid
 from verification.proofs.global_dynamics.images import QUARTER
-from verification.proofs.global_dynamics.parameter_box import Landings, ParameterBox, turns_of, varied
+from verification.proofs.global_dynamics.parameter_box import Landings, ParameterBox, ParameterFlights, turns_of, varied
 
 EGG = Scene("egg", alpha="1/20")
 LAM = Fraction(1, 2), Fraction(33, 64)
@@ -60,6 +60,33 @@ def test_a_shape_is_known_by_its_ends_and_what_it_holds_beside_its_middle(egg):
     assert (other.range, other.shared is egg.shared) == ((Fraction(1, 4), Fraction(1, 3)), True)
     assert other.top == pytest.approx(np.pi / 6)
     assert egg.range == LAM
+
+
+FLOWER, RANGE = {"polar": "1 + b*cos(5*theta)"}, (Fraction(1, 100), Fraction(1, 90))
+
+
+@pytest.mark.parametrize(
+    ("scene", "parameter", "ranges", "turns", "shares"),
+    [
+        (Scene("egg", alpha="1/20", lam="1/2", law="-lam*eta*(1 + cos(3*theta)/4)"), "alpha", {}, 1, False),
+        (Scene.of({**FLOWER, "shape": {"b": "1/90:0..1/30"}}), "b", {"b": (0, Fraction(1, 30))}, 5, True),
+        (Scene.of({**FLOWER, "shape": {"b": "1/90"}}), "b", {"b": RANGE}, 5, True),
+    ],
+    ids=["placed", "ranged", "free"],
+)
+def test_landings_are_shared_on_one_curve_under_one_law_and_else_found_for_each_box(
+    scene, parameter, ranges, turns, shares
+):
+    """A parameter without a range is given that of the box."""
+    made = ParameterBox(scene, LAM, parameter, RANGE)
+    assert made.scene.ranges == ranges
+    assert (made.turns, made.shared is not None) == (turns, shares)
+    boxes = Boxes(
+        np.zeros(2, dtype=int), (np.array([0.2, 0.5]), np.array([0.21, 0.51])), (np.zeros(2), np.full(2, 0.01))
+    )
+    found = made.images(boxes)
+    assert set(found.source) == {0, 1}
+    assert type(made.flights(boxes)) is (ParameterFlights if shares else Flights)
 
 
 @pytest.mark.parametrize(("top", "halves"), [(QUARTER, 0), (QUARTER / 2 * 1.001, 0), (QUARTER / 2, 1), (0.3, 2)])
@@ -224,11 +251,11 @@ def test_classes_are_the_boxes_joined_by_borders_across_which_graphs_continue(mo
     """Boxes continue where their numbers are equal and known; the largest class is the first."""
     monkeypatch.setattr(databases, "common", lambda here, there, *_: (here, there))
     monkeypatch.setattr(databases, "same_order", lambda met, *_: bool(met[0][0] == met[1][0]))
-    asked = np.array([[7, 7, 5, 5], [4, 7, 5, 4], [4, 4, 9, 9]], dtype=np.int8)
-    sets = np.array([[1, 0, KNOWN, KNOWN + 1], [2, 3, 3, 3], [1, 1, -1, 2]])
-    values = {"sets": sets, "top": np.ones((3, 4)), "cells": asked[:, :, None], "leads": asked[:, :, None]}
+    asked = np.array([[7, 7, 5, 5, 5], [4, 7, 5, 4, 6], [4, 4, 9, 9, 9]], dtype=np.int8)
+    sets = np.array([[1, 0, KNOWN, KNOWN + 1, 1], [2, 3, 3, 3, 2], [1, 1, 1, -1, 2]])
+    values = {"sets": sets, "top": np.ones((3, 5)), "cells": asked[:, :, None], "leads": asked[:, :, None]}
     found = SimpleNamespace(**{name: SimpleNamespace(values=some) for name, some in values.items()})
-    assert continued(found).tolist() == [[0, 0, 2, -1], [1, 0, 2, 3], [1, 1, -1, 4]]
+    assert continued(found).tolist() == [[0, 0, 2, -1, 3], [1, 0, 2, 4, 5], [1, 1, 6, -1, 7]]
 
 
 @pytest.mark.parametrize("sets", [1, KNOWN, KNOWN + 1])
@@ -289,12 +316,28 @@ def test_a_database_says_where_its_boxes_and_cells_lie():
     sweep = database(EGG, "alpha", [0.05, 0.06, 0.075], [0.0, 0.1, 0.2, 0.4], 24, 16, 4)
     sizes = {axis.name: len(axis.values) for axis in sweep.axes}
     assert sizes == {"alpha": 2, "lam": 3, "row": 16, "column": 24, "from": KNOWN, "to": KNOWN}
+    assert [axis.part for axis in sweep.axes] == [1, 3, 0, 0, 0, 0]
+    assert sweep.seed == 0
     assert sweep.axes[0].values == pytest.approx([0.055, 0.0675])
     assert sweep.axes[1].values == pytest.approx([0.05, 0.15, 0.3])
     said = sweep.settings
     assert (said["values"], said["lams"]) == (["1/20", "3/50", "3/40"], ["0", "1/10", "1/5", "2/5"])
     assert (said["turns"], sweep.collisions) == (3, 2 * 3 * 24 * 16)
     assert said["theta"][1] - said["theta"][0] == pytest.approx(2 * np.pi / 3)
+
+
+@pytest.mark.parametrize("placed", [False, True])
+def test_borders_are_clipped_to_the_range_of_a_shape_and_all_charts_lie_side_by_side(monkeypatch, placed):
+    monkeypatch.setattr(databases, "varied", lambda scene, name, *ends: asked.append(ends) or table([(0, 1)] * 3))
+    monkeypatch.setattr(databases, "turns_of", lambda _: 5)
+    law = {"law": "-lam*eta*(1 + cos(5*theta)/4)", "lam": "1/2"} if placed else {}
+    asked, scene = [], Scene.of({**FLOWER, **law, "shape": {"b": "1/90:1/100..1/30"}})
+    sweep = database(scene, "b", [0.0, 0.02, 0.05], list(np.arange(40) / 100), 24, 16, 4)
+    assert asked == [(Fraction(1, 100), Fraction(1, 30))]
+    assert sweep.settings["values"] == ["1/100", "1/50", "1/30"]
+    assert (sweep.settings["turns"], sweep.collisions) == (1 if placed else 5, 2 * 39 * 24 * 16 * 3)
+    assert [axis.part for axis in sweep.axes[:2]] == [1, databases.TOGETHER]
+    assert sweep.axes[3].size == 3 * 24
 
 
 @pytest.mark.parametrize(

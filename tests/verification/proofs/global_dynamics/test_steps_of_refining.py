@@ -100,6 +100,13 @@ def test_boxes_are_mapped_whole_unless_it_is_said_in_how_many_parts(monkeypatch)
         mapped(map, grid, Cells(*(field[:0] for field in grid.whole())))
 
 
+@pytest.mark.parametrize(("columns", "rows", "size"), [(8, 4, 8), (4, 8, 8), (8, 4, 3), (9, 4, 4), (8, 6, 4)])
+def test_blocks_that_do_not_fill_a_grid_each_way_are_refused(columns, rows, size):
+    with pytest.raises(ValueError, match="do not fit"):
+        Grid((SQUARE,), columns, rows).whole(size)
+    assert Grid((SQUARE,), columns, rows).whole(1).chart.size == columns * rows
+
+
 def test_edges_are_counted_before_there_are_too_many(monkeypatch):
     map, grid = Drawn(corner=2.0), Grid((SQUARE,), 8, 8)
     met, _ = mapped(map, grid, grid.whole())

@@ -31,15 +31,15 @@ class Drawn:
 
     charts = (SQUARE,)
 
-    def __init__(self, factor=0.45, corner=0.7):
-        self.factor, self.corner, self.asked = factor, corner, []
+    def __init__(self, factor=0.45, corner=0.7, centre=(0.3, 0.7)):
+        self.factor, self.corner, self.centre, self.asked = factor, corner, centre, []
 
     def images(self, boxes):
         self.asked.append(boxes.chart.size)
         away = (boxes.x[0] > self.corner) & (boxes.y[0] > self.corner)
         on = np.flatnonzero(~away)
-        x = tuple(0.3 + self.factor * (end[on] - 0.3) for end in boxes.x)
-        y = tuple(0.7 - self.factor * (end[on] - 0.7) for end in boxes.y[::-1])
+        x = tuple(self.centre[0] + self.factor * (end[on] - self.centre[0]) for end in boxes.x)
+        y = tuple(self.centre[1] - self.factor * (end[on] - self.centre[1]) for end in boxes.y[::-1])
         return Images(on, Boxes(boxes.chart[on], x, y), np.flatnonzero(away))
 
 
@@ -53,9 +53,12 @@ def targets(found, vertex):
     return set(found.edges.indices[found.edges.indptr[vertex] : found.edges.indptr[vertex + 1]].tolist())
 
 
-@pytest.mark.parametrize(("factor", "corner"), [(0.45, 0.7), (0.45, 2.0), (0.9, 2.0), (1.0, 0.5)])
-def test_a_refined_graph_has_every_cell_once_and_an_edge_wherever_an_image_meets_a_leaf_and_no_other(factor, corner):
-    map, grid = Drawn(factor, corner), Grid((SQUARE,), 16, 16)
+@pytest.mark.parametrize(
+    "given", [(0.45, 0.7), (0.45, 2.0), (0.9, 2.0), (1.0, 0.5), (0.1, 2.0, (0.01, 0.01)), (0.1, 2.0, (0.99, 0.99))]
+)
+def test_a_refined_graph_has_every_cell_once_and_an_edge_wherever_an_image_meets_a_leaf_and_no_other(given):
+    """Also where all orbits come to the first or the last cell."""
+    map, grid = Drawn(*given), Grid((SQUARE,), 16, 16)
     found = refined(map, grid, 4)
     leaves, outside = np.flatnonzero(found.leaf), found.count
     counted = [cell for k in leaves for cell in blocks(found.cells, k)]
@@ -112,7 +115,9 @@ def test_edges_are_counted_before_there_are_too_many(monkeypatch):
     met, _ = mapped(map, grid, grid.whole())
     count = int(((met.right - met.left + 1) * (met.top - met.bottom + 1)).sum())
     monkeypatch.setattr(graph, "EDGES", count)
-    assert transitions(map, grid, grid.whole()).edges.nnz == count + 65  # with those of the outside
+    every = transitions(map, grid, grid.whole())
+    assert every.edges.nnz == count + 65  # with those of the outside
+    assert every.leaf.all()
     monkeypatch.setattr(graph, "EDGES", count - 1)
     with pytest.raises(ValueError, match="edges, at most"):
         transitions(map, grid, grid.whole())
@@ -159,6 +164,18 @@ def test_morse_sets_and_their_order_are_those_of_all_walks(seed, outside, monkey
         monkeypatch.setattr(graph, "MOST", len(sets) - 1)
         with pytest.raises(ValueError, match="Morse sets, at most"):
             morse_graph(made)
+
+
+@pytest.mark.parametrize("from_", [None, 0, 4, 9])
+def test_the_outside_is_a_set_of_its_own_where_any_box_leads_there_also_the_last(from_):
+    once = np.zeros((11, 11), dtype=bool)
+    once[-1] = once[3, 3] = True
+    if from_ is not None:
+        once[from_, -1] = True
+    grid = Grid((SQUARE,), 10, 1)
+    found = morse_graph(Transitions(grid, grid.whole(), np.ones(10, dtype=bool), csr_matrix(once)))
+    outside = [] if from_ is None else [[from_, 10]]
+    assert [some.tolist() for some in found.sets] == [*outside, [3]]
 
 
 def test_a_graph_is_made_of_its_edges_whichever_order_they_have_and_however_often_one_is_there():
@@ -267,6 +284,13 @@ def test_what_is_reached_are_all_cells_that_images_meet_again_and_again(monkeypa
     assert reached(leaves, Grid(leaves.charts, 12, 12), start, 1) is None  # or leaves the chart
 
 
+def test_nothing_is_reached_where_of_several_boxes_one_leaves_the_chart():
+    leaves = Drawn(1.5, 2.0)
+    leaves.charts = (SQUARE._replace(kept=False),)
+    ends = (np.array([0.3, 0.9]), np.array([0.31, 0.92])), (np.array([0.7, 0.1]), np.array([0.71, 0.12]))
+    assert reached(leaves, Grid(leaves.charts, 12, 12), Boxes(np.zeros(2, dtype=int), *ends), 1) is None
+
+
 def test_kept_apart_asks_for_thirds_of_the_columns_and_tells_the_middles_of_its_columns(monkeypatch):
     asked = []
     map = SimpleNamespace(charts=(Chart("a", (-3.0, 3.0), (-1.0, 1.0), True, True),), closed=True)
@@ -277,6 +301,7 @@ def test_kept_apart_asks_for_thirds_of_the_columns_and_tells_the_middles_of_its_
     ((_, grid, begun, parts, turns),) = asked
     assert (grid.columns, grid.rows, parts, turns) == (12, 4, 7, (4,))
     assert begun is start
+    assert kept_apart(map, (3 << 18, 1 << 20, 1), start) is not None  # more cells than an array of them may have
     assert kept_apart(map, (11, 4, 7), start) is None
     assert kept_apart(map, (12, 4, 7), None) is None
 

@@ -102,8 +102,8 @@ class PlaneImages:
         (a, b), (c, d) = self.derivative(*whole)
         values = self.formula(*centre)
         x, y = (value + p * reach[0] + q * reach[1] for value, (p, q) in zip(values, ((a, b), (c, d)), strict=True))
-        everything = np.arange(boxes.chart.size)
-        return collected([(everything, boxes.chart, x.lower(), x.upper(), y.lower(), y.upper())], everything)
+        ends = x.lower(), x.upper(), y.lower(), y.upper()
+        return collected([(np.arange(boxes.chart.size), boxes.chart, *ends)], boxes.chart.size)
 
 
 def centred(boxes: Boxes) -> tuple[list[BallArray], list[BallArray], list[BallArray]]:
@@ -115,13 +115,16 @@ def centred(boxes: Boxes) -> tuple[list[BallArray], list[BallArray], list[BallAr
 Row = tuple[Indices, Indices, Array, Array, Array, Array]
 
 
-def collected(rows: list[Row], asked: Indices) -> Images:
-    """Images from rows of `source, chart, x low, x high, y low, y high`; a box with an end not finite is lost."""
+def collected(rows: list[Row], count: int) -> Images:
+    """Images of so many boxes, from rows of `source, chart, x low, x high, y low, y high`.
+
+    A box without a row, or with an end that is not finite, is lost.
+    """
     source, chart, *ends = (np.concatenate(column) for column in zip(*rows, strict=True))
     good = np.logical_and.reduce([np.isfinite(end) for end in ends])
-    known = np.zeros(max(asked.max(initial=-1), source.max(initial=-1)) + 1, dtype=bool)
+    known = np.zeros(count, dtype=bool)
     known[source] = True
     known[source[~good]] = False
-    keep, bad = known[source], asked[~known[asked]]
+    keep = known[source]
     a, b, c, d = (end[keep] for end in ends)
-    return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), bad)
+    return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), np.flatnonzero(~known))

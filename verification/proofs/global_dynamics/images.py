@@ -186,7 +186,7 @@ class PinballImages:
         with np.errstate(all="ignore"):  # what overflows or is no number counts as not known
             flights = self.flights(boxes)
             rows = [self.row(*flights.landing(piece)) for piece in flights.pieces(*flights.arcs())]
-        return collected(rows, np.arange(boxes.chart.size))
+        return collected(rows, boxes.chart.size)
 
     def row(self, piece: Piece, theta: BallArray, eta: BallArray, phi: BallArray | None) -> Row:
         """One rectangle for each box of a piece."""

@@ -74,7 +74,7 @@ class ParameterBox(PinballImages):
         if self.shared is None:
             return super().images(boxes)
         with np.errstate(all="ignore"):
-            return collected([self.row(*self.shared.of(boxes, self.landed))], np.arange(boxes.chart.size))
+            return collected([self.row(*self.shared.of(boxes, self.landed))], boxes.chart.size)
 
     def landed(self, boxes: Boxes) -> Landing:
         """Landings, worked out."""

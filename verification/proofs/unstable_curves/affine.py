@@ -65,7 +65,7 @@ class BrokenLine:
         for i, (left, right) in enumerate(pairwise(knot for knot, _ in self.knots)):
             on = np.flatnonzero(((high >= left) & (low <= right)) | ~known)
             rows.append((on, np.full(on.size, i), *np.clip((low[on], high[on]), left, right), down[on], up[on]))
-        return collected(rows, np.arange(boxes.chart.size))
+        return collected(rows, boxes.chart.size)
 
     def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
         """The derivative `((slope, 1), (b, 0))`, written as that of a flight, for each chart in which boxes land."""

@@ -1,5 +1,6 @@
 """Graphs of boxes that are refined, and sets of cells that grow: against every cell and every walk of a small grid."""
 
+from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
@@ -322,6 +323,21 @@ def test_parts_of_boxes_stand_beside_one_another_and_mirror_images_are_turned_ov
     assert (one.chart.tolist(), one.x[1].tolist(), one.y[0].tolist()) == ([0], [4.0], [2.0])
 
 
+@pytest.mark.parametrize(("low", "wide"), [(1000.0, 1.0), (1e-6, 1e-6), (-0.7, 1.9)])
+def test_parts_hold_all_of_their_box_exactly_and_overlap_by_roundings_alone(low, wide):
+    boxes = Boxes(
+        np.zeros(1, dtype=int), (np.array([low]), np.array([low + wide])), (np.array([-low]), np.array([wide]))
+    )
+    parts, _ = boxes.parts(7, 11)
+    for (start, end), (left, right), count, step in ((boxes.x, parts.x, 7, 11), (boxes.y, parts.y, 11, 1)):
+        start, end = Fraction(float(start[0])), Fraction(float(end[0]))
+        slack = Fraction(4, 10**15) * (abs(start) + abs(end))
+        for k in range(count):
+            exact = [start + (end - start) * (k + more) / count for more in (0, 1)]
+            assert max(start, exact[0] - slack) <= Fraction(float(left[k * step])) <= exact[0]
+            assert exact[1] <= Fraction(float(right[k * step])) <= min(end, exact[1] + slack)
+
+
 @pytest.mark.parametrize("bad", [None, 0, 1, 2, 3])
 def test_a_box_is_lost_when_any_end_of_any_of_its_rectangles_is_not_finite_or_when_it_has_none(bad):
     """Box 0 has two rectangles, box 1 one, box 2 none, box 3 one."""
@@ -331,7 +347,7 @@ def test_a_box_is_lost_when_any_end_of_any_of_its_rectangles_is_not_finite_or_wh
         ends[bad][0, 0] = (np.inf, -np.inf, np.nan, np.inf)[bad]
     rows = [(np.array([0, 1, 3]), np.array([0, 1, 0]), *(end[0] for end in ends)),
             (np.array([0]), np.array([1]), *(end[1, :1] for end in ends))]  # fmt: skip
-    found = collected(rows, np.arange(4))
+    found = collected(rows, 4)
     assert found.lost.tolist() == ([2] if bad is None else [0, 2])
     assert found.source.tolist() == ([0, 1, 3, 0] if bad is None else [1, 3])
     assert found.boxes.chart.tolist() == ([0, 1, 0, 1] if bad is None else [1, 0])

@@ -161,6 +161,8 @@ def test_each_hypothesis_of_the_statement_is_asked_when_it_is_made(changed):
     with pytest.raises(ValueError, match="crisis: "):
         replace(stated, **changed)
     assert {replace(stated, side=side, start=end).start for side, end in ((1, 0.0), (-1, 1.0))} == {0.0, 1.0}
+    for shift in ((4, 3), (-1, 3), (0, 1)):  # up to whole turns
+        assert replace(stated, saddle=replace(TRIANGLE, closure=Closure(1, shift))).side == 1
 
 
 def test_the_cells_of_rectangles_are_marked_and_no_others():
@@ -175,12 +177,34 @@ def test_the_cells_of_rectangles_are_marked_and_no_others():
     assert np.array_equal(_marked(grid, Rectangles(np.arange(4), chart, *sides, np.zeros(4, dtype=bool))), wanted)
 
 
+def test_the_cells_of_rectangles_that_overlap_are_marked_as_well_as_those_of_one():
+    random, grid = np.random.default_rng(3), Grid(tuple(Chart(name, (0, 1), (0, 1)) for name in "ab"), 6, 4)
+    for _ in range(20):
+        chart, left, bottom = random.integers(0, (2, 6, 4), (5, 3)).T
+        right, top = left + random.integers(0, 6, 5), np.minimum(bottom + random.integers(0, 4, 5), 3)
+        wanted = np.zeros((2, 6, 4), dtype=bool)
+        for number, a, b, c, d in zip(chart, left, right, bottom, top, strict=True):
+            wanted[number, np.arange(a, b + 1) % 6, c : d + 1] = True
+        met = Rectangles(np.arange(5), chart, left, right, bottom, top, np.zeros(5, dtype=bool))
+        assert np.array_equal(_marked(grid, met), wanted)
+
+
+def test_boxes_of_which_one_leaves_the_chart_do_not_lie_in_its_cells():
+    grid = Grid((Chart("plane", (0.0, 1.0), (0.0, 1.0)),), 4, 4)
+    for ends, held in (((0.5, 0.75), True), ((0.5, 1.25), False), ((-0.25, 0.5), False), ((-0.25, 1.25), False)):
+        at = np.array(ends)
+        boxes = Boxes(np.zeros(2, dtype=int), (at, at), (np.full(2, 0.5),) * 2)
+        assert _within((grid, np.ones((1, 4, 4), dtype=bool)), boxes) is held
+    assert crisis._as_images(boxes).lost.size == 0
+
+
 @dataclass(frozen=True)
 class Cycle:
     """In the place of an enclosed saddle."""
 
     orbit: object
     points: tuple[acb, ...]
+    lam: arb
 
 
 @pytest.mark.parametrize("wrong", [None, *range(6)])
@@ -190,7 +214,7 @@ def test_a_saddle_is_continued_only_while_every_two_that_overlap_are_proved_to_b
 
     def enclosed(orbit, map, lam):
         lams.append(lam.real)
-        return Cycle(orbit, (acb(orbit.start[0]),))
+        return Cycle(orbit, (acb(orbit.start[0]),), lam.real)
 
     monkeypatch.setattr(crisis, "CUTS", 3)
     monkeypatch.setattr(crisis, "complex_balls", lambda _: None)
@@ -203,7 +227,7 @@ def test_a_saddle_is_continued_only_while_every_two_that_overlap_are_proved_to_b
         first, last = stated._continued()
         assert first.points[0].real.contains(arb(TRIANGLE.start[0]))
         assert len(asked) == 6
-        assert first is not last
+        assert [first.lam.contains(lams[0]), last.lam.contains(lams[-1])] == [True, True]
         ends = [BELOW + (ABOVE - BELOW) * Fraction(k, 3) for k in range(4)]
         for k, at in enumerate(ends):
             assert abs(lams[2 * k] - arb(at.numerator) / at.denominator) < 1e-15
@@ -274,18 +298,23 @@ def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wr
 
         return made
 
-    where, asked = (arb(0), arb(0)), []
-    stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (2.0 if wrong == "seed" else 0.0, 0.0))
+    where, asked, seeds = (arb(0), arb(0)), [], []
+    stated = BoundaryCrisis(EGG, TRIANGLE, 1, (BELOW, ABOVE), *GRID, 0.5, (2.0 if wrong == "seed" else 0.0, 0.25))
     monkeypatch.setattr(crisis, "PinballImages", lambda scene, lam: lam)
-    monkeypatch.setattr(crisis, "boxed", lambda points: None if wrong == "seed" and points[0][0] > 1 else points)
+
+    def boxed(points):
+        seeds.append(points)
+        return None if wrong == "seed" and points[0][0] > 1 else points
+
+    monkeypatch.setattr(crisis, "boxed", boxed)
     monkeypatch.setattr(crisis, "_next", lambda *_: None if wrong == "_next" else where)
     monkeypatch.setattr(crisis, "_meets", lambda *_: wrong == "_meets")
     steps = {
-        "_continued": unless("_continued", (None, None)),
-        "_branch": unless("_branch", "branch"),
+        "_continued": unless("_continued", ("first", "last")),
+        "_branch": unless("_branch", None) if wrong == "_branch" else lambda self, *given: given[:2],
         "_launched": lambda self, *given: asked.append(given) or [where],
         "_turned": lambda self, points: points,
-        "_leaves": lambda *_: wrong != "_leaves",
+        "_leaves": lambda self, *given: asked.append(given) or wrong != "_leaves",
         "_grown": lambda self, lam, start: None if wrong == ("kept" if lam == (BELOW, BELOW) else "taken") else lam,
     }
     for name, step in steps.items():
@@ -295,8 +324,10 @@ def test_each_step_of_the_proof_that_fails_leaves_its_items_open(monkeypatch, wr
     assert set(stated.checks.values()) <= {True, None}
     assert stated.proved is (wrong == "")
     if wrong == "":  # all of a piece from a point to its image is followed
-        ((branch, low, high),) = asked
-        assert (branch, low[0], high[-1]) == ("branch", 0, 1)
+        (branch, low, high), last = asked
+        assert (branch, low[0], high[-1]) == (("first", BELOW), 0, 1)
+        assert last == (("last", ABOVE), (BELOW, ABOVE))
+        assert [float(x) for x in seeds[0][0]] == [0.0, 0.25]
         assert np.array_equal(low[1:], high[:-1])
         assert np.all(low < high)
 
@@ -321,7 +352,7 @@ def test_boxes_about_phase_points_hold_them_up_to_whole_turns():
 
 
 def test_an_orbit_along_the_branch_leaves_from_its_start_at_the_upper_contraction(monkeypatch):
-    asked, stated = [], BoundaryCrisis(EGG, TRIANGLE, -1, (BELOW, ABOVE), *GRID, 0.25, (0.0, 0.0))
+    asked, stated = [], BoundaryCrisis(EGG, TRIANGLE, -1, (BELOW, ABOVE), *GRID, 0.25, (0.5, -0.25))
     branch = SimpleNamespace(points=lambda *given: asked.append(given) or [("theta", "phi")])
     for held in (True, False):
         monkeypatch.setattr(crisis, "enters", lambda *given, held=held: asked.append(given) or held)

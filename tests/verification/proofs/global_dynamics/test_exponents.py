@@ -279,6 +279,7 @@ def test_derivatives_are_told_of_each_part_of_each_block_with_its_chart(monkeypa
 
 
 def test_a_document_has_no_more_boxes_than_fit_and_a_region_is_cut_no_finer_than_said(monkeypatch):
+    assert statements._unrolled([[0, 1, 0, 0, 1]], 1, 8, 6).chart.size == 1
     monkeypatch.setattr(statements, "MOST_BOXES", 5)
     assert statements._unrolled([[0, 1, 0, 0, 3], [0, 1, 1, 0, 2]], 1, 8, 6).chart.size == 5
     with pytest.raises(ValueError, match="runs is no list"):
@@ -301,8 +302,9 @@ def test_shares_count_each_box_by_its_area_and_only_leaves():
     """Of two charts the first is three times as large; the other boxes lead outside, and one of them was cut."""
     graph = walks((0, 0), (1, 0), (4, 4), (5, 4), (5, 0), *((k, 8) for k in (2, 3, 6, 7, 8)))
     graph.transitions.leaf[3] = False
+    graph.transitions.cells.size[1] = 2  # which has four times the area
     found = [shares(graph, k) for k in range(2)]
-    rest = {(0,): (6 / 13, 7 / 13), (4,): (1 / 13, 2 / 13)}
+    rest = {(0,): (15 / 22, 16 / 22), (4,): (1 / 22, 2 / 22)}
     for some, (low, high) in zip(graph.sets[:2], found, strict=True):
         assert (low, high) == pytest.approx(rest[tuple(some)], abs=1e-8)
         assert low < rest[tuple(some)][0]
@@ -311,7 +313,7 @@ def test_shares_count_each_box_by_its_area_and_only_leaves():
 
 def walks(*edges):
     """The Morse graph of edges between the eight boxes of two charts, of which the first is three times as large."""
-    grid = Grid((Chart("a", (0, 3), (0, 2)), Chart("b", (0, 2), (0, 1))), 2, 2)
+    grid = Grid((Chart("a", (1, 4), (-1, 1)), Chart("b", (5, 7), (2, 3))), 2, 2)
     edges = csr_matrix((np.ones(len(edges), dtype=bool), tuple(zip(*edges, strict=True))), shape=(9, 9))
     return morse_graph(Transitions(grid, grid.whole(), np.ones(8, dtype=bool), edges))
 

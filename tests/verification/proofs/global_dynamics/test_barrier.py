@@ -112,15 +112,16 @@ def test_a_box_is_on_a_side_of_the_staircase_where_it_is_on_that_side_of_every_s
     stated, rng = Barrier(EGG, (AT, AT), 8), np.random.default_rng(5)
     heights = stated.__dict__["heights"] = rng.uniform(-0.5, 0.5, 8)
     left, wide = rng.uniform(-np.pi, np.pi, 60), rng.choice([0.01, 0.3, 1.5], 60)
-    bottom = rng.uniform(-0.6, 0.6, 60)
-    boxes = Boxes(np.zeros(60, dtype=np.int64), (left, left + wide), (bottom, bottom + 0.02))
+    bottom, tall = rng.uniform(-0.6, 0.6, 60), rng.choice([0.02, 0.4], 60)
+    boxes = Boxes(np.zeros(60, dtype=np.int64), (left, left + wide), (bottom, bottom + tall))
     width = 2 * np.pi / 24
     steps = [
         np.unique(np.floor((np.linspace(a, b, 200) + np.pi) / width).astype(int) % 8)
         for a, b in zip(*boxes.x, strict=True)
     ]
 
-    assert list(stated.below(boxes)) == [b + 0.02 < heights[some].min() for b, some in zip(bottom, steps, strict=True)]
+    tops = bottom + tall
+    assert list(stated.below(boxes)) == [top < heights[some].min() for top, some in zip(tops, steps, strict=True)]
     assert list(stated.above(boxes)) == [b > heights[some].max() for b, some in zip(bottom, steps, strict=True)]
     assert 0 < stated.below(boxes).sum() < 60
     stated.__dict__["heights"] = None
@@ -234,7 +235,9 @@ def test_between_a_barrier_and_its_mirror_image_are_boxes_below_both_that_is_of_
 @pytest.mark.parametrize(("apart", "crossed"), [([True, True], True), ([True, False], True), ([True, True], False)])
 def test_a_barrier_is_lost_where_it_is_apart_from_all_cells_and_the_orbit_enters_them(monkeypatch, apart, crossed):
     asked = []
-    stated = SimpleNamespace(lam=(AT, AT), scene=EGG, heights=np.zeros(4), above=lambda boxes: np.array(apart))
+    stated = SimpleNamespace(
+        lam=(AT, (AT + AFTER) / 2), scene=EGG, heights=np.zeros(4), above=lambda boxes: np.array(apart)
+    )
     taken = SimpleNamespace(boxes=lambda cells: "boxes"), None
     monkeypatch.setattr(barriers, "PinballImages", lambda scene, lam: lam)
     monkeypatch.setattr(barriers, "marked_cells", lambda member: "cells")

@@ -4,9 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sympy import Rational
+from sympy import Matrix, Rational, Symbol, cos, exp, sin, sqrt
 
 from symbolic.tables.scene import Scene
+from symbolic.tables.table import theta
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics import flights
 from verification.proofs.global_dynamics.boxes import Boxes
@@ -16,6 +17,7 @@ from verification.proofs.global_dynamics.flights import (
     aside,
     between,
     closer,
+    constant_bends,
     departing,
     flown,
     incidence,
@@ -165,6 +167,31 @@ def test_a_bend_is_the_constant_where_there_is_one_and_otherwise_as_it_was_enclo
     assert np.all((found.r[[0, 2]] > 0) & (found.r[[0, 2]] < 1e-15))
     held = closer(lambda: None, map, np.array([0, 0]))  # nothing rough is asked for
     assert list(held.m) == [1 / 3, 1 / 3]
+
+
+B = Symbol("b", positive=True)
+
+
+@pytest.mark.parametrize(
+    ("point", "bend"),
+    [
+        ((2 * cos(theta), 2 * sin(theta)), 1),
+        ((5 + cos(3 * theta / 2), sin(3 * theta / 2)), Rational(3, 2)),
+        ((sin(theta), cos(theta)), -1),
+        ((theta, B * theta), 0),
+        ((exp(theta) * cos(theta), exp(theta) * sin(theta)), 1),  # along a spiral
+        ((B * exp(theta) * cos(2 * theta), B * exp(theta) * sin(2 * theta)), 2),
+        ((cos(sqrt(2) * theta), sin(sqrt(2) * theta)), None),  # the constant is no rational number
+        ((cos(B * theta), sin(B * theta)), None),
+        ((theta, theta**2), None),
+        ((2 * cos(theta), sin(theta)), None),
+        ((theta**2, theta**3), None),
+    ],
+)
+def test_a_tangent_that_turns_evenly_is_found_to_do_so(point, bend):
+    straight = SimpleNamespace(point=Matrix([theta, 2 * theta]))
+    table = SimpleNamespace(components=[straight, SimpleNamespace(point=Matrix(point)), straight])
+    assert constant_bends.__wrapped__(table) == (0, bend, 0)
 
 
 THREE = np.array([[0.0, 10.0, 20.0], [1.0, 12.0, 23.0]])  # ends of three sides in a row, and again the first

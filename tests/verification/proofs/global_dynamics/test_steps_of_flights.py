@@ -200,7 +200,8 @@ THREE = np.array([[0.0, 10.0, 20.0], [1.0, 12.0, 23.0]])  # ends of three sides 
 def sides(fast=(1.0, 2.0, 4.0)):
     """In the place of flights: three straight sides, each run along at a speed of its own."""
     made, speeds = object.__new__(Flights), np.array(fast)
-    place = lambda chart, at: [at, at, BallArray(speeds[chart]), BallArray(0 * speeds[chart])]  # noqa: E731
+    still = lambda chart: BallArray(0 * speeds[chart])  # noqa: E731
+    place = lambda chart, at: [at, at, BallArray(speeds[chart]), *(still(chart) for _ in range(3))]  # noqa: E731
     made.map = SimpleNamespace(closed=False, ends=[None] * 3, inner=THREE, outer=THREE, place=place)
     return made
 

@@ -1,6 +1,7 @@
 """Steps of outer images: rows clipped to the strip, laws over pieces, and what is asked of table and law."""
 
 from fractions import Fraction
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -72,6 +73,25 @@ def test_a_landing_whose_only_angle_is_that_of_the_strips_edge_is_kept():
     piece = Piece(np.arange(1), np.zeros(1, dtype=int), np.zeros(1), np.ones(1), False)
     on, *_, low, high = map.row(piece, about([0], [1]), eta, None)
     assert (on.tolist(), low.tolist(), high.tolist()) == ([0], [-map.top], [-map.top])
+
+
+@pytest.mark.parametrize("placed", [True, False])
+def test_all_angles_of_incidence_are_asked_for_at_all_places_where_a_law_tells_them_apart(placed):
+    ends = [(BallArray(0.0, 0.25), BallArray(1.0, 0.125)), (BallArray(5.0), BallArray(7.0))]
+    pieces = [*bare(ends=ends, placed=placed).incidences()]
+    assert len(pieces) == (2 * images.PLACES if placed else 1)
+    for eta, _ in pieces:
+        low, high = eta.lower(), eta.upper()
+        assert np.all(low[1:] <= high[:-1])
+        assert low[0] <= -np.pi / 2 < np.pi / 2 <= high[-1] < np.pi / 2 + 1e-9
+        assert low.size == images.STEPS
+    along = [(float(theta.lower()), float(theta.upper())) for _, theta in pieces]
+    for k, (low, high) in enumerate([(-0.25, 1.125), (5.0, 7.0)] if placed else [(-0.25, 1.125)]):
+        some = along[k * images.PLACES : (k + 1) * images.PLACES]
+        assert [some[0][0], some[-1][1]] == pytest.approx([low, high], abs=1e-9)
+        assert some[0][0] <= low
+        assert high <= some[-1][1]
+        assert all(a[1] >= b[0] for a, b in pairwise(some))
 
 
 def test_exit_angles_are_asked_to_stay_below_a_quarter_turn_over_all_pieces(monkeypatch):

@@ -249,19 +249,21 @@ def test_the_reach_of_a_cluster_is_that_of_its_furthest_box():
 
 
 class Landings:
-    """In the place of a map: every box lands on one arc, and `theta` shrinks by a half."""
+    """In the place of a map: every box lands on one arc, and `theta` shrinks by a half, or is multiplied by so much."""
 
-    def __init__(self, wide=1.0, closed=True, smooth=True, joins=False, less=0, others=()):
+    def __init__(self, wide=1.0, closed=True, smooth=True, joins=0, less=0, others=(), factor=0.5, none=False):
         self.wide, self.closed, self.smooth, self.joins, self.less = wide, closed, smooth, joins, less
+        self.factor, self.none = factor, none
         self.others = [(Piece(np.arange(count), None, None, None, False), None) for count in others]
 
     def derivatives(self, boxes):
         count = boxes.chart.size - self.less
-        chart = np.arange(count) % 2 if self.joins else np.zeros(count, dtype=int)
+        chart = np.arange(count) // self.joins % 2 if self.joins else np.zeros(count, dtype=int)
         low = np.linspace(-self.wide / 2, 0, count)
         piece = Piece(np.arange(count), chart, low, low + self.wide / 2, self.smooth)
         zero = BallArray(np.zeros(count), np.zeros(count))
-        return [(piece, Slopes(BallArray(np.full(count, 0.5), np.zeros(count)), zero, zero, zero, zero)), *self.others]
+        stretch = BallArray(np.full(count, self.factor), np.zeros(count))
+        return [] if self.none else [(piece, Slopes(stretch, zero, zero, zero, zero)), *self.others]
 
 
 @pytest.mark.parametrize(
@@ -274,10 +276,17 @@ class Landings:
         (Landings(wide=6.0), [(9, 9)], None),  # with the box itself a whole turn and more
         (Landings(wide=6.0, closed=False), [(9, 9)], [True]),
         (Landings(smooth=False), [(9, 9)], None),
-        (Landings(joins=True), [(9, 9)], None),
+        (Landings(joins=1), [(9, 9)], None),
+        (Landings(joins=96), [(9, 9)], None),
+        (Landings(joins=192), [(9, 9), (27, 27)], [True, True]),  # each cluster on a component of its own
+        (Landings(none=True), [(9, 9)], None),
+        (Landings(), [(9, 9), (9, 27), (27, 27)], [True, True]),  # one leads to the other, and not back
+        (Landings(), [(9, 9), (32, 32)], [True]),  # the outside, to which nothing leads
+        (Landings(), [(9, 9), (31, 32), (32, 31)], None),  # to which the last box leads
         (Landings(less=1), [(9, 9)], None),
         (Landings(others=[0, 0]), [(9, 9)], [True]),
         (Landings(others=[0, 1]), [(9, 9)], None),  # some landings lie elsewhere
+        (Landings(others=[1, 0]), [(9, 9)], None),
         (Landings(wide=7.0), [(9, 9), (25, 25)], [True, True]),
         (Landings(wide=7.0), [(9, 9), (25, 29), (29, 25)], None),  # of two clusters one is wider: with it a whole turn
         (Landings(), [(9, 9), (9, 32), (32, 9)], None),  # 32 is the outside: some box is lost
@@ -293,6 +302,28 @@ def test_boxes_that_return_are_judged_only_where_all_of_them_land_on_one_arc_les
         assert part.factor == pytest.approx(0.5, abs=1e-6)
         assert np.all(part.boxes.x[1] - part.boxes.x[0] == pytest.approx(np.pi / 4))
         assert np.all(part.boxes.y[1] - part.boxes.y[0] == pytest.approx(0.5))
+
+
+@pytest.mark.parametrize(
+    ("map", "edges", "factor"),
+    [
+        (Landings(factor=1.5), [(9, 9)], 1.5**-64),
+        (Landings(factor=3.0), [(9, 9), (9, 27), (27, 9)], None),
+        (Landings(factor=0.5), [(9, 9), (9, 27), (27, 9)], None),  # walks go two ways
+    ],
+)
+def test_what_stretches_and_what_walks_may_leave_two_ways_is_no_sink(map, edges, factor):
+    grid = Grid((Chart("turning", (-np.pi, np.pi), (-1.0, 1.0), True, True),), 8, 4)
+    (part,) = clusters(map, Transitions(grid, grid.whole(), np.ones(32, dtype=bool), graph(33, *edges)), near=0)
+    count = len({end for edge in edges for end in edge})
+    assert (part.sink, part.boxes.chart.size) == (False, count)
+    if factor:
+        assert part.factor == pytest.approx(factor, rel=1e-6)
+    else:  # as many walks as Fibonacci says
+        number = [1, 1]
+        for _ in range(65):
+            number.append(sum(number[-2:]))
+        assert part.factor == pytest.approx(number[65] / map.factor**64, rel=1e-6)
 
 
 def test_among_some_vertices_those_that_are_passed_once_are_no_part_of_what_stays():

@@ -139,6 +139,8 @@ def test_a_cycle_is_held_by_a_sink_where_no_other_part_holds_one_of_its_points()
     assert holding([sink], points[:1]) is None  # a cluster without a point
     assert holding([sink], [points[0], (0, 0.25, 0.25)]) is None  # or with both
     assert holding([cluster(True, (0, 1, 0, 1), (0.25, 0.75, 0, 1))], points) is None  # one in both, the other in none
+    three = cluster(True, (0, 1, 0, 1), (0.25, 0.75, 0, 1), (5, 6, 0, 1))
+    assert holding([three], [*points, (0, 5.5, 0.5)]) is None  # also beside one that is as it should be
     assert holding([cluster(True, (0, 3, 0, 1), (2, 3, 0, 1))], points) is None  # or a point in both
 
 

@@ -82,6 +82,8 @@ def test_each_cell_is_one_label_and_is_found_again_by_its_number(monkeypatch):
     assert entry.tolist() == [0] * 5 + [1] * 2 + [2] * 2
     wanted = [(1, 3, r) for r in range(3, 8)] + [(0, 1, 1), (0, 1, 2), (1, 7, 6), (1, 7, 7)]
     assert name.tolist() == [cells.index(cell) if cell in cells else -1 for cell in wanted]
+    alone = made()
+    assert alone.named(targets((0, 0, 1), (1, 0, 7), (2, 0, 7), (2, 0, 7)))[1].tolist() == [0, -1, -1]
     monkeypatch.setattr(labels_of, "MOST", 6)
     assert found.begun(targets((0,), (0,), (0,), (1,))) == 2
     with pytest.raises(ValueError, match="more than 6 labels"):
@@ -285,6 +287,9 @@ def test_a_curve_that_comes_to_the_border_of_its_chart_is_refused(chart, low, hi
     else:
         told = found.crossed(integers(0), integers(chart), integers(0), *given, none)
         assert (told.bottom.tolist(), told.top.tolist()) == ([0], [63])
+    zero, one = floats(0, 0), integers(0, 0)
+    with pytest.raises(ValueError, match="leave its chart"):  # where one of two does
+        found.crossed(one, one, one, (floats(-0.5, -1), floats(0, 0)), (zero, zero), (zero, zero), none)
 
 
 def test_rows_are_met_with_their_borders_included():
@@ -322,13 +327,13 @@ RATES = np.array([[1.0, 2.0, 4.0, 1.0], [2.0, 1.0, 1.0, 3.0]])  # of the parts o
 WIDE, CENTRE = 0.25 / 4, 0.4375  # of a part; where both middles land
 
 
-def spread_of(turned: bool, radius: float = 0.0, off: float = 0.0, shift: float = 0.0):
+def spread_of(turned: bool, radius: float = 0.0, off: float = 0.0, shift: float = 0.0, tall: float = 0.0):
     """Images of two labels of a row of three, the second of which is broken; the middles land within `off`."""
     found = made(rows=FINE, cells=((0, 1, 2), (0, 1, 3), (0, 2, 2)))
     rates = np.concatenate([RATES[0], [9.0] * 4, RATES[1]]) * (-1 if turned else 1)
     label = np.repeat(np.arange(3), 4)
     where = landing(range(12), stretch=(rates, radius))
-    middle = landing((2, 0, 1), theta=(CENTRE + shift, off), phi=(floats(0.25, -0.25, 7), 0.0))
+    middle = landing((2, 0, 1), theta=(CENTRE + shift, off), phi=(floats(0.25, -0.25, 7), tall))
     cast = SimpleNamespace(
         landed=where, label=label, part=np.tile(np.arange(4), 3), middle=middle,
         broken=np.array([False, True, False]), rising=np.full(3, not turned),
@@ -394,9 +399,52 @@ def test_where_stretching_and_landing_are_not_exact_images_leave_columns_between
 
 def test_an_image_over_the_middles_of_columns_crosses_them_within_the_way_from_its_own_middle():
     """A landing that is known within 1/16: the way to a middle is as uncertain."""
-    found, told = spread_of(False, off=0.0625)
+    found, told = spread_of(False, off=0.0625, tall=0.125)
     for (foot, head), label, c in zip(ends(found, told.targets), told.targets.source, told.targets.column, strict=True):
         phi, slope = {0: (-0.25, 0.5), 2: (0.25, 0.25)}[int(label)]
-        reach = slope * (abs((c + 0.5) * 0.25 - CENTRE) + 0.0625 + 0.25)
+        reach = slope * (abs((c + 0.5) * 0.25 - CENTRE) + 0.0625 + 0.25) + 0.125
         assert foot <= phi - reach < foot + 2.1 * found.high[0]
         assert head - 2.1 * found.high[0] < phi + reach <= head
+
+
+def test_what_is_added_for_roundings_goes_outwards(monkeypatch):
+    """With much for it, or little, a curve crosses rows from below all of those without, to above them."""
+    found = made(rows=FINE)
+    none = np.full((2, 8), np.inf), np.full((2, 8), -np.inf)
+
+    def rows():
+        given = (floats(-0.125), floats(0.0625)), (floats(-0.25), floats(0.5)), (floats(-0.25), floats(0.5))
+        one = found.crossed(integers(0), integers(0), integers(4), *given, none)
+        where = landing((0,), 0, theta=(0.375, 0.0), phi=(0.25, 0.0), slope=(0.5, 0.0))
+        other = found.scattered(where, integers(0), integers(0), none)
+        return one.bottom[0], -one.top[0], other.bottom[0], -other.top[-1]
+
+    monkeypatch.setattr(labels_of, "PAD", 1e-9)
+    monkeypatch.setattr(labels_of, "SLOP", 0.0)
+    exact = rows()
+    for name in ("SLOP", "PAD"):
+        monkeypatch.setattr(labels_of, name, 2.0**-6)
+        wider = [int(a - b) for a, b in zip(exact, rows(), strict=True)]
+        if name == "SLOP":  # 1/64 of a unit, and of half of what cones allow
+            reach = 2.0**-6 * (1 + 0.375 * 0.75)
+            assert wider == pytest.approx([reach / found.high[0]] * 2 + [2.0**-6 / found.high[0]] * 2, abs=1.1)
+        else:  # and of the way within a column, of slope 1/2
+            assert wider[2:] == pytest.approx([2.0**-6 * 0.125 * 0.5 / found.high[0]] * 2, abs=1.1)
+        monkeypatch.setattr(labels_of, name, 0.0)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_roundings_of_the_stretching_are_covered(monkeypatch, turned):
+    """Without anything else for them shares still lie on either side of the exact ones, away from the middle."""
+    monkeypatch.setattr(labels_of, "SLOP", 0.0)
+    _, told = spread_of(turned)
+    for label, rate in ((0, RATES[0]), (2, RATES[1])):
+        nodes = np.concatenate([[0], np.cumsum((rate[::-1] if turned else rate) * WIDE)])
+        nodes = nodes - nodes[2] + CENTRE
+        own = told.targets.source == label
+        border = (told.targets.column[own] + 1) * 0.25
+        exact = np.interp(border, nodes, np.arange(5) / 4)
+        inside = (nodes[0] + 0.01 < border) & (border < nodes[-1] - 0.01)
+        assert np.any(inside)
+        assert np.all(told.leaves[0][own][inside] < exact[inside])
+        assert np.all(told.leaves[1][own][inside] > exact[inside])

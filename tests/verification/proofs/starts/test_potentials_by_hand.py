@@ -67,6 +67,7 @@ def test_densities_lengths_and_stretchings_of_a_balance_are_on_the_safe_side():
     ({"density": (0.0, 0.0, 2.01)}, 8, "within a column"),
     ({"edges": ((0, 0, 1), (1, 2, 2))}, 8, "no image"),
     ({"edges": ((0, 0, 2), (1, 2, 2))}, 8, "no image"),
+    ({"edges": ((0, 0, 1), (1, 2, 0))}, 8, "no image"),
     ({"labels": labelled(((0, 0, 1), (0, 1, 2), (0, 2, 3)))}, 0, "at least one column"),
 ])  # fmt: skip
 def test_what_is_no_balance_is_refused(change, window, why):
@@ -152,7 +153,7 @@ def test_the_mean_over_an_image_is_at_most_that_of_all_shares_that_its_columns_m
 
 
 def test_shares_that_are_known_badly_are_between_0_and_1():
-    low, high = floats(-0.5, 0.5, 1, -0.125, 1, 1), floats(0.375, 1.75, 1, 1.25, 1, 1)
+    low, high = floats(-0.5, 0.5, 1, -0.125, 1.5, 1), floats(0.375, 1.75, 1, 1.25, 1.5, 1)
     made = Balance(pairs(CELLS, EDGES, spread=spread_over((low, high))), 8)
     assert made.first[0].tolist() == [0, 0.5, 1, 0, 1, 1]
     assert made.first[1].tolist() == [0.375, 1, 1, 1, 1, 1]

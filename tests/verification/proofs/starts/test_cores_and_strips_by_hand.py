@@ -345,7 +345,7 @@ def test_a_norm_that_is_as_large_as_the_rate_says_is_refused_with_the_roundings(
     for share, held in ((1 / SLACK, True), (1.0, False), (np.nan, False)):
         monkeypatch.setattr(strips_of, "steepest", lambda map, boxes, *_, share=share: np.full(
             boxes.chart.size, exp(1.0) * share))  # fmt: skip
-        assert bounded(wall, 0.5, 2, 0.25, 1) is held
+        assert bounded(SimpleNamespace(charts=wall.charts, mirrored=True, top=1.0), 0.5, 2, 0.25, 1) is held
 
 
 def side_by_side(count: int) -> Strips:

@@ -131,7 +131,7 @@ def test_the_place_of_the_saddle_is_told_where_it_is_enclosed_closely(monkeypatc
 
 
 def walks(edges, near=(0,), below=(), absorbed=(), inner=True, later=None):
-    """Four cells of one turn, which lead to one another as is said, and lie below the barrier, or in the disc, or not."""
+    """Four cells of one turn, which lead to one another as is said, and may lie below the barrier or in the disc."""
     asked = []
 
     def lead(column, row, boxes, columns, rows):

@@ -150,6 +150,8 @@ def test_the_mean_over_an_image_is_at_most_that_of_all_shares_that_its_columns_m
     made.found.cast.broken[0] = True  # of a broken label the best edge is taken
     assert made.shared(Y)[0] == 7.0
     assert made.shared(Y)[1] < 4.0
+    made.found.cast.broken[0] = False
+    assert made.shared(Y / 16) == pytest.approx(made.shared(Y) / 16, abs=1e-15)
 
 
 def test_shares_that_are_known_badly_are_between_0_and_1():
@@ -225,6 +227,7 @@ def holding(**changed) -> bool:
         {"high": np.nextafter(SLACK, 0)},
         {"left": (0.0, 1e-12)},
         {"w": LARGEST, "least": (2.0, 3.0)},
+        {"w": (LARGEST, 2.0)},
         {"v": LARGEST},
         {"y": LARGEST},
         {"left": -LARGEST},
@@ -236,6 +239,7 @@ def holding(**changed) -> bool:
 )
 def test_each_inequality_of_a_potential_fails_alone(changed):
     assert holding()
+    assert holding(w=0.5, v=0.25, least=(0.5, 0.25))
     assert holding(w=LARGEST - 1, v=LARGEST - 1, y=LARGEST - 1, left=1 - LARGEST, roundings=SLACK / 2.1)
     assert not holding(**changed)
 
@@ -247,10 +251,10 @@ def test_roundings_are_bounded_by_the_number_of_terms_and_their_size():
         labels=SimpleNamespace(parts=4), spread=SimpleNamespace(targets=SimpleNamespace(source=integers(0, 1, 1, 1)))
     )
     found = made.roundings(0, floats(-8.0, 2.0), floats(1.0, 16.0), -0.25)
-    assert found == pytest.approx((3 + 4 + 2 + 8) ** 2 * (8 + 16 + 0.5 + 1.5 + 0.25) * 2.0**-50, rel=1e-12)
+    assert found == pytest.approx((3 + 4 + 2 + 8) ** 2 * (8 + 16 + 0.5 + 1.5 + 0.25) * 2.0**-50, rel=1e-12, abs=0)
     made.found.spread.targets.source = integers()
     assert made.roundings(0, floats(0.0, 0.0), floats(0.0, 0.0), 0.0) == pytest.approx(
-        (0 + 4 + 2 + 8) ** 2 * 2.0 * 2.0**-50
+        (0 + 4 + 2 + 8) ** 2 * 2.0 * 2.0**-50, abs=0
     )
 
 
@@ -341,19 +345,19 @@ def test_the_mass_next_to_a_cut_bounds_the_density_there():
 
 
 @pytest.mark.parametrize(("chart", "theta", "joins"), [
-    (0, (1.9, 2.0), [0]), (0, (1.9, 2.0 - 1e-7), [0]), (0, (1.9, 1.99), None), (1, (2.0, 2.1), [0]),
-    (1, (2.01, 2.1), None), (1, (3.9, 4.0), [1]), (0, (0.0, 0.1), [1]), (0, (0.0, 2.0), [0, 1]),
+    (0, (1.9, 2.0), [0]), (0, (1.9, 2.0 - 2e-7), [0]), (0, (1.9, 2.0 - 1e-6), None), (1, (2.0, 2.1), [0]),
+    (1, (2.0 + 2e-7, 2.1), [0]), (1, (2.0 + 1e-6, 2.1), None), (1, (3.9, 4.0), [1]), (2, (4.0, 4.1), [1]),
+    (2, (4.9, 5.0), [2]), (0, (0.0, 0.1), [2]), (0, (0.0, 2.0), [0, 2]), (1, (2.0, 4.0), [0, 1]),
 ])  # fmt: skip
 def test_a_broken_label_is_cut_at_the_joins_that_its_images_come_to(monkeypatch, chart, theta, joins):
-    """Of two charts side by side, whose ends meet too; a label broken elsewhere is refused."""
+    """Of three charts side by side, whose ends meet too; a label broken elsewhere is refused, if only one is."""
     asked = []
     monkeypatch.setattr(typical_of, "Cut", lambda found, which, window: asked.append((which.tolist(), window)))
-    found = pairs(labels=labelled(((0, 0, 1), (0, 1, 2), (1, 2, 3))), broken=(1,))
+    labels = labelled(((0, 0, 1), (0, 1, 2), (1, 2, 3)), (ONE, TWO, Chart("three", (4.0, 5.0), (-1.0, 1.0))))
+    found, on = pairs(labels=labels, broken=(1,)), np.arange(12)
     middle, half = sum(theta) / 2, (theta[1] - theta[0]) / 2
-    found.cast.landed.theta = BallArray(
-        np.where(np.arange(12) == 6, middle, 1.0), np.where(np.arange(12) == 6, half, 0.1)
-    )
-    found.cast.landed.theta.m[:4], found.cast.landed.theta.r[:4] = 1.0, 1.0  # of an unbroken label nothing is asked
+    found.cast.landed.theta = BallArray(np.where(on == 6, middle, 1.0), np.where(on == 6, half, 0.1))
+    found.cast.landed.theta.r[:4] = 1.0  # of an unbroken label nothing is asked
     found.cast.landed.chart[6] = chart
     if joins is None:
         with pytest.raises(ValueError, match="where no join is"):
@@ -361,6 +365,34 @@ def test_a_broken_label_is_cut_at_the_joins_that_its_images_come_to(monkeypatch,
     else:
         assert len(Balance(found, 3).cuts) == len(joins)
         assert asked == [([1], 3)] * len(joins)
+        found.cast.broken[2] = True
+        with pytest.raises(ValueError, match="where no join is"):
+            Balance(found, 3)
+
+
+@pytest.mark.parametrize(("most", "taken"), [(0.8, True), (0.81, False)])
+def test_a_window_is_compared_with_the_shortest_component_and_the_widest_columns(most, taken):
+    """Of lengths 2 and 1, in columns of 1/4 and 1/8: five of 1/4, stretched, are at most 1."""
+    labels = labelled([(0, k, 4) for k in range(8)], (ONE, Chart("half", (2.0, 3.0), (-1.0, 1.0))), 0.0)
+    labels.columns, labels.wide = integers(8, 8), floats(0.25, 0.125)
+    found = pairs(labels=labels, edges=((4, 4), (0, 2)), most=most)
+    if taken:
+        assert Cut(found, integers(4), 1).new.tolist() == [0]
+    else:
+        with pytest.raises(ValueError, match="twice"):
+            Cut(found, integers(4), 1)
+
+
+def test_of_several_broken_labels_the_one_that_is_stretched_least_counts():
+    labels = labelled([(0, k, 4) for k in range(8)], (ONE,), 0.0)
+    least = np.where(np.arange(8) == 3, 1.5, np.where(np.arange(8) == 4, 2.0, 0.25))
+    found = pairs(labels=labels, edges=((3, 4), (0, 7)), most=0.25, least=least)
+    made = Cut(found, integers(3, 4), 1)
+    assert made.size == pytest.approx(1 / 1.5, rel=1e-11)
+    assert np.flatnonzero(made.window).tolist() == [2, 3, 4, 5]
+    assert made.new.tolist() == [0, 7]
+    with pytest.raises(ValueError, match="next to a join"):
+        Cut(found, integers(3, 7), 1)
 
 
 @pytest.mark.parametrize(("bounds", "said"), [
@@ -375,6 +407,13 @@ def test_bounds_are_rounded_outwards_and_both_are_needed(monkeypatch, bounds, sa
     assert found.proved is (said is not None)
     assert (found.low, found.high) == (pytest.approx(said, abs=1e-9) if said else (-np.inf, np.inf))
     assert found.labels == 5
+
+    def refused(found, window):
+        raise ValueError("no cone")
+
+    monkeypatch.setattr(typical_of, "Balance", refused)
+    found = typical(None, None, None, 10, 20)
+    assert (found.low, found.high, found.labels, found.why, found.proved) == (-np.inf, np.inf, 0, "no cone", False)
 
 
 def test_numbers_are_enlarged_and_made_smaller():

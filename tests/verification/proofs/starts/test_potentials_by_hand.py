@@ -356,7 +356,9 @@ def test_a_broken_label_is_cut_at_the_joins_that_its_images_come_to(monkeypatch,
     labels = labelled(((0, 0, 1), (0, 1, 2), (1, 2, 3)), (ONE, TWO, Chart("three", (4.0, 5.0), (-1.0, 1.0))))
     found, on = pairs(labels=labels, broken=(1,)), np.arange(12)
     middle, half = sum(theta) / 2, (theta[1] - theta[0]) / 2
-    found.cast.landed.theta = BallArray(np.where(on == 6, middle, 1.0), np.where(on == 6, half, 0.1))
+    found.cast.landed.theta = BallArray(
+        np.where(on == 6, middle, np.where(on < 8, 1.0, 3.0)), np.where(on == 6, half, 0.1)
+    )
     found.cast.landed.theta.r[:4] = 1.0  # of an unbroken label nothing is asked
     found.cast.landed.chart[6] = chart
     if joins is None:

@@ -42,14 +42,17 @@ class Chords(Flights):
         far = np.flatnonzero(~(np.abs(at - m) <= r))
         if not far.size:
             return BallArray(at), [value[on] for value in place]
-        start = {name: self.centre[name].m[on[far]] for name in ("x", "y", "v", "w")}
-        at[far] = m[far]
-        for _ in range(2):  # of Newton's method, in float64
-            x, y, dx, dy, *_ = (value.m for value in self.map.place(chart[far], BallArray(at[far])))
-            value = start["v"] * (y - start["y"]) - start["w"] * (x - start["x"])
-            at[far] -= value / (start["v"] * dy - start["w"] * dx)
+        at[far] = self._polished(on[far], chart[far], m[far])
         at = np.where(np.abs(at - m) <= r, at, m)
         return BallArray(at), self.map.place(chart, BallArray(at))
+
+    def _polished(self, on: Indices, chart: Indices, near: Array) -> Array:
+        """About where the midpoints of boxes land, from a place nearby, in float64."""
+        at, (x0, y0, v, w) = near, (self.centre[name].m[on] for name in ("x", "y", "v", "w"))
+        for _ in range(2):  # of Newton's method
+            x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(at)))
+            at = at - (v * (y - y0) - w * (x - x0)) / (v * dy - w * dx)
+        return np.asarray(at)
 
     def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
         """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""

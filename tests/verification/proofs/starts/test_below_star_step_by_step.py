@@ -241,7 +241,7 @@ def test_a_particle_that_leaves_the_join_at_the_angle_of_a_chord_lands_at_its_ot
 
 @pytest.mark.parametrize("e", [0.0, 0.001, 0.0023])
 def test_derivatives_of_the_first_landing_hold_difference_quotients(e):
-    """By `U` and by the contraction, up to the sign of a mirror image, of where a particle of the join comes next to the lower corner, in float64."""
+    """By `U` and the contraction, of where a particle of the join comes next to the lower corner, up to a sign."""
     with working(BITS):
         theta1, star = (float(x.mid()) for x in enclosed())
         depth = enclosed()[1] - arb(NEXT.numerator) / NEXT.denominator

@@ -141,6 +141,52 @@ def test_orbits_converge_over_boxes_about_the_inner_core_that_are_hardly_wider(m
     assert boxes.y[1].max() >= 0.75
 
 
+@pytest.mark.parametrize(("theta", "outer", "width", "held"), [
+    (0.5, 1.0, 0.1407, True), (0.5, 1.0, 0.1406, False), (-0.5, 1.0, 0.1407, True), (-0.5, 1.0, 0.1406, False),
+    (0.5, 1.0, 0.140625 * (1 + 2e-12), True), (0.5, 1.0, 0.140625 * (1 + 5e-13), False),  # with the roundings
+    (0.5, 0.75 * (1 + 2e-12), 1.0, True), (0.5, 0.75 * (1 + 5e-13), 1.0, False),
+])  # fmt: skip
+def test_a_set_along_the_curve_is_as_far_from_it_as_a_cubic_from_its_tangent(theta, outer, width, held):
+    """Of `phi = theta**3`: at most 3 times 3/4, times the square of 1/4, from 1/2 to 1/4 and 3/4."""
+    core = replace(FLAT, cubic=1.0, outer=outer, width=width)
+    sides = np.zeros((2, 2, 1))
+    sides[:, 0, 0] = 0.25, 0.25 * 3 * theta**2
+    one = replace(points([theta], [theta**3]), sides=sides)
+    assert core.holds(one).tolist() == [held]
+    x = theta + np.linspace(-0.25, 0.25, 101)
+    aside = np.abs(x**3 - theta**3 - 3 * theta**2 * (x - theta))
+    assert aside.max() <= 0.140625
+
+
+@pytest.mark.parametrize("wrong", [
+    {"cells": 0}, {"inner": 0.0}, {"outer": -1.0}, {"width": np.inf}, {"gates": ((0.5, 0.0),)},
+    {"gates": ((np.inf, 1.0),)}, {"inner": np.nan},
+])  # fmt: skip
+def test_a_core_has_cells_and_finite_sizes(wrong):
+    assert replace(FLAT, cells=1, gates=((2.0, 0.5),)).bounds == (1.0, 1.0)
+    with pytest.raises(ValueError, match="accepted"):
+        replace(FLAT, **wrong)
+
+
+def test_the_parts_of_a_core_are_a_little_wider_than_its_cells():
+    """By hand: four cells of half a width of 1/8, along `theta/2 + 2*theta**3`, moved up by 1 and down by 3."""
+    parts = replace(FLAT, slope=0.5, cubic=2.0).parts(floats(1, -3))
+    middle = np.tile(floats(0.125, 0.375, 0.625, 0.875), 2)
+    assert parts.middle[0] == pytest.approx(middle)
+    assert parts.middle[1] == pytest.approx(middle / 2 + 2 * middle**3 + np.repeat(floats(1, -3), 4))
+    assert parts.sides.shape == (2, 2, 8)
+    assert parts.rest.shape == (2, 8)
+    bend = 6 * (middle + 0.125) * 0.125**2
+    tilt = parts.sides[1, 0] / parts.sides[0, 0]
+    assert tilt == pytest.approx(0.5 + 6 * middle**2)
+    for ours, exact in ((parts.sides[0, 0], 0.125), (parts.sides[1, 1], 1.0), (parts.rest[1], bend)):
+        assert np.all((exact < ours) & (ours < exact * (1 + 1e-8)))
+    assert not np.any(parts.sides[0, 1])
+    assert not np.any(parts.rest[0])
+    assert FLAT.parts().middle[1].tolist() == [0.0] * 4
+    assert np.all(FLAT.parts().rest[1] > 0)  # for roundings
+
+
 def still(x, count=2) -> BallArray:
     return BallArray(np.full(count, float(x)), np.zeros(count))
 

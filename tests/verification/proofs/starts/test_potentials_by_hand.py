@@ -367,6 +367,8 @@ def test_a_broken_label_is_cut_at_the_joins_that_its_images_come_to(monkeypatch,
     else:
         assert len(Balance(found, 3).cuts) == len(joins)
         assert asked == [([1], 3)] * len(joins)
+        found.cast.landed.chart[7], found.cast.landed.theta.m[7] = 1, 2.0  # another part comes to the first join
+        assert len(Balance(found, 3).cuts) == len({0, *joins})
         found.cast.broken[2] = True
         with pytest.raises(ValueError, match="where no join is"):
             Balance(found, 3)

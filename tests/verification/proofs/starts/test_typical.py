@@ -13,6 +13,7 @@ from verification.arithmetic.arrays import BallArray, hull, turned
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.graph import Cells, Grid, morse_graph, refined
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.proofs.starts import standard_pairs
 from verification.proofs.starts.curves import Landed, PinballCurves
 from verification.proofs.starts.standard_pairs import Pairs, pairs
 from verification.proofs.starts.typical import SLACK, Balance, typical
@@ -182,6 +183,38 @@ def test_bounds_over_one_attractor_are_those_of_its_own_exponent(chart):
     grid, cells = whole(Onto())
     alone = typical(Onto(), grid, Cells(*(field[cells.chart == chart] for field in cells)), 400, 100)
     assert alone.low <= np.log(2 + chart) <= alone.high < alone.low + 1e-5
+
+
+@pytest.mark.parametrize("map", [Tents(0.4), Circle(0.3), Onto()])
+def test_labels_hold_first_segments_and_all_of_their_own_images(map):
+    """What pairs tell is asked again of the last labels: nothing new comes of them, and no slope beyond their cones."""
+    found = pairs(map, *whole(map), 24, 48)
+    labels, cast, spread = found.labels, found.labels.cast(), found.spread
+    for ours, again in zip(cast, found.cast, strict=True):
+        if isinstance(ours, np.ndarray):
+            assert np.array_equal(ours, again)
+    assert np.array_equal(cast.landed.theta.m, found.cast.landed.theta.m)
+    assert np.array_equal(cast.landed.slope.r, found.cast.landed.slope.r)
+    assert np.all(np.isfinite(labels.low) & (labels.low < labels.top))
+    edges = set()
+    for targets in (spread.targets, found.scattered):
+        entry, to = labels.named(targets)
+        source = targets.source[entry]
+        assert np.all(to >= 0)
+        assert np.all(labels.low[to] <= cast.slopes[0][source])
+        assert np.all(cast.slopes[1][source] <= labels.top[to])
+        edges |= set(zip(source.tolist(), to.tolist(), strict=True))
+    assert edges == set(zip(*(side.tolist() for side in found.edges), strict=True))
+    assert np.all(np.diff(found.edges[0]) >= 0)
+    assert np.array_equal(np.unique(spread.targets.source), np.flatnonzero(~cast.broken))
+    assert set(found.scattered.source.tolist()) == set(np.flatnonzero(cast.broken).tolist())
+    start = standard_pairs.first(map, *whole(map))
+    everything = np.arange(start.landed.source.size)
+    told = labels.scattered(start.landed, everything, everything, labels.hulls())
+    entry, to = labels.named(told)
+    assert np.all(to >= 0)
+    assert np.all(labels.low[to] <= start.landed.slope.lower()[told.source[entry]])
+    assert np.all(start.landed.slope.upper()[told.source[entry]] <= labels.top[to])
 
 
 def test_boxes_that_do_not_trap_are_refused():

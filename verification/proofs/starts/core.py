@@ -109,9 +109,8 @@ def attracts(map: PinballImages, core: Core) -> dict[str, bool]:
     edges = np.linspace(0, core.outer, core.cells + 1)
     beyond = edges[1:] > core.inner
     nearer = np.maximum.accumulate(far)[beyond] < edges[:-1][beyond] * NEARLY
-    within = far[~beyond].max(initial=0.0) <= core.inner * NEARLY
-    return {
-        "orbits come to the middle": bool(np.all(nearer) and within and np.all(core.holds(images))),
+    return {  # what begins within the middle stays there, by the first cell beyond; or by the core, if none is beyond
+        "orbits come to the middle": bool(np.all(nearer) and np.all(core.holds(images))),
         "they converge there": _converges(map, core),
         "gates lead in": all(_leads(map, core, *gate) for gate in core.gates),
     }
@@ -134,10 +133,16 @@ def _converges(map: PinballImages, core: Core) -> bool:
     if entries is None:
         return False
     most = np.array([[float(np.max(entry.magnitude())) for entry in row] for row in entries])
-    vector = np.array([1.0, 1.0])
-    for _ in range(50 if np.isfinite(most).all() else 0):
-        vector = most @ vector / np.max(most @ vector)
+    vector = _longest(most)
     return bool(np.all(most @ vector < vector * NEARLY))
+
+
+def _longest(matrix: Array) -> Array:
+    """A vector that a matrix shrinks least, of positive entries, by iteration in float64; of any it is asked."""
+    vector = np.array([1.0, 1.0])
+    for _ in range(50 if np.isfinite(matrix).all() else 0):
+        vector = matrix @ vector / np.max(matrix @ vector)
+    return vector
 
 
 def derivative(map: PinballImages, boxes: Boxes) -> Matrix | None:

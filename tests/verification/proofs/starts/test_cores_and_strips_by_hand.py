@@ -92,6 +92,26 @@ def test_each_cell_of_a_core_comes_nearer_or_stays_in_the_middle(monkeypatch, th
     assert not attracts(SimpleNamespace(mirrored=False), FLAT)["orbits come to the middle"]
 
 
+@pytest.mark.parametrize(("wide", "come"), [(0.04, True), (0.06, False)])
+def test_a_cell_comes_nearer_with_all_of_its_image(monkeypatch, wide, come):
+    one = points([0.1, 0.3, 0.45, 0.7])
+    images = replace(one, rest=np.where(np.arange(4) == 2, wide, 0.0) * np.ones((2, 1)))
+    monkeypatch.setattr(core_of, "twice", lambda map, sets: images)
+    monkeypatch.setattr(core_of, "_converges", lambda map, core: True)
+    assert attracts(MAP, FLAT)["orbits come to the middle"] is come
+
+
+@pytest.mark.parametrize(("entries", "converges"), [
+    (((0.5, 0.9), 0.0, 0.0, (0.25, 0.5)), True), (((0.5, 1.1), 0.0, 0.0, (0.25, 0.5)), False),
+    (((0.5, 0.5), 0.0, 0.0, (-1.1, 0.5)), False), (((0.5, 0.5), (0.1, 0.9), (0.9, 0.0), (0.5, 0.5)), False),
+    ((1 - 2.0**-39, 0.0, 0.0, 0.5), True), ((1 - 2.0**-41, 0.0, 0.0, 0.5), False),  # with the roundings
+])  # fmt: skip
+def test_over_all_parts_of_the_middle_one_norm_shrinks(monkeypatch, entries, converges):
+    a, b, c, d = (BallArray(np.broadcast_to(np.asarray(x, dtype=float), (2,)), np.zeros(2)) for x in entries)
+    monkeypatch.setattr(core_of, "derivative", lambda *_: [[a, b], [c, d]])
+    assert core_of._converges(MAP, FLAT) is converges
+
+
 @pytest.mark.parametrize(("far", "come"), [(0.5, False), (0.5 * NEARLY, True), (1.0, False)])
 def test_all_of_a_core_of_one_cell_stays_in_the_middle(monkeypatch, far, come):
     """Up to the border of the middle, with the roundings."""
@@ -124,6 +144,9 @@ def test_all_images_of_a_gate_lie_in_the_core(monkeypatch, theta, leads):
     asked = []
     monkeypatch.setattr(core_of, "twice", lambda map, sets: asked.append(sets) or (theta and points(theta)))
     assert core_of._leads(MAP, FLAT, 2.0, 0.0025) is leads
+    assert asked[0].chart.size == 3 * core_of.COARSER  # slabs at most so thick as is said
+    core_of._leads(MAP, FLAT, 2.0, 1e-4)
+    assert asked[1].chart.size == core_of.COARSER
     reach = asked[0].middle[1] + asked[0].sides[1, 1], asked[0].middle[1] - asked[0].sides[1, 1]
     assert reach[0].max() == pytest.approx(0.0025)
     assert reach[1].min() == pytest.approx(-0.0025)

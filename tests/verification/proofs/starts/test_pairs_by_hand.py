@@ -12,14 +12,14 @@ from verification.proofs.starts.curves import Landed
 from verification.proofs.starts.standard_pairs import TILT, First, densities, first, kept, pushed
 
 FREE = Chart("free", (0.0, 4.0), (0.0, 4.0))
-BOXES = ((0, 0), (0, 1), (1, 2), (3, 3))  # columns and rows of a grid of four by four
+BOXES = ((0, 0), (0, 1), (1, 2), (3, 3), (0, 2))  # columns and rows of a grid of four by four
 #        box, from theta, to,   phi, to,     stretch, slope, k0, k1, bend, by bend
 ROWS = ((0, 0.25, 0.75, 0.25, 1.75, 2.0, 1.0, 0.5, 0.25, 1.0, 0.5),
         (1, 1.25, 1.75, 2.25, 2.75, 4.0, -1.0, -0.5, 0.5, -2.0, 0.25),
         (2, 0.25, 0.75, 1.25, 1.75, -2.0, 3.0, 0.25, -0.25, 4.0, -0.5),
         (2, 1.25, 1.75, 2.25, 2.75, 2.0, 0.5, 0.125, 1.0, 0.5, 0.25),
-        (3, 0.25, 0.75, 0.25, 0.75, 8.0, 0.25, 1.0, 2.0, -0.5, 0.125))  # fmt: skip
-LEADS = {0: (0, 1), 1: (2,), 2: (1,), 3: (2,), 4: (0,)}  # to which boxes each row leads
+        (3, 0.25, 1.75, 2.25, 2.75, 8.0, 0.25, 1.0, 2.0, -0.5, 0.125))  # fmt: skip
+LEADS = {0: (0, 1), 1: (2,), 2: (1,), 3: (2,), 4: (2, 4)}  # to which boxes each row leads
 
 
 def integers(*values):
@@ -31,7 +31,7 @@ def floats(*values):
 
 
 class Stub:
-    """A map that says of four boxes what stands in the rows, and what it was asked; some entries are changed."""
+    """A map that says of five boxes what stands in the rows, and what it was asked; some entries are changed."""
 
     charts = (FREE,)
 
@@ -55,7 +55,7 @@ def cells(boxes=BOXES) -> Cells:
 
 def by_hand(bounces: int) -> tuple[list, list, list]:
     """Slopes of the boxes before the last bounce; bends and densities of the rows after it; all as ranges."""
-    slopes, bends, dense = [(-TILT, TILT)] * 4, [(0.0, 0.0)] * 4, [(0.0, 0.0)] * 4
+    slopes, bends, dense = [(-TILT, TILT)] * 5, [(0.0, 0.0)] * 5, [(0.0, 0.0)] * 5
     for bounce in range(bounces):
         bent, denser = [], []
         for on, *_, r, _, k0, k1, bend, by in ROWS:
@@ -65,7 +65,7 @@ def by_hand(bounces: int) -> tuple[list, list, list]:
             denser.append((min(e[1] for e in ends), max(e[1] for e in ends)))
         if bounce == bounces - 1:
             return slopes, bent, denser
-        comes = [[row for row, to in LEADS.items() if box in to] for box in range(4)]
+        comes = [[row for row, to in LEADS.items() if box in to] for box in range(5)]
         told = [(ROWS[k][6], ROWS[k][6]) for k in range(5)]
         slopes, bends, dense = (
             [(min(x[k][0] for k in some), max(x[k][1] for k in some)) if some else (0.0, 0.0) for some in comes]
@@ -99,7 +99,7 @@ def test_where_a_segment_may_be_folded_nothing_is_said(name):
         first(Stub({name: np.inf}), Grid((FREE,), 4, 4), cells(), 1)
 
 
-@pytest.mark.parametrize("box", [0, 1, 2])
+@pytest.mark.parametrize("box", [1, 2, 4])
 def test_boxes_without_one_of_those_that_images_meet_are_no_trapping_region(box):
     class Less(Stub):
         def landed(self, boxes, slopes):

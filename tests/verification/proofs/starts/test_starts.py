@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from sympy import Rational, S
 from numeric import PinballMap
 from numeric.pinball.sampling import interior_starts
 from symbolic import Scene
+from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts import mean
@@ -209,6 +211,17 @@ def test_jury() -> None:
 def test_the_diameter_is_that_of_the_cardioid(map: PinballImages) -> None:
     """The largest distance of two points of the cardioid is `3*sqrt(3)/2`, between two that the cut leaves."""
     assert 0 < diameter(map) - 1.5 * 3**0.5 < 0.01
+
+
+@pytest.mark.parametrize(("speeds", "gap"), [((1.0, 1.0), 0.25), ((1.0, 3.0), 0.75), ((2.0, 1.0), 0.5)])
+def test_a_diameter_is_that_of_a_mesh_and_of_what_may_lie_between_its_points(monkeypatch, speeds, gap) -> None:
+    """Of two sides of length 1 that are 2 apart, by five points of each; boundaries run at most at given speeds."""
+    monkeypatch.setattr(mean, "MESH", 4)
+    monkeypatch.setattr(mean, "speeds", lambda map, on, theta: BallArray(np.array(speeds)[on], 0.0 * theta.m))
+    place = lambda on, theta: (theta, BallArray(2.0 * on, 0.0 * theta.m), None)  # noqa: E731
+    sides = SimpleNamespace(charts=[SimpleNamespace(x=(0.0, 1.0))] * 2, place=place)
+    exact = 5**0.5 + gap
+    assert exact < diameter(sides) < exact * (1 + 1e-9)
 
 
 def test_the_average_is_negative_where_the_attractor_is_born() -> None:

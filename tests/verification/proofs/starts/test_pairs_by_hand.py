@@ -1,4 +1,4 @@
-"""Standard pairs step by step: where first segments go, ranges that a step keeps, and bounds of bends and densities."""
+"""Standard pairs step by step: where first segments go, ranges that a step keeps, and bounds that are told."""
 
 from types import SimpleNamespace
 
@@ -8,8 +8,10 @@ import pytest
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.boxes import Chart
 from verification.proofs.global_dynamics.graph import Cells, Grid
+from verification.proofs.starts import typical as typical_of
 from verification.proofs.starts.curves import Landed
 from verification.proofs.starts.standard_pairs import TILT, First, densities, first, kept, pushed
+from verification.proofs.starts.typical import typical
 
 FREE = Chart("free", (0.0, 4.0), (0.0, 4.0))
 BOXES = ((0, 0), (0, 1), (1, 2), (3, 3), (0, 2))  # columns and rows of a grid of four by four
@@ -213,3 +215,24 @@ def test_bounds_of_bends_and_densities_are_those_of_all_walks_along_edges():
     exact = np.array([max(-label[1][0], label[1][1]) for label in ends])
     assert np.all(exact <= found)
     assert found == pytest.approx(exact, rel=0.03)
+
+
+@pytest.mark.parametrize(("bounds", "said"), [
+    ((0.30000001, -0.2999999), (0.299999, 0.300001)), ((None, 0.1), None), ((0.1, None), None),
+    ((-0.25, 0.5), (-0.5, -0.25)),
+])  # fmt: skip
+def test_bounds_are_rounded_outwards_and_both_are_needed(monkeypatch, bounds, said):
+    balance = SimpleNamespace(proved=lambda gain: bounds[gain], count=5)
+    monkeypatch.setattr(typical_of, "pairs", lambda *given: given)
+    monkeypatch.setattr(typical_of, "Balance", lambda found, window: balance)
+    found = typical(None, None, None, 10, 20)
+    assert found.proved is (said is not None)
+    assert (found.low, found.high) == (pytest.approx(said, abs=1e-9) if said else (-np.inf, np.inf))
+    assert found.labels == 5
+
+    def refused(found, window):
+        raise ValueError("no cone")
+
+    monkeypatch.setattr(typical_of, "Balance", refused)
+    found = typical(None, None, None, 10, 20)
+    assert (found.low, found.high, found.labels, found.why, found.proved) == (-np.inf, np.inf, 0, "no cone", False)

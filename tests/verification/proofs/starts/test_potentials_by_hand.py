@@ -10,7 +10,7 @@ from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.boxes import Chart
 from verification.proofs.starts import typical as typical_of
 from verification.proofs.starts.labels import Labels, Targets
-from verification.proofs.starts.typical import DOWN, LARGEST, SLACK, TINY, UP, Balance, Cut, typical
+from verification.proofs.starts.typical import LARGEST, SLACK, TINY, Balance, Cut
 
 ONE, TWO = Chart("one", (0.0, 2.0), (-1.0, 1.0)), Chart("two", (2.0, 4.0), (-1.0, 1.0))
 
@@ -397,28 +397,3 @@ def test_of_several_broken_labels_the_one_that_is_stretched_least_counts():
     assert made.new.tolist() == [0, 7]
     with pytest.raises(ValueError, match="next to a join"):
         Cut(found, integers(3, 7), 1)
-
-
-@pytest.mark.parametrize(("bounds", "said"), [
-    ((0.30000001, -0.2999999), (0.299999, 0.300001)), ((None, 0.1), None), ((0.1, None), None),
-    ((-0.25, 0.5), (-0.5, -0.25)),
-])  # fmt: skip
-def test_bounds_are_rounded_outwards_and_both_are_needed(monkeypatch, bounds, said):
-    balance = SimpleNamespace(proved=lambda gain: bounds[gain], count=5)
-    monkeypatch.setattr(typical_of, "pairs", lambda *given: given)
-    monkeypatch.setattr(typical_of, "Balance", lambda found, window: balance)
-    found = typical(None, None, None, 10, 20)
-    assert found.proved is (said is not None)
-    assert (found.low, found.high) == (pytest.approx(said, abs=1e-9) if said else (-np.inf, np.inf))
-    assert found.labels == 5
-
-    def refused(found, window):
-        raise ValueError("no cone")
-
-    monkeypatch.setattr(typical_of, "Balance", refused)
-    found = typical(None, None, None, 10, 20)
-    assert (found.low, found.high, found.labels, found.why, found.proved) == (-np.inf, np.inf, 0, "no cone", False)
-
-
-def test_numbers_are_enlarged_and_made_smaller():
-    assert DOWN < 1 < UP

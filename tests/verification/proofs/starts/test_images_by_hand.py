@@ -159,14 +159,14 @@ def test_what_rectangles_have_in_common_with_the_table_is_cut_at_its_ends():
 @pytest.mark.parametrize("closed", [False, True])
 def test_an_end_that_is_the_start_itself_is_none_beyond_the_table(monkeypatch, closed):
     """Of sets inside, and over the lower or the upper end; where the arc's end is in the place of the start, or not."""
-    theta = floats(0, -1, 1, 0, -1, 1, -1, 1)
-    boxes = Boxes(np.zeros(8, dtype=int), (theta - 0.5, theta + 0.5), (0 * theta, 0 * theta))
+    theta = floats(0, -1, 1, 0, -1, 1, -1, 1, -0.75, 0.75)  # the last ones end with the table
+    boxes = Boxes(np.zeros(10, dtype=int), (theta - 0.5, theta + 0.5), (0 * theta, 0 * theta))
     low, high, seen = theta - 9.0, theta + 9.0, []
-    low[:3], high[3:6] = boxes.x[0][:3], boxes.x[1][3:6]
+    low[:3], high[3:6], low[8:] = boxes.x[0][:3], boxes.x[1][3:6], boxes.x[0][8:]
 
     class Given:
         def __init__(self, map, boxes):
-            assert boxes.chart.size == 8
+            assert boxes.chart.size == 10
 
         def arcs(self):
             return (integers(), low), (integers(), high)
@@ -177,7 +177,7 @@ def test_an_end_that_is_the_start_itself_is_none_beyond_the_table(monkeypatch, c
 
     monkeypatch.setattr(parallelograms, "Chords", Given)
     map = SimpleNamespace(closed=closed, inner=np.array([[-1.25], [1.25]]))
-    assert parallelograms._carried(map, points(theta, 0 * theta), boxes, np.arange(8)) == []
+    assert parallelograms._carried(map, points(theta, 0 * theta), boxes, np.arange(10)) == []
     lost = [] if closed else [1, 2, 4, 5]
     assert np.flatnonzero(np.isnan(seen[0][0])).tolist() == lost
     assert not np.any(np.isnan(seen[0][1]))
@@ -269,6 +269,32 @@ def test_arcs_go_on_beyond_a_join_until_all_flights_cross_them(low, high, crossi
         assert arc.lower()[0] <= found[0]
         assert arc.upper()[0] >= found[1]
     assert all((on.tolist(), end[0].tolist()) in (([1], [0]), ([], [])) for end, on in asked)
+
+
+def test_a_set_that_touches_the_table_has_an_image(monkeypatch):
+    """In one point of its border, in either coordinate; beyond it there is none."""
+    one = points([1.5], [1.5], rest=0.5)
+    left, low = one.boxes().x[0][0], one.boxes().y[0][0]
+    for end, top, met in ((left, low, 1), (np.nextafter(left, 0), low, 0), (left, np.nextafter(low, 0), 0)):
+        asked = given_images(monkeypatch, {0: ([5.0], [5.0])})
+        carried(SimpleNamespace(closed=False, top=top, outer=np.array([[-1.0], [end]])), one)
+        assert asked[0][1].size == met
+
+
+@pytest.mark.parametrize("at", [0.0, 1.0, -3.0])
+def test_a_rectangle_about_a_point_holds_it_inside(at):
+    boxes = points([at], [at]).boxes()
+    for low, high in (boxes.x, boxes.y):
+        assert low[0] < at < high[0]
+        assert high[0] - low[0] < 1e-14
+
+
+def test_where_sides_cancel_a_reach_is_what_rounding_may_leave():
+    """Of `2*theta - phi` on a set along `phi = 2*theta`: nothing, but for the last bits of all terms."""
+    sides = np.array([[[0.5], [-0.25]], [[1.0], [-0.5]]])
+    one = Parallelograms(integers(0), np.zeros((2, 1)), sides, np.zeros((2, 1)))
+    assert one.reach(2.0, -1.0)[0] == pytest.approx(3.0 * 2.0**-48, rel=1e-9, abs=0)
+    assert replace(one, rest=floats(0.125, 0.25)[:, None]).reach(2.0, -1.0)[0] == pytest.approx(0.5, rel=1e-9)
 
 
 def test_lost_sets_are_known_to_be_lost():

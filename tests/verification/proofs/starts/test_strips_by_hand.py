@@ -62,6 +62,8 @@ def test_lines_of_strips_do_not_cross_however_they_lean(monkeypatch, seed):
         for eta in np.unique(found.middle):
             row = found.some((found.chart == chart) & (found.middle == eta))
             assert row.left.size == count
+            assert row.half == pytest.approx(np.full(count, np.pi / 12), rel=1e-8)
+            assert np.all(row.half > np.pi / 12)
             assert (row.left[0], row.right[-1]) == charts[chart].x
             assert (row.left_lean[0], row.right_lean[-1]) == (0, 0)
             assert np.array_equal(row.left[1:], row.right[:-1])
@@ -95,10 +97,28 @@ def test_a_strip_is_as_large_as_its_sides_say(wall):
     """On the wall, of speed 1: its width in the middle, times its height, times the cosine of the least incidence."""
     assert one_strip().measures(wall)[0] == pytest.approx(0.5 * 0.25 * np.cos(0.375), rel=1e-9)
     assert one_strip().measures(wall)[0] > 0.5 * 0.25 * np.cos(0.375)
+    small = one_strip()._replace(chart=integers(0), right=floats(0.25 + 2.0**-10), half=floats(2.0**-11))  # of the arc
+    exact = 2.0**-20 * np.cos(0.5 - 2.0**-11) * 2 * np.cos(0.125)
+    assert exact * (1 - 1e-3) < small.measures(wall)[0] < exact * 1.01
     low = one_strip()._replace(middle=floats(0.0625))
     assert low.measures(wall)[0] == pytest.approx(0.5 * 0.25, rel=1e-9)
     meet = one_strip()._replace(left_lean=floats(2.0), right_lean=floats(-2.0))
     assert meet.measures(wall)[0] == np.inf  # the lines meet at an end
+
+
+def test_a_strip_starts_as_a_parallelogram_that_leans_in_the_middle_of_its_lines(wall):
+    """With `lam = 1/2`: its sides are half its width, and its height along both coordinates; lines part by 5/64."""
+    sets = one_strip().started(wall)
+    assert sets.chart.tolist() == [1]
+    assert sets.middle.ravel() == pytest.approx([0.5, -0.25])
+    assert sets.sides[:, :, 0] == pytest.approx(np.array([[0.25, 0.1875 * 0.125], [0.0, -0.5 * 0.125]]), rel=1e-9)
+    assert sets.rest[0, 0] == pytest.approx(0.3125 * 0.125, rel=1e-9)
+    assert sets.rest[0, 0] > 0.3125 * 0.125
+    assert 1e-15 < sets.rest[1, 0] < 1e-13
+    assert sets.sides[0, 0, 0] > 0.25
+    assert sets.sides[1, 1, 0] < -0.0625
+    wide = SimpleNamespace(lam=BallArray(0.5, 0.125))
+    assert one_strip().started(wide).rest[1, 0] == pytest.approx(0.125 * 0.5 + 0.125 * 0.125, rel=1e-9)
 
 
 def test_a_norm_of_no_bounces_is_that_of_the_matrix(wall):

@@ -51,8 +51,17 @@ def test_cells_cover_one_turn_and_all_angles_above_0_and_hardly_more():
 
 
 def test_angles_are_told_apart_up_to_turns_of_the_table():
-    found = stub()._beside(floats(0.25, 0.5, 1.5, -0.5, -3.625, 0.0), 0.25)
-    assert found.tolist() == [0.0, 0.25, 0.25, 0.25, 0.125, -0.25]
+    made = stub()
+    assert made._beside(floats(0.25, 0.5, 1.5, -0.5, -3.625, 0.0), 0.25).tolist() == [
+        0.0,
+        0.25,
+        0.25,
+        0.25,
+        0.125,
+        -0.25,
+    ]
+    made.turn = 0.25
+    assert made._beside(floats(0.25, 0.3125, 1.0625, -0.6875), 0.25).tolist() == [0.0, 0.0625, 0.0625, 0.0625]
 
 
 @pytest.mark.parametrize("turns", [0, 2, -1])
@@ -83,6 +92,10 @@ def test_cells_lie_within_the_larger_rectangle_if_all_their_ends_do(monkeypatch,
     assert not stub()._inside(box(*(beyond + shift)))
     assert not stub()._inside(box(*np.stack([ends, beyond], 1)))  # all of them must
     assert not stub()._inside(box(*np.zeros((4, 0))))
+    made, border = stub(), 0.0625 * (1 - SLACK)
+    made.place = 0.0, 0.0
+    for end, held in ((border, False), (np.nextafter(border, 0), True)):
+        assert made._inside(box(-end, end, -end, end)) is held
 
 
 def test_a_rectangle_about_the_saddle_and_one_about_the_disc_are_as_wide_as_is_said():
@@ -94,6 +107,7 @@ def test_a_rectangle_about_the_saddle_and_one_about_the_disc_are_as_wide_as_is_s
     assert made._disc_above()
     assert [x.tolist() for x in (*asked[0].x, *asked[0].y)] == [[0.375], [0.625], [0.5], [1.0]]
     assert [x.tolist() for x in (*made._about(0.125).x, *made._about(0.125).y)] == [[0.125], [0.375], [0.375], [0.625]]
+    assert asked[0].chart.tolist() == made._about(0.125).chart.tolist() == [0]
     made.barrier.above = lambda boxes: np.array([False])
     assert not made._disc_above()
 
@@ -101,8 +115,8 @@ def test_a_rectangle_about_the_saddle_and_one_about_the_disc_are_as_wide_as_is_s
 @pytest.mark.parametrize("change", [None, "theta", "phi", "wide", "divided"])
 def test_the_place_of_the_saddle_is_told_where_it_is_enclosed_closely(monkeypatch, change):
     """To a quarter of the smaller rectangle at most, in both coordinates; the next bounce is a turn farther."""
-    wide = arb(0, basin_edge.NEAR / 3.9)
-    here, phi = arb("0.5"), arb("0.25")
+    wide, thin = arb(0, basin_edge.NEAR / 3.9), arb(0, basin_edge.NEAR / 4.1)
+    here, phi = arb("0.5") + thin, arb("0.25") + thin
 
     class Map:
         def __init__(self, table, turn):
@@ -196,7 +210,3 @@ def test_cells_on_closed_walks_and_about_the_saddle_are_cut_in_four_and_asked_ag
         again = np.array([1], dtype=np.int32)
         made, asked = walks(edges, later=(again, again))  # a cell that leads to itself is left
         assert not made._alone() or (1, 1) not in parts
-
-
-def test_a_little_is_kept_for_roundings():
-    assert 0 < SLACK < 1e-6

@@ -17,6 +17,7 @@ from verification.proofs.starts.curves import CurveMap, Landed
 from verification.proofs.starts.labels import Array, Cast, Indices, Labels, Range, Spread, Targets, reduced
 
 ROUNDS, WIDER = 80, 0.01
+LARGEST = 1e6  # bends and densities
 BOUNCES = 8  # before the first labels
 TILT = 1e-6  # slopes of the first segments
 
@@ -43,11 +44,8 @@ def first(map: CurveMap, grid: Grid, cells: Cells, bounces: int = BOUNCES) -> Fi
             raise ValueError("segments may be folded before they are stretched; give finer boxes")
         if bounce == bounces - 1:
             break
-        low, high = landed.phi.lower(), landed.phi.upper()
-        kept = np.array([c.kept for c in map.charts])[landed.chart]
-        foot, head = (np.array([c.y[i] for c in map.charts])[landed.chart] for i in (0, 1))
-        y = np.where(kept, np.maximum(low, foot), low), np.where(kept, np.minimum(high, head), high)
-        places = Boxes(landed.chart, (landed.theta.lower(), landed.theta.upper()), y)
+        ends = ((end.lower(), end.upper()) for end in (landed.theta, landed.phi))
+        places = Boxes(landed.chart, *ends)
         met = grid.met(Images(np.arange(on.size), places, np.zeros(0, dtype=np.int64)))
         wide = np.repeat(np.arange(on.size), met.right - met.left + 1)
         column = ranges(met.left, met.right + 1) % grid.columns
@@ -77,7 +75,7 @@ def kept(start: Range, step: Callable[[Range], Range]) -> Range:
         if np.all(new[0] >= wide[0]) and np.all(new[1] <= wide[1]):
             return wide
         low, high = np.minimum(low, new[0]), np.maximum(high, new[1])
-        if not np.all(np.isfinite(low) & np.isfinite(high)) or max(-low.min(), high.max()) > 1e6:
+        if not np.all((low > -LARGEST) & (high < LARGEST)):
             break
     raise ValueError("bends or densities of curves grow on and on: curves are not stretched often enough")
 

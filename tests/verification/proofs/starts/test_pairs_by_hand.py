@@ -117,14 +117,15 @@ def test_boxes_without_one_of_those_that_images_meet_are_no_trapping_region(box)
 @pytest.mark.parametrize("kept_to", [False, True])
 @pytest.mark.parametrize("side", [-1, 1])
 def test_what_juts_out_of_a_chart_is_refused_unless_the_map_keeps_to_it(kept_to, side):
-    """An image from -1/2 to 4.5 over a whole column; where all the column is in use."""
+    """One image from -1/2, or to 4.5; where all the column is in use."""
     chart = FREE._replace(kept=kept_to)
 
     class Tall(Stub):
         def landed(self, boxes, slopes):
             on, zero = np.arange(16), np.zeros(16)
             still = BallArray(zero, zero)
-            phi = hull(zero + (2 if side > 0 else -0.5), zero + (4.5 if side > 0 else 2))
+            far = np.where(on == 5, 0.5, -0.5)  # one of them
+            phi = hull(zero + (2 if side > 0 else -far), zero + (4 + far if side > 0 else 2))
             values = hull(zero + 0.25, zero + 0.75), phi, still + 2.0, still, still, still, still, still
             return Landed(on, 0 * on, on >= 0, *values)
 
@@ -187,19 +188,53 @@ def test_ranges_that_grow_on_and_on_are_refused(step):
         kept((floats(-1.0, 0.0), floats(0.0, 1.0)), step)
 
 
-def test_bounds_of_bends_and_densities_are_those_of_all_walks_along_edges():
+@pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.parametrize("end", [0, 1])
+def test_of_many_ranges_one_may_be_kept_late_at_one_end_alone(which, end):
+    rates = np.zeros((2, 2))
+    rates[end, which] = 0.75
+    step = lambda some: (some[0] * rates[0] - rates[0], some[1] * rates[1] + rates[1])  # noqa: E731
+    low, high = kept((floats(0, 0), floats(0, 0)), step)
+    again = step((low, high))
+    assert np.all((low <= again[0]) & (again[1] <= high))
+    exact = np.zeros((2, 2))
+    exact[end, which] = (-3.0, 3.0)[end]
+    assert np.array([low, high]) == pytest.approx(exact, abs=0.05)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+@pytest.mark.parametrize(("end", "factor"), [(0, 10.0), (1, 10.0), (0, np.nan), (1, np.nan)])
+def test_ranges_are_given_up_when_one_end_of_one_of_them_is_too_large(which, end, factor):
+    calls, rates = [], np.zeros((2, 2))
+    rates[end, which] = factor
+
+    def step(some):
+        calls.append(0)
+        return some[0] * rates[0], some[1] * rates[1]
+
+    with pytest.raises(ValueError, match="grow on and on"):
+        kept((floats(-1, -1), floats(1, 1)), step)
+    assert len(calls) == (6 if factor == 10.0 else 1)  # beyond a million
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_bounds_of_bends_and_densities_are_those_of_all_walks_along_edges(sign):
     """Three labels; the first two lead to one another, the third comes from segments alone, and leads to the first."""
     values = {"k0": (0.5, -0.25, 0.5, 3.0), "k1": (0.25, -0.5, 0.25, 0.0), "bend": (1.0, -2.0, 0.5, 0.0),
               "by_bend": (0.5, -0.25, 0.5, 0.25), "stretch": (2.0, -4.0, 3.0, 2.0)}  # fmt: skip
+    values |= {name: tuple(sign * x for x in values[name]) for name in ("k0", "bend")}  # and all that follows
     landed = SimpleNamespace(**{name: BallArray(floats(*x), np.zeros(4)) for name, x in values.items()})
     cast = SimpleNamespace(landed=landed, label=integers(0, 1, 0, 2))
     edges = integers(0, 1, 2), integers(1, 0, 0)
     start = First(
-        None, BallArray(floats(0.25, 5.0), floats(0.0, 1.0)), BallArray(floats(-0.5, -9.0), floats(0.25, 1.0))
+        None,
+        BallArray(sign * floats(0.25, 5.0), floats(0.0, 1.0)),
+        BallArray(sign * floats(-0.5, -9.0), floats(0.25, 1.0)),
     )
     begun = integers(0, 0, 1), integers(0, 1, 2)
     found = densities(start, begun, cast, edges, 3)
     ends = [[(0.25, 0.25), (-0.75, -0.25)], [(0.25, 0.25), (-0.75, -0.25)], [(4.0, 6.0), (-10.0, -8.0)]]
+    ends = [[sorted((sign * x[0], sign * x[1])) for x in label] for label in ends]
     ends = [[(min(x[0], 0), max(x[1], 0)) for x in label] for label in ends]
     for _ in range(200):
         new = [list(map(list, label)) for label in ends]

@@ -144,6 +144,35 @@ def test_the_place_of_the_saddle_is_told_where_it_is_enclosed_closely(monkeypatc
     assert found == (None if change else (0.5, 0.25))
 
 
+MISSING = {
+    "none": set(), "barrier": {"barrier", "saddle", "hyperbolic", "alone"}, "place": {"saddle", "hyperbolic", "alone"},
+    "disc": {"disc"}, "above": {"disc"}, "hyperbolic": {"hyperbolic"}, "low": {"alone"}, "alone": {"alone"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("fails", "missing"), MISSING.items())
+def test_each_item_of_an_edge_is_what_its_own_step_proves(monkeypatch, fails, missing):
+    """Without a barrier or a place nothing is asked of the saddle."""
+    asked = []
+    says = lambda step: asked.append(step) or fails != step  # noqa: E731
+    monkeypatch.setattr(basin_edge, "attracts", lambda map, disc, turn: says("disc"))
+    barrier = SimpleNamespace(
+        heights=None if fails == "barrier" else 1.0, above=lambda boxes: np.array([True, fails != "low"]), map=None
+    )
+    made = stub(
+        barrier=barrier, disc=None, _disc_above=lambda: says("above"), _hyperbolic=lambda: says("hyperbolic"),
+        _alone=lambda: says("alone"), _about=lambda half: asked.append(half),
+    )  # fmt: skip
+    made.place = None if fails == "place" else PLACE
+    made.checks = BasinEdge.checks.func(made)
+    assert made.checks == {name: None if name in missing else True for name in basin_edge.CHECKS}
+    assert BasinEdge.proved.fget(made) is (not missing)
+    if fails in ("barrier", "place"):
+        assert set(asked) <= {"disc", "above"}
+    else:
+        assert basin_edge.NEAR in asked
+
+
 def walks(edges, near=(0,), below=(), absorbed=(), inner=True, later=None):
     """Four cells of one turn, which lead to one another as is said, and may lie below the barrier or in the disc."""
     asked = []

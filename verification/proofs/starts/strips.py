@@ -93,13 +93,12 @@ class Strips(NamedTuple):
     def measures(self, map: PinballImages) -> Array:
         """Bounds for the integrals of `cos(eta)*ds*deta` over the strips."""
         sway = [np.abs(lean) * self.half for lean in (self.left_lean, self.right_lean)]
-        first = np.minimum(self.left - sway[0], self.right - sway[1])
-        whole = hull(first, np.maximum(self.left + sway[0], self.right + sway[1]))
+        whole = hull(self.left - sway[0], self.right + sway[1])  # of lines that do not cross
         speed = speeds(map, self.chart, whole).upper()
         low = np.maximum(np.abs(self.middle) - self.half, 0.0)
         cosine = turned(BallArray(low))[0].upper()
         wide = self.right - self.left
-        wide = np.where(np.abs(self.right_lean - self.left_lean) * self.half < wide, wide, np.inf)  # lines do not cross
+        wide = np.where(np.abs(self.right_lean - self.left_lean) * self.half < wide, wide, np.inf)
         return np.asarray(wide * 2 * self.half * speed * cosine * SLACK)
 
 

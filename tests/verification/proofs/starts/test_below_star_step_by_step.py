@@ -268,3 +268,59 @@ def test_derivatives_of_the_first_landing_hold_difference_quotients(e):
         assert float(c.lower()) - 1e-4 < sign * by_e < float(c.upper()) + 1e-4
     assert float(r.rad()) < 0.2
     assert float(c.rad()) < 0.2
+
+
+SIZES = {"K": 2.0, "U_END": 0.0625, "V_LOW": -0.03125, "V_HIGH": 0.03125, "LEAN": 0.75, "THICK": 0.0078125,
+         "FAR": 0.125, "BESIDE": 0.015625}  # fmt: skip
+INNER = {"a": 0.0625, "b": 0.5, "c": 0.5, "f": 0.125, "g": 1.5, "h": 2.0}
+NUDGE = 2.0**-20
+
+
+def sized(monkeypatch, numbers: dict) -> dict:
+    """The sizes, of few bits, some of them changed; the other numbers are told."""
+    for name, size in (SIZES | {name: x for name, x in numbers.items() if name in SIZES}).items():
+        monkeypatch.setattr(below_star, name, size)
+    return {name: arb(x) for name, x in numbers.items() if name not in SIZES}
+
+
+@pytest.mark.parametrize(("numbers", "name", "way"), [
+    ({"a": 0.25, "b": 0.5, "c": 0.75, "THICK": 0.03125}, "b", 1), ({"a": 0.25, "b": 0.75, "THICK": 0.03125}, "c", 1),
+    ({"U_END": 0.015625, "b": 0.4375}, "b", -1), ({"FAR": 0.05859375}, "FAR", 1), ({"b": 0.9375}, "b", -1),
+    ({"c": 1.3125}, "c", -1), ({"THICK": 0.00390625}, "THICK", 1), ({"wall": 1.0}, "wall", 1),
+    ({"V_LOW": -0.115234375, "FAR": 1.0}, "V_LOW", 1), ({"V_HIGH": 0.115234375, "FAR": 1.0}, "V_HIGH", -1),
+    ({"FAR": 0.181640625, "V_LOW": -0.11328125, "b": 0.125 + NUDGE}, "FAR", 1),
+])  # fmt: skip
+def test_inequalities_of_inner_states_are_strict(monkeypatch, numbers, name, way):
+    """At the border nothing is proved, and next to it all is; growth on the wall is asked for itself."""
+    for step, held in ((0.0, False), (way * NUDGE, True)):
+        told = INNER | numbers
+        given = sized(monkeypatch, told | {name: (SIZES | told)[name] + step})
+        a, b, c, f, g, h = (given[x] for x in "abcfgh")
+        sides = ((ARC, -1, g), (WALL, 1, given.get("wall", g)))
+        whole = {side: [[a, sign * b, -c], [f, sign * grows, -h]] for side, sign, grows in sides}
+        assert below_star.inner(whole, arb(1) / 512) is held
+
+
+@pytest.mark.parametrize("name", ["a", "b", "c", "f", "g", "h"])
+@pytest.mark.parametrize("side", [ARC, WALL])
+def test_derivatives_of_inner_states_are_positive(monkeypatch, name, side):
+    for value, held in ((INNER[name], True), (0.0, False), (-0.0625, False)):
+        sized(monkeypatch, {})
+        whole = {}
+        for of, sign in ((ARC, -1), (WALL, 1)):
+            a, b, c, f, g, h = (arb(x) for x in (INNER | ({name: value} if of == side else {})).values())
+            whole[of] = [[a, sign * b, -c], [f, sign * g, -h]]
+        assert below_star.inner(whole, arb(1) / 512) is held
+
+
+@pytest.mark.parametrize(("numbers", "name", "way"), [
+    ({"r": 2.0}, "r", -1), ({"U_END": 0.015625}, "U_END", 1), ({"FAR": 0.029296875}, "FAR", 1),
+    ({"r": 2.0, "V_LOW": -0.0625, "LEAN": 0.5}, "LEAN", 1), ({"V_HIGH": 0.001953125}, "V_HIGH", 1),
+    ({"c": 3.5}, "c", -1), ({"r": 2.0, "V_LOW": -0.0625, "K": 0.5, "c": 0.75}, "K", 1), ({"c": 0.0}, "c", 1),
+    ({"V_LOW": -0.02734375}, "V_LOW", -1),
+])  # fmt: skip
+def test_inequalities_of_the_first_landing_are_strict(monkeypatch, numbers, name, way):
+    for step, held in ((0.0, False), (way * NUDGE, True)):
+        told = {"r": 1.75, "c": 1.0} | numbers
+        given = sized(monkeypatch, told | {name: (SIZES | told)[name] + step})
+        assert below_star.begins([given["r"], -given["c"]], arb(1) / 512) is held

@@ -136,6 +136,29 @@ def test_a_cone_is_kept_and_stretched_only_if_each_of_three_inequalities_holds(m
     assert not ring.stretches(FOUND.map, CHART)
 
 
+@pytest.mark.parametrize(
+    ("row", "turn", "held"),
+    [
+        ((1.5, 0.0), (0.165, 0.33), True),  # slopes go to 0.121 to 0.143
+        ((1.5, 0.0), (0.18, 0.36), False),  # to 0.156 where they are 0.15, and to 0.132 where they are 0.05
+        ((1.5, 0.0), (0.24, -0.48), True),  # to 0.144 to 0.112
+        ((1.5, 0.0), (0.255, -0.51), False),  # to 0.153 where they are 0.05
+        ((1.5, 0.0), (0.12, -0.24), True),
+        ((1.5, 0.0), (0.12, -0.9), False),  # to less than 0.05 where they are 0.15
+        ((1.6, -2.0), (0.15, 0.0), True),  # stretched by 1.5 to 1.3
+        ((1.45, -2.0), (0.15, 0.0), False),  # by 1.15 where slopes are 0.15
+        ((1.05, 2.0), (0.1, 0.0), False),  # by 1.15 where they are 0.05
+        ((1.15, 2.0), (0.13, 0.0), True),
+    ],
+)
+def test_a_cone_is_kept_and_stretched_at_both_of_its_ends(monkeypatch, row, turn, held):
+    """Of matrices with these rows, by at least 1.2, from slopes of 0.05 to 0.15 to such slopes."""
+    full = lambda x: BallArray(np.full(division_of.PARTS, x), np.zeros(division_of.PARTS))  # noqa: E731
+    entries = [[full(x) for x in row], [full(x) for x in turn]]
+    monkeypatch.setattr(division_of, "derivative", lambda *_: entries)
+    assert replace(RING, slope=0.1, cone=0.05, growth=1.2).stretches(None, CHART) is held
+
+
 RIGHT, LEFT, ARC, OTHER, BESIDE = range(5)  # boxes of the two parts, two on the arc, and one on the wall beside
 
 

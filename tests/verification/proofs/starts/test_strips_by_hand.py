@@ -135,6 +135,8 @@ def test_a_norm_of_no_bounces_is_that_of_the_matrix(wall):
                         (floats(2.0), 0.25))  # fmt: skip
     assert found[0] == pytest.approx(13.0, rel=1e-9)  # the larger one of two images counts
     assert steepest(wall, boxes, 0, 0.25) == pytest.approx([1.0] * 3, rel=1e-9)
+    wide = Boxes(integers(0), (floats(1.0), floats(1 + 2.0**-6)), (floats(0), floats(0)))  # speeds differ along it
+    assert np.cos(0.5) / np.cos(0.5 + 2.0**-7) < steepest(wall, wide, 0, 0.25)[0] < 1.2
 
 
 def test_a_norm_of_one_bounce_is_that_of_all_images_and_infinite_where_one_is_not_known(monkeypatch, wall):

@@ -114,6 +114,36 @@ def test_of_each_point_of_the_curve_the_farthest_image_counts_and_of_all_points_
     assert moved().low == 0.0  # sets so wide are given up
 
 
+def test_a_curve_crosses_all_that_is_kept_with_its_first_and_its_last_side(monkeypatch):
+    """These alone lie beyond; with less of them it does not cross. All of its points are moved up by 1."""
+    monkeypatch.setattr(extent_of, "carried", lambda by, sets: (
+        np.arange(sets.chart.size), replace(sets, middle=sets.middle + np.array([[0.0], [1.0]]))
+    ))  # fmt: skip
+    fine = 2 * KEPT / (extent_of.SIDES - 2)
+    for first, last, crosses in ((1.5, 1.5, True), (0.9, 1.5, False), (1.5, 0.9, False)):
+        found = moved(1, ends=(-KEPT - first * fine, KEPT + last * fine))
+        found.__dict__["curve"] = np.linspace(0, 1, extent_of.SIDES + 1), found.curve[1]
+        asked = []
+        found.barrier.above = lambda boxes, asked=asked: asked.append(boxes) or boxes.y[0] > KEPT
+        found.barrier.heights = np.array([KEPT])
+        reached = found.low
+        assert 0.49 < reached < 0.5 if crosses else reached == 0.0
+        assert len(asked) == 2
+        theta, phi = found.curve
+        for (low, high), ends in ((asked[0].x, theta), (asked[0].y, phi)):
+            assert np.all((low < ends[:-1]) & (ends[1:] < high))
+            assert np.all((low > ends[:-1] - 1e-11) & (high < ends[1:] + 1e-11))
+        left = ~((asked[0].y[0] > KEPT) | (asked[1].y[0] > KEPT))
+        assert (left[0], left[-1]) == (first < 1, last < 1)
+
+
+def test_of_a_curve_that_lies_beyond_as_a_whole_nothing_is_said(monkeypatch):
+    monkeypatch.setattr(extent_of, "carried", lambda by, sets: (np.arange(sets.chart.size), sets))
+    found = moved()
+    found.barrier.above = lambda boxes: np.full(boxes.chart.size, True)
+    assert found.low == 0.0
+
+
 def test_only_what_a_barrier_bounds_has_a_highest_angle():
     found = moved()
     found.barrier.heights = None

@@ -228,7 +228,7 @@ class Labels:
     def spread(self, cast: Cast, hulls: Range) -> Spread:
         """The labels of images of unbroken pieces, in order along the image."""
         whole = np.flatnonzero(~cast.broken)
-        order = np.full((self.count, self.parts), -1)
+        order = np.zeros((self.count, self.parts), dtype=np.int64)
         order[cast.label, cast.part] = np.arange(cast.label.size)
         r = cast.landed.stretch
         size, turned = np.abs(r.m)[order[whole]], ~cast.rising[whole]
@@ -238,7 +238,7 @@ class Labels:
         for rate in (slow, fast):
             way = np.concatenate([np.zeros((whole.size, 1)), np.cumsum(rate, 1)], 1)
             ways.append((way - way[:, [self.parts // 2]]) * (self.wide[self.chart[whole]] / self.parts)[:, None])
-        at = np.full(self.count, -1)
+        at = np.zeros(self.count, dtype=np.int64)
         at[cast.middle.source] = np.arange(cast.middle.source.size)
         at = at[whole]
         chart = cast.middle.chart[at]

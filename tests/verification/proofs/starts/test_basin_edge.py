@@ -111,6 +111,7 @@ def test_images_of_random_points_lie_in_cells_to_which_edges_lead():
         ((2, 0, 0, 0.5), (0, 0, 0, 0.6), False),
         ((0.9, 0, 0, 0.5), (0, 0, 0, 0), False),
         ((2, 0, 0, 1.2), (0, 0, 0, 0), False),
+        ((430, 0, 0, 0.5), (0, 0, 0, 0), True),  # by 0.86, which is less than half a turn
         ((600, 600, 0, 0.5), (0, 0, 0, 0), False),  # half a turn of the table along a diagonal
         ((1100, 0, 0, 0.5), (0, 0, 0, 0), False),  # half a turn of the table, and points may be near another copy
     ],
@@ -128,6 +129,8 @@ def test_differences_grow_or_shrink_where_the_derivative_says_so(middle, radius,
     some = SimpleNamespace(map=SimpleNamespace(derivatives=lambda _: ((piece, slopes),)))
     stub = SimpleNamespace(barrier=some, turn=FOUND.turn, _about=FOUND._about)
     assert BasinEdge._hyperbolic(stub) is (held and not turned_back)
+    piece.on = np.arange(15)  # of one part nothing is known
+    assert not BasinEdge._hyperbolic(stub)
 
 
 def test_a_cell_is_in_the_disc_where_its_corners_are():

@@ -126,6 +126,15 @@ def test_graphs_are_of_all_contractions_up_to_the_next_range(monkeypatch, fates,
     assert not found.proved
 
 
+@pytest.mark.parametrize("held", [(True, True), (True, False), (False, True)])
+def test_each_of_the_graphs_proves_its_range(monkeypatch, held):
+    fates, answers = ranges((0, "0.03"), ("0.03", NEXT)), iter(held)
+    monkeypatch.setattr(below_star, "unreturning", lambda fate, core: next(answers))
+    monkeypatch.setattr(below_star, "attracts", lambda *_: {"one": True})
+    monkeypatch.setattr(below_star, "TOP", Fraction("0.07"))
+    assert BelowStar(fates, None).checks["boxes"] is (all(held) or None)
+
+
 @pytest.mark.parametrize("failing", ["hulls", "first_hull", "_exits"])
 def test_where_a_ball_is_too_wide_what_was_proved_before_stays(monkeypatch, failing):
     def broken(*_):

@@ -277,6 +277,8 @@ def test_states_next_to_the_join_lie_in_the_boxes_that_are_to_be_in_the_core(mon
         for ball, (low, high) in ((at, boxes.x), (-lam * eta, boxes.y)):
             assert arb(low[0]) < ball.lower()
             assert arb(high[0]) > ball.upper()
+            assert float(ball.lower()) - low[0] < 1e-12
+            assert high[0] - float(ball.upper()) < 1e-12
 
 
 @pytest.mark.parametrize(("x", "y", "outside", "held"), [

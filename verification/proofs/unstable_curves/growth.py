@@ -96,7 +96,7 @@ def _greatest(values: Array, reach: int, axis: int) -> Array:
     """The greatest of the entries up to `reach` before and after each."""
     turned = np.moveaxis(values, axis, 0)
     found = turned.copy()
-    for step in range(1, min(reach, len(turned) - 1) + 1):
+    for step in range(1, min(reach, len(turned)) + 1):
         found[step:] = np.maximum(found[step:], turned[:-step])
         found[:-step] = np.maximum(found[:-step], turned[step:])
     return np.moveaxis(found, 0, axis)

@@ -131,7 +131,7 @@ class Course:
         if self.around:  # of two landings at one join neither is a turn away from the other
             shift = np.round((places[0] - base[source]) / turn) * turn
             places = [place - shift for place in places]
-        low, high, down, up = (np.full(count, sign * np.inf) for sign in (1, -1, 1, -1))
+        low, high, down, up = (np.full(count, end) for end in (np.inf, -np.inf, np.inf, -np.inf))
         for into, values, choose in (
             (low, places[0], np.minimum),
             (high, places[1], np.maximum),
@@ -139,7 +139,7 @@ class Course:
             (up, boxes.y[1], np.maximum),
         ):
             choose.at(into, source, values)
-        bad = ~np.isfinite(base) | (low > high)
+        bad = ~np.isfinite(base)
         bad[images.lost] = True
         for some in (low, high, down, up):
             some[bad] = np.nan
@@ -163,7 +163,7 @@ class Course:
             short &= (left[1] - left[0] < turn / 16) & (right[1] - right[0] < turn / 16)
         else:
             short = np.ones(turned.shape, dtype=bool)
-        good = short & (right[0] - left[1] > 0) & np.isfinite(left[2]) & np.isfinite(right[2])
+        good = short & np.isfinite(left[2]) & np.isfinite(right[2])
         return self._cut(spans.origin[good], [x[good] for x in left], [x[good] for x in right])
 
     def _cut(self, origin: Indices, left: list[Array], right: list[Array]) -> Spans:

@@ -1,0 +1,459 @@
+"""The rectangle about a saddle, and blocks that stable curves run through: each inequality, each step by itself."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_matrix
+
+from verification.arithmetic.arrays import BallArray, hull
+from verification.proofs.global_dynamics.boxes import Boxes, Chart
+from verification.proofs.global_dynamics.flights import Slopes
+from verification.proofs.global_dynamics.graph import Cells
+from verification.proofs.unstable_curves import anchor as anchors
+from verification.proofs.unstable_curves import attraction as attractions
+from verification.proofs.unstable_curves.affine import BrokenLine
+from verification.proofs.unstable_curves.anchor import (
+    Anchor,
+    _fixed,
+    _followed,
+    _held,
+    _hyperbolic,
+    _inside,
+    _slope,
+    _span,
+)
+from verification.proofs.unstable_curves.attraction import _blocks, attraction, stable_slopes
+from verification.proofs.unstable_curves.cover import cover
+from verification.proofs.unstable_curves.spans import Course, Spans
+
+TENT = BrokenLine(((-2.0, -1.5), (0.0, 1.5), (2.0, -1.5)), 0.125, 0.25)
+FIXED = 1.5 / (1 + 1.5 - 0.125)  # of 1.5 - 1.5*x + y with y = x/8
+CHARTS = Chart("a", (0.0, 2.0), (-1.0, 1.0)), Chart("b", (4.0, 8.0), (-1.0, 1.0))
+
+
+def matrix(a, b, c, d, radius=0.0):
+    """Of balls."""
+    return [[BallArray(float(x), radius) for x in row] for row in ((a, b), (c, d))]
+
+
+BASE = {"a": 4.0, "b": 0.5, "c": 0.25, "d": 0.125, "s": 2.0, "least": 1.0, "most": 1.5, "height": 1.0}
+
+
+def holds(radius=0.0, **altered):
+    """Are the four inequalities said to hold?"""
+    now = BASE | altered
+    entries = matrix(*(now[x] for x in "abcd"), radius)
+    return _hyperbolic(entries, now["s"], now["least"], now["most"], now["height"])
+
+
+@pytest.mark.parametrize(
+    ("name", "edge", "others", "way"),
+    [
+        ("a", 2.0, {"s": 2.0, "c": 0.0, "d": 0.0, "most": 1.0}, 1),  # a - 2/2 > 1
+        ("b", 1.5, {"c": 0.0, "d": 0.0}, -1),  # 4 - 2*b > 1
+        ("s", 6.0, {"c": 0.0, "d": 0.0}, -1),  # 4 - s/2 > 1
+        ("c", 4.0, {"b": 1.25, "s": 2.0, "d": 0.0, "most": 0.5}, None),
+        ("c", 1.75, {}, -1),  # c/2 + 1/8 < 1
+        ("d", 0.875, {}, -1),  # 1/8 + d < 1
+        ("least", 0.5, {}, 1),  # 4*least - 1/2 > 3/2
+        ("height", 5.0, {}, -1),  # 4 - height/2 > 3/2
+        ("most", 3.5, {}, -1),  # 4 - 1/2 > most
+    ],
+)
+def test_each_of_the_four_inequalities_fails_alone_and_at_equality(name, edge, others, way):
+    assert holds()
+    if way is None:
+        return
+    for sign in (1, -1) if name in "abcd" else (1,):
+        assert holds(**others, **{name: sign * (edge + way * 1e-6)})
+        for beyond in (0.0, 1e-13, 0.5, 4.0):
+            if name != "a" or beyond < 1:
+                assert not holds(**others, **{name: sign * (edge - way * beyond)})
+        if name != "most" and name != "s":
+            continue
+        assert not holds(**others, **{name: edge + way * 1e-12})  # rounding is allowed for
+
+
+def test_the_second_inequality_fails_alone():
+    """`c + s*d < s*(a - s*b)` with `a - s*b` a little above 1 and `c/s + d` a little below: needs one and the other."""
+    near = {"a": 3.0, "b": 0.875, "c": 0.0, "d": 0.0, "s": 2.0, "most": 2.0}  # grown by 5/4
+    assert holds(**near)
+    assert _hyperbolic(matrix(3.0, 0.875, 0.0, 0.0), 2.0, 1.0, 2.0, 1.0)
+    assert not _hyperbolic(matrix(3.0, 0.875, 2.5, 0.0), 2.0, 1.0, 2.0, 1.0)
+
+
+def test_radii_of_the_entries_count_against_each_inequality():
+    assert holds(radius=0.1)
+    assert not holds(radius=0.1, b=0.0, a=1.05, c=0.0, d=0.0, most=0.5)  # may be 0.95
+    assert holds(radius=0.1, b=0.0, a=1.45, c=0.0, d=0.0, most=0.5)
+    assert not holds(radius=0.1, d=0.75)  # 0.35/2 + 0.85
+    assert holds(radius=0.1, d=0.7)
+
+
+def test_a_slope_lies_in_the_middle_of_those_that_may_do_and_above_all_curves():
+    ball = matrix(5.0, 0.5, 0.5, 0.5)
+    ball[0][0] = BallArray(-5.0, 0.5)
+    assert _slope(ball, 0.25) == pytest.approx(4)  # between (1/2)/(1 - 1/2) and (5 - 1/2 - 1)/(1/2)
+    assert _slope(ball, 2.0) == pytest.approx(4.5)
+    assert _slope(ball, 9.0) == pytest.approx(9)
+    assert _slope(ball, 9.0) > 9
+    assert _slope(matrix(5.0, 0.5, 0.5, 1.0), 0.25) == np.inf
+    assert _slope(matrix(5.0, 0.0, 0.5, 0.5), 0.25) > 1e200
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.25, 0.25), (0.3, 0.7), (0.5, 1.5), (0.26, 1.74), (1.0, 1.49)])
+def test_over_an_interval_the_region_lies_between_the_heights_of_its_columns_and_of_those_beside(
+    by_hand, some_cells, low, high
+):
+    region = by_hand(SimpleNamespace(charts=CHARTS, joins=()), columns=8, cells=some_cells(4, charts=2, columns=8))
+    rows = Course(region).rows
+    for chart, shift, wide in ((0, 0.0, 1), (1, 4.0, 2)):
+        on = slice(int(low // 0.25) - 1, int(high // 0.25) + 2)
+        found = _span(region, chart, shift + wide * low, shift + wide * high)
+        assert found == (rows[0][chart, on].min(), rows[1][chart, on].max())
+
+
+def test_an_interval_next_to_an_end_of_a_chart_has_no_columns_beside_it(by_hand):
+    region = by_hand(SimpleNamespace(charts=CHARTS, joins=()), columns=8)
+    assert _span(region, 1, 4.25, 5.0) == (0.0, 0.0)
+    assert _span(region, 1, 4.5, 5.0) != (0.0, 0.0)
+    assert _span(region, 1, 5.0, 7.25) != (0.0, 0.0)
+    assert _span(region, 1, 5.0, 7.5) == (0.0, 0.0)
+
+
+def test_a_box_is_followed_and_derivatives_are_multiplied_in_order(by_hand):
+    """From the left piece to the right one: `((-1.5, 1), (1/8, 0))` times `((1.5, 1), (1/8, 0))`."""
+    region = by_hand(TENT)
+    left, right = np.array([[1.5, 1.0], [0.125, 0.0]]), np.array([[-1.5, 1.0], [0.125, 0.0]])
+    box, product, chart = ((-0.9, -0.88), (-0.01, 0.02)), np.eye(2), 0
+    corners = np.array([[x, y] for x in box[0] for y in box[1]])
+    for period, chart_there in ((0, 0), (1, 1), (2, 1), (3, 0)):
+        found = _followed(region, 0, box, period)
+        assert found[0] == chart_there
+        for i in (0, 1):
+            for j in (0, 1):
+                assert abs(found[2][i][j].m - product[i, j]) <= found[2][i][j].r + 1e-15 < 1e-9
+            ends = corners[:, i].min(), corners[:, i].max()
+            assert found[1][i] == pytest.approx(ends, abs=0.03 if period > 1 else 1e-12)
+            assert found[1][i][0] <= ends[0] + 1e-15
+            assert ends[1] - 1e-15 <= found[1][i][1]
+        product = (right if chart else left) @ product
+        x, y = corners.T
+        corners, chart = np.array([1.5 - 1.5 * abs(x) + y, x / 8]).T, int(1.5 - 1.5 * abs(x[0]) + y[0] > 0)
+
+
+def test_a_box_that_is_cut_lost_or_of_unknown_derivative_is_not_followed(by_hand):
+    region = by_hand(TENT)
+    assert _followed(region, 0, ((-1.1, -0.9), (0.0, 0.0)), 1) is None  # its image lies on both charts
+    assert _followed(region, 1, ((1.99, 2.0), (-0.25, 0.25)), 1)[0] == 0
+    assert _followed(region, 1, ((1.0 + 2, 1.0 + 2), (0.0, 0.0)), 1) is None  # its image is outside of the charts
+    box = (-0.9, -0.8), (-0.01, 0.02)
+    full = TENT.derivatives
+
+    def by(change):
+        return SimpleNamespace(charts=TENT.charts, joins=TENT.joins, images=TENT.images, derivatives=change)
+
+    def vague(boxes):
+        ((piece, slopes),) = full(boxes)
+        return [(piece, slopes._replace(law=BallArray(slopes.law.m, slopes.law.r + np.inf)))]
+
+    def half(boxes):
+        ((piece, slopes),) = full(boxes.chosen(slice(1, None)))
+        return [(piece, slopes)]
+
+    assert _followed(by_hand(by(full)), 0, box, 1) is not None
+    for change in (vague, half, lambda boxes: full(boxes) * 2):
+        assert _followed(by_hand(by(change)), 0, box, 1) is None
+
+
+@pytest.mark.parametrize("aside", [(0.0, 0.0), (0.05, 0.01), (-0.03, -0.02)])
+def test_an_interval_newton_step_finds_the_fixed_point_of_an_affine_map(by_hand, aside):
+    region, guess = by_hand(TENT), (FIXED + aside[0], FIXED / 8 + aside[1])
+    whole = matrix(-1.5, 1.0, 0.125, 0.0)
+    found = _fixed(whole, guess, region, 1, 1)
+    for x, truth in zip(found, (FIXED, FIXED / 8), strict=True):
+        assert abs(x.m - truth) <= x.r < 1e-12
+    assert _fixed(matrix(1.0, 1.0, 0.0, 0.5), guess, region, 1, 1) is None  # determinant 0 of the map less identity
+    assert _fixed(whole, guess, region, 0, 1) is None  # of another chart
+    wide = _fixed(matrix(-1.5, 1.0, 0.125, 0.0, 0.25), guess, region, 1, 1)
+    assert all(x.m - x.r <= truth <= x.m + x.r for x, truth in zip(wide, (FIXED, FIXED / 8), strict=True))
+    assert _fixed(matrix(-1.5, 1.0, 0.125, 0.0, 2.0), guess, region, 1, 1) is None
+    two = _fixed(matrix(2.25 + 0.125, -1.5, -0.1875, 0.125), guess, region, 1, 2)
+    assert all(abs(x.m - truth) <= x.r < 1e-12 for x, truth in zip(two, (FIXED, FIXED / 8), strict=True))
+
+
+def test_a_box_that_reaches_the_border_of_another_is_not_inside():
+    x, y = hull(0.25, 0.5), hull(-0.5, 0.125)
+    ends = [[float(z.lower()), float(z.upper())] for z in (x, y)]
+    assert _inside((x, y), ((0.0, 1.0), (-1.0, 1.0)))
+    for i in (0, 1):
+        for j in (0, 1):
+            box = [[0.0, 1.0], [-1.0, 1.0]]
+            box[i][j] = ends[i][j]
+            assert not _inside((x, y), box)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "held"),
+    [
+        ((4.55, 4.95), (-0.7, -0.55), True),
+        ((4.55, 4.95), (-0.7, -0.45), True),
+        ((5.05, 5.1), (-0.2, -0.1), False),  # in the cell that is missing
+        ((4.6, 5.4), (-0.2, -0.1), False),
+        ((4.6, 5.8), (-0.7, 0.3), False),
+        ((4.6, 4.9999), (-0.2, -0.1), True),
+        ((4.6, 5.0 - 1e-8), (-0.2, -0.1), False),  # as good as at its border
+        ((5.5 + 1e-8, 5.8), (-0.2, -0.1), False),
+        ((5.5001, 5.8), (-0.2, -0.1), True),
+        ((5.1, 5.2), (-0.3, -0.25 - 1e-9), False),
+        ((5.1, 5.2), (1e-9, 0.3), False),
+        ((5.1, 5.2), (0.001, 0.3), True),
+        ((4.0, 4.1), (-1.0, -0.9), True),
+        ((7.9, 8.0), (0.9, 1.0), True),
+    ],
+)
+def test_a_region_holds_a_box_if_it_has_all_cells_that_this_meets(by_hand, x, y, held):
+    map = SimpleNamespace(charts=CHARTS, joins=())
+    cells = by_hand(map, columns=8).cells
+    kept = ~((cells.chart == 1) & (cells.column == 2) & (cells.row == 3))  # x from 5 to 5.5, y from -1/4 to 0
+    region = by_hand(map, columns=8, cells=Cells(*(field[kept] for field in cells)))
+    assert _held(region, 1, (hull(*x), hull(*y))) is held
+
+
+BAND = slice(36, 48)  # rows from 1/32 to 1/8, of 64
+
+
+@pytest.fixture
+def banded(by_hand):
+    """The tent on cells 1/16 wide and 1/128 high, of a band."""
+    cells = by_hand(TENT, columns=32, rows=64).cells
+    kept = (cells.row >= BAND.start) & (cells.row < BAND.stop)
+    region = by_hand(TENT, columns=32, rows=64, cells=Cells(*(field[kept] for field in cells)), slopes=(-0.0625, 0.03))
+    region.cones[1][region.cells.chart == 0] = 7.0  # of no matter for the other chart
+    return region
+
+
+POINT = 1, FIXED, FIXED / 8
+
+
+def test_a_rectangle_about_a_saddle_is_all_of_the_region_there(banded):
+    found = anchors.anchor(banded, POINT, 1, 0.25)
+    assert (found.chart, found.low, found.high) == (1, FIXED - 0.25, FIXED + 0.25)
+    assert (found.bottom, found.top) == pytest.approx((1 / 32, 1 / 8), abs=1e-12)
+    assert anchors.anchor(banded, POINT, 2, 0.25) is None  # its second image lies on both charts
+    assert anchors.anchor(banded, POINT, 1, 0.6) is None  # a column beside it is none
+    assert anchors.anchor(banded, (1, FIXED + 0.2, FIXED / 8), 1, 0.15) is None  # the fixed point is not in it
+    for end in (found.bottom, found.top):
+        assert anchors.anchor(banded, (1, FIXED, end), 1, 0.25) is None
+    assert anchors.anchor(banded, (1, FIXED, found.top - 1e-9), 1, 0.25) is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "answer"),
+    [("_followed", lambda *_: None), ("_fixed", lambda *_: None), ("_inside", lambda *_: False),
+     ("_held", lambda *_: False), ("_hyperbolic", lambda *_: False)],
+)  # fmt: skip
+def test_each_step_for_a_rectangle_fails_alone(banded, monkeypatch, name, answer):
+    monkeypatch.setattr(anchors, name, answer)
+    assert anchors.anchor(banded, POINT, 1, 0.25) is None
+
+
+def test_a_rectangle_that_is_sent_to_another_chart_holds_no_fixed_point(banded, monkeypatch):
+    monkeypatch.setattr(anchors, "_fixed", lambda *_: (hull(0.625, 0.625), hull(0.0625, 0.0625)))
+    assert anchors.anchor(banded, POINT, 1, 0.25) is not None
+    true = anchors._followed
+    monkeypatch.setattr(anchors, "_followed", lambda *given: (0, *true(*given)[1:]))
+    assert anchors.anchor(banded, POINT, 1, 0.25) is None
+
+
+@pytest.mark.parametrize("aside", [0.0625, -0.0625])
+def test_inequalities_are_asked_of_the_nearest_and_the_farthest_the_fixed_point_may_be_to_each_side(
+    banded, monkeypatch, aside
+):
+    asked = []
+    monkeypatch.setattr(anchors, "_fixed", lambda *_: (hull(0.59375 + aside, 0.65625 + aside), hull(0.0625, 0.078125)))
+    monkeypatch.setattr(anchors, "_hyperbolic", lambda *given: asked.append(given[1:]) or True)
+    monkeypatch.setattr(anchors, "_slope", lambda whole, steep: steep)
+    assert anchors.anchor(banded, (1, 0.625, 0.0625), 1, 0.25) is not None
+    steep, least, most, height = asked[0]
+    assert steep == 0.0625
+    assert least == pytest.approx(0.25 - 0.03125 - 0.0625, abs=1e-12)
+    assert most == pytest.approx(0.25 + 0.03125 + 0.0625, abs=1e-12)
+    assert height == pytest.approx(0.0625, abs=1e-11)
+    assert height >= 0.0625 * (1 + 5e-13)
+    asked.clear()
+    monkeypatch.setattr(anchors, "_fixed", lambda *_: (hull(0.625, 0.625), hull(0.09375, 0.109375)))
+    assert anchors.anchor(banded, (1, 0.625, 0.0625), 1, 0.25) is not None
+    assert asked[0][3] == pytest.approx(0.109375 - 1 / 32, abs=1e-11)
+
+
+@pytest.fixture
+def strips(by_hand):
+    """Two charts of 24 columns and 16 rows of which 4 to 8 are in the region, but for one column."""
+    map = SimpleNamespace(charts=(CHARTS[0], Chart("b", (4.0, 8.0), (-2.0, 2.0))), joins=())
+    cells = by_hand(map, columns=24, rows=16).cells
+    rng = np.random.default_rng(0)
+    first, last = rng.integers(4, 6, (2, 24)), rng.integers(6, 9, (2, 24))
+    kept = (cells.row >= first[cells.chart, cells.column]) & (cells.row < last[cells.chart, cells.column])
+    kept &= (cells.chart == 1) | (cells.column != 9)
+    return by_hand(map, columns=24, rows=16, cells=Cells(*(field[kept] for field in cells)))
+
+
+def test_blocks_are_all_stretches_of_columns_whose_rectangle_lies_in_the_wide_region(strips):
+    """Their inner parts are as far from both sides as the rectangle, a row more, is high times the greatest slope."""
+    rng = np.random.default_rng(1)
+    lean = rng.integers(1, 9, (2, 24, 16)) / 64
+    lean[1, 20, 5] = np.inf
+    lean[1, 2, 9:] = np.inf  # of no matter: above all of the region
+    lean[0, 2, :4] = np.inf  # below
+    course, wanted = Course(strips), []
+    for chart, start, wide, tall in ((0, 0.0, 1 / 12, 1 / 8), (1, 4.0, 1 / 6, 1 / 4)):
+        for width, step in ((8, 2), (16, 4)):
+            for first in range(0, 25 - width, step):
+                on = range(first, first + width)
+                rows = [
+                    strips.cells.row[(strips.cells.chart == chart) & (strips.cells.column == i)].tolist() for i in on
+                ]
+                if not all(rows):
+                    continue
+                a, b = min(map(min, rows)), max(map(max, rows)) + 1
+                steep = max(lean[chart, i, j] for i in on for j in range(a, b))
+                if steep == np.inf:
+                    continue
+                margin = int(np.ceil(steep * (b - a + 1) * tall / wide))
+                low, high = start + first * wide, start + (first + width) * wide
+                wanted.append((chart, low, high, first + margin, first + width - margin))
+    found = _blocks(strips, course, lean)
+    assert [block[::2] for block in found] != []
+    assert [(b[0], *b[3:]) for b in found] == [(b[0], *b[3:]) for b in wanted]
+    assert [b[1:3] for b in found] == [pytest.approx(b[1:3], abs=3e-11) for b in wanted]
+    assert all(b[1] < w[1] - 5e-12 and w[2] + 5e-12 < b[2] for b, w in zip(found, wanted, strict=True))
+    assert {b[0] for b in found} == {0, 1}
+
+
+@pytest.fixture(scope="module")
+def bent():
+    """A tent with a thin fibre, from its fixed point: slopes of 1.5 and -1.75, and `b` a sixteenth."""
+    map = BrokenLine(((-2.0, -1.75), (0.0, 1.25), (2.0, -2.25)), 0.0625, 0.125)
+    x = 1.25 / (1 + 1.75 - 0.0625)
+    return cover(map, 32, 8, Boxes(np.array([1]), (np.array([x]),) * 2, (np.array([x / 16]),) * 2))
+
+
+def test_stable_slopes_are_kept_by_the_inverse_derivative_and_are_those_of_the_formula(bent):
+    """The inverse takes `(q, 1)` to `(1, s - b*q)*16` up to sign: `q` to `-1/(s - b*q)`."""
+    low, high = stable_slopes(bent)
+    edges, slope = bent.inner.tocoo(), np.array([1.5, -1.75])[bent.cells.chart]
+    ends = [-1 / (slope[edges.row] - q[edges.col] / 16) for q in (low, high)]
+    assert np.all(low[edges.row] <= np.minimum(*ends))
+    assert np.all(np.maximum(*ends) <= high[edges.row])
+    bottom, top = np.full(low.size, np.inf), np.full(low.size, -np.inf)
+    np.minimum.at(bottom, edges.row, np.minimum(*ends))
+    np.maximum.at(top, edges.row, np.maximum(*ends))
+    assert low == pytest.approx(bottom, rel=0.02)
+    assert high == pytest.approx(top, rel=0.02)
+    assert np.all(low < high)
+
+
+def test_stable_slopes_that_may_be_unstable_ones_are_none(bent):
+    low, high = stable_slopes(bent)
+    steep = 1 / np.abs(np.array([low, high])).max()
+    for end, held in ((0.5, True), (1.1, False)):
+        for low, high in ((-end, 0), (0, end), (-end, end)):
+            cones = tuple(np.full(bent.cells.chart.size, x * steep) for x in (low, high))
+            narrow = stable_slopes(replace(bent, cones=cones))
+            assert (narrow is not None) is (held or (low, high) != (-end, end)) or (low, high) != (-end, end)
+
+
+@pytest.mark.parametrize(("slope", "b", "known"), [(1.5, 0.0625, True), (0.0, 1.0, False), (0.75, -0.5, False)])
+def test_stable_slopes_that_become_horizontal_or_grow_without_end_are_none(bent, monkeypatch, slope, b, known):
+    """With `((s, 1), (b, 0))` over each cell: for a quarter turn, and where both multipliers are complex."""
+    at = np.tile(np.arange(bent.cells.chart.size), 2)
+
+    def derivatives(map, grid, cells, parts):
+        one, zero = BallArray(np.ones(at.size), np.zeros(at.size)), BallArray(np.zeros(at.size), np.zeros(at.size))
+        return (
+            at,
+            np.repeat([0, 1], at.size // 2),
+            Slopes(one * slope, one, one * -(1 + slope), zero, one * -b, one * -b),
+        )
+
+    monkeypatch.setattr(attractions, "derivatives", derivatives)
+    with np.errstate(all="ignore"):
+        assert (stable_slopes(bent) is not None) is known
+
+
+class Walk:
+    """Spans that are told, one set after the other."""
+
+    def __init__(self, sets):
+        self.sets = iter(sets)
+
+    def step(self, spans):
+        return next(self.sets)
+
+
+def over(low, high, chart=0):
+    """One span over an interval."""
+    zero = np.zeros(1)
+    return Spans(np.zeros(1, int), np.array([chart]), np.array([low]), np.array([high]), (zero, zero), (zero, zero))
+
+
+NOTHING = over(0.0, 0.0).chosen(np.zeros(0, int))
+
+
+@pytest.mark.parametrize(
+    ("cells", "edges", "proved"),
+    [
+        ((1, 2, 3, 5), [(0, 1), (1, 0), (2, 3), (3, 2)], True),  # 5 and 3 walk to one another, 3 is covered
+        ((1, 2, 5, 6), [(0, 1), (1, 0), (2, 3), (3, 2)], False),
+        ((1, 2, 5, 6), [(0, 1), (1, 0), (2, 3), (3, 0)], True),
+        ((1, 2, 5, 6), [(0, 0), (1, 1), (2, 3), (3, 3)], False),
+        ((1, 2, 5, 6), [(0, 0), (1, 1), (2, 3), (3, 1)], True),
+    ],
+)
+def test_no_closed_walk_may_avoid_the_inner_parts_of_blocks_that_the_manifold_crosses(
+    by_hand, monkeypatch, cells, edges, proved
+):
+    map = SimpleNamespace(charts=CHARTS, joins=())
+    count = len(cells)
+    region = by_hand(
+        map, columns=8, cells=Cells(*(np.array(x) for x in ([0] * count, cells, [3] * count, [1] * count)))
+    )
+    graph = csr_matrix((np.ones(len(edges)), tuple(np.array(edges).T)), shape=(count, count))
+    region = replace(region, inner=graph, area=np.full(count, -1.0))
+    room = attractions
+    asked = []
+    slopes = np.full(count, -0.25), np.full(count, 0.125)
+    blocks = [
+        (0, 0.25, 0.75, 1, 3),
+        (0, 0.5, 1.0, 3, 4),
+        (0, 1.0, 1.5, 5, 7),
+        (1, 5.0, 6.0, 5, 7),
+        (0, 0.25, 0.75, 7, 5),
+    ]
+    walk = Walk([over(0.4, 1.1), NOTHING])
+    walk.__dict__["kept"] = asked
+    monkeypatch.setattr(room, "stable_slopes", lambda wide: slopes)
+    monkeypatch.setattr(room, "_blocks", lambda narrow, course, lean: asked.append(lean) or blocks)
+    monkeypatch.setattr(room, "Course", lambda narrow: walk)
+    at = Anchor(0, 0.25, 0.75, -1.0, 1.0)
+    found = attraction(region, region, at)
+    assert found.covered.tolist() == [cell in (1, 2, 3) for cell in cells]
+    assert found.proved is proved
+    lean = region.painted(np.full(count, 0.25), np.inf)
+    assert np.array_equal(asked[0], lean)
+    for missing in ("slopes", "contracts", "grid"):
+        narrow = wide = region
+        if missing == "slopes":
+            monkeypatch.setattr(room, "stable_slopes", lambda wide: None)
+        elif missing == "contracts":
+            wide = replace(region, area=np.full(count, 1.0))
+        else:
+            wide = replace(region, grid=replace(region.grid, rows=region.grid.rows + 8))
+        walk.sets = iter([NOTHING])
+        none = attraction(narrow, wide, at)
+        assert not none.proved
+        assert none.covered.tolist() == [False] * count
+        monkeypatch.setattr(room, "stable_slopes", lambda wide: slopes)

@@ -5,17 +5,16 @@ bounces as the cycle has. In `(u, v) = (dtheta, dphi)` the derivative of `F` ove
 images has entries `a, b, c, d`, in balls; so `F(x) - F(y)` is such a matrix times `x - y` for `x`, `y` in `Q`. With
 a slope `s` above that of all unstable curves, let
 
-    |a| - s*|b| > 1,    |c| + s*|d| < s*(|a| - s*|b|),    |c|/s + |d| < 1,    |a|*r - |b|*h > w,
+    |a| - s*|b| > 1,    |c|/s + |d| < 1,    |a|*r - |b|*h > w,
 
 where every point of the cycle in `Q` is at least `r` and at most `w` away from either end, and no point of `Q` is more
-than `h` above or below it. Then:
+than `h` above or below it. By the first two `|c| + s*|d| < s < s*(|a| - s*|b|)`. Then:
 
 - an interval Newton step gives exactly one fixed point `p` of `F` in `Q`;
 - an unstable curve that crosses `Q` has an image under `F` that crosses `Q` (the last inequality, for an end of the
   curve and `p`: the ends leave `Q` on either side), so it holds a point `x` all of whose images under `F` are in `Q`;
-- for it `|u| <= |v|/s`, for all images of `x - p`, since else `|u|` would grow for ever (the first two); so
-  `|v|` shrinks
-  (the third), and `x` lies on the stable set of the cycle;
+- for it `|u| <= |v|/s`, for all images of `x - p`, since else `|u|` would grow for ever (the first,
+  and what follows from both); so `|v|` shrinks (the second), and `x` lies on the stable set of the cycle;
 - images of the curve that cross `Q` come as near to the piece of `W^u(p)` that crosses `Q` as one likes: of two points
   above one another, one on either, the preimages under `F` in `Q` differ by `|u| <= |v|/s`, and so differences shrink.
 
@@ -142,7 +141,7 @@ def _held(cover: Cover, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
 
 
 def _slope(entries: Matrix, steep: float) -> float:
-    """A slope `s` in the middle of those above the curves for which the first and the third inequality may hold."""
+    """A slope `s` in the middle of those above the curves for which the first and the second inequality may hold."""
     b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
     first = entries[0][0]
     low = max(steep * (1 + 1e-9), c / (1 - d)) if d < 1 else np.inf
@@ -150,10 +149,9 @@ def _slope(entries: Matrix, steep: float) -> float:
 
 
 def _hyperbolic(entries: Matrix, s: float, least: float, most: float, height: float) -> bool:
-    """The four inequalities."""
+    """The three inequalities."""
     b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
     first = entries[0][0]
     low = (abs(float(first.m)) - float(first.r)) * (1 - 1e-12)
     grown = low - s * b * (1 + 1e-12)
-    steady = (c + s * d) * (1 + 1e-12) < s * grown
-    return bool(grown > 1 and steady and (c / s + d) * (1 + 1e-12) < 1 and low * least - b * height > most * (1 + 1e-9))
+    return bool(grown > 1 and (c / s + d) * (1 + 1e-12) < 1 and low * least - b * height > most * (1 + 1e-9))

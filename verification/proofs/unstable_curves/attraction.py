@@ -86,7 +86,7 @@ def _blocks(narrow: Cover, course: Course, lean: Array) -> list[tuple[int, float
         floor = chart_of.y[0]
         tall = narrow.sides[1][chart]
         for width in WIDTHS:
-            for first in range(0, narrow.grid.columns - width + 1, max(1, width // 4)):
+            for first in range(0, narrow.grid.columns - width + 1, width // 4):
                 down, up = bottom[chart, first : first + width], top[chart, first : first + width]
                 if not np.all(np.isfinite(down)):
                     continue
@@ -117,12 +117,12 @@ def stable_slopes(cover: Cover) -> tuple[Array, Array] | None:
         key = source * charts + chart
         met = bottom[key] <= top[key]
         with np.errstate(all="ignore"):
-            q = hull(np.where(met, bottom[key], 0.0), np.where(met, top[key], 0.0))
-            new = (d * q - b) / (a - c * q)
+            q = hull(bottom[key[met]], top[key[met]])
+            new = (d[met] * q - b[met]) / (a[met] - c[met] * q)
         ends = np.full(count, np.inf), np.full(count, -np.inf)
         known = np.isfinite(new.r)
-        np.minimum.at(ends[0], source[met], np.where(known, new.lower(), -np.inf)[met])
-        np.maximum.at(ends[1], source[met], np.where(known, new.upper(), np.inf)[met])
+        np.minimum.at(ends[0], source[met], np.where(known, new.lower(), -np.inf))
+        np.maximum.at(ends[1], source[met], np.where(known, new.upper(), np.inf))
         return ends
 
     for _ in range(ROUNDS):

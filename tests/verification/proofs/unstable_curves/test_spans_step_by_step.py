@@ -166,6 +166,9 @@ def test_an_end_that_lands_in_two_rectangles_is_in_their_hull_and_one_that_is_lo
     assert found == pytest.approx([0.5, 1.5, -0.25, 0.5], abs=CLOSE)
     assert landing(Course(by_hand(Scattered(rows[::-1]))), 0, 0.0, 0.0, 0.0) == pytest.approx(found, abs=CLOSE)
     assert np.all(np.isnan(landing(Course(by_hand(Scattered(rows, [0]))), 0, 0.0, 0.0, 0.0)))
+    around = Scattered([(0, 1, 3.5, 3.75, 0.0, 0.0), (0, 1, 4.5, 4.75, 0.0, 0.0)])
+    around.joins = Circle(1.0, 0.0).joins  # a turn is 4
+    assert landing(Course(by_hand(around)), 0, 0.0, 0.0, 0.0)[:2] == pytest.approx([1.5, 2.75], abs=CLOSE)
     none = [(1, *rows[0][1:])]
     two = Spans(*(np.array([x, x]) for x in (0, 0, 0.0, 0.0)), *((np.zeros(2),) * 2 for _ in range(2)))
     found = Course(by_hand(Scattered(none))).ends(two, False)

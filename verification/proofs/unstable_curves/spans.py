@@ -163,7 +163,7 @@ class Course:
             short &= (left[1] - left[0] < turn / 16) & (right[1] - right[0] < turn / 16)
         else:
             short = np.ones(turned.shape, dtype=bool)
-        good = short & np.isfinite(left[2]) & np.isfinite(right[2])
+        good = short & (right[0] - left[1] > 0) & np.isfinite(left[2]) & np.isfinite(right[2])
         return self._cut(spans.origin[good], [x[good] for x in left], [x[good] for x in right])
 
     def _cut(self, origin: Indices, left: list[Array], right: list[Array]) -> Spans:

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
+from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.graph import Cells, Grid
-from verification.proofs.unstable_curves.cover import Cover
+from verification.proofs.unstable_curves.affine import BrokenLine
+from verification.proofs.unstable_curves.cover import Cover, cover
 
 
 @pytest.fixture(scope="session")
@@ -33,3 +35,12 @@ def some_cells():
         return Cells(chart[kept], column[kept], row[kept], np.ones(kept.sum(), dtype=int))
 
     return made
+
+
+@pytest.fixture(scope="session")
+def bent():
+    """A tent with a thin fibre on 64 by 16 cells, from its fixed point: slopes of 1.5 and -1.75."""
+    map = BrokenLine(((-2.0, -1.75), (0.0, 1.25), (2.0, -2.25)), 0.0625, 0.125)
+    x = 1.25 / (1 + 1.75 - 0.0625)
+    start = Boxes(np.array([1]), (np.array([x]),) * 2, (np.array([x / 16]),) * 2)
+    return cover(map, 64, 16, start)

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -306,3 +307,38 @@ def test_the_image_of_an_h_set_is_its_centres_and_the_slopes_times_the_way_from_
             assert float(slopes[1].rad()) < 1
     wide = HSet(centres[0], (3.0, 0.0), (0.0, 3.0))
     assert map is HENON or _image(map.over(balls(BITS)), arb(parameter), wide, parameter) is None
+
+
+def two_loops(period, length):
+    """The edges of two loops, one round of a cycle and an orbit that leaves it and comes back."""
+    cycle = [(i, (i + 1) % period) for i in range(period)]
+    orbit = [0, *range(period, length), 0]
+    return [Edge(a, b) for a, b in (*cycle, *pairwise(orbit))]
+
+
+@pytest.mark.parametrize(("period", "length"), [(1, 2), (1, 4), (2, 4), (3, 4), (3, 6)])
+def test_two_loops_are_one_round_of_the_cycle_and_the_orbit_and_no_edge_else(monkeypatch, period, length):
+    """Whichever order they are told in; the h-sets after the first one, on either loop, have to be apart."""
+    sets = tuple(HSet((float(k), 0.0), (0.1, 0.0), (0.0, 0.1)) for k in range(length))
+    asked, edges = [], two_loops(period, length)
+    monkeypatch.setattr(Horseshoe, "_covering", lambda *_: (True, True))
+    monkeypatch.setattr(horseshoes, "_apart", lambda *given: asked.append(given[:3]) or True)
+    for some in (edges, edges[::-1]):
+        found = Horseshoe(HENON, 1.4, 1e-3, period, sets, tuple(some))
+        assert found.proved
+        assert found.loops == (period, length - period + 1)
+        assert asked[-1] == (sets[1 % period], Edge(0, 1 % period), sets[period])
+    for k, edge in enumerate(edges):
+        for target in set(range(length)) - {edge.target}:
+            other = [*edges[:k], Edge(edge.source, target), *edges[k + 1 :]]
+            made = Horseshoe(HENON, 1.4, 1e-3, period, sets, tuple(other))
+            if any((e.source, e.target) == (0, 1 % period) for e in other):
+                assert made.checks["covering"] is None
+        if edge != edges[0]:
+            assert Horseshoe(HENON, 1.4, 1e-3, period, sets, (*edges, edge)).checks["covering"] is None
+
+
+def test_where_an_image_is_not_enclosed_nothing_is_covered(monkeypatch):
+    monkeypatch.setattr(horseshoes, "_image", lambda *_: None)
+    made = Horseshoe(HENON, 1.4, 1e-3, 1, (random_h_set(np.random.default_rng(0)),), ())
+    assert made._covering(HENON, arb(1), Edge(0, 0)) == (False, False)

@@ -151,9 +151,7 @@ def _image(
     centre = [arb(before), arb(here), arb(guess)]
     moves = [arb(0, r) for r in radii]
     value = map.rule(centre, parameter)
-    rough = map.slopes(centre, parameter)
-    moved = abs(value / rough[2]) + abs(rough[0] / rough[2]) * radii[0] + abs(rough[1] / rough[2]) * radii[1]
-    wide = arb(0, (2 * moved + arb(2) ** -80).abs_upper())
+    wide = _roughly(value, map.slopes(centre, parameter), radii)
     s = map.slopes([centre[0] + moves[0], centre[1] + moves[1], centre[2] + wide], parameter)
     if s[2].contains(0):
         return None
@@ -161,6 +159,12 @@ def _image(
     if not abs(step) < wide.abs_upper():
         return None
     return (centre[1], centre[2] - value / s[2]), (-s[0] / s[2], -s[1] / s[2])
+
+
+def _roughly(value: arb, slopes: tuple[arb, arb, arb], radii: Sequence[float]) -> arb:
+    """How far the next bounce may be from a guess, not proved: twice what the slopes at the centre of an h-set say."""
+    moved = abs(value / slopes[2]) + abs(slopes[0] / slopes[2]) * radii[0] + abs(slopes[1] / slopes[2]) * radii[1]
+    return arb(0, (2 * moved + arb(2) ** -80).abs_upper())
 
 
 def _moved(slopes: tuple[arb, arb], before: arb, here: arb) -> tuple[arb, arb]:

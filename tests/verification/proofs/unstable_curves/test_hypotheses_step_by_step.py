@@ -76,6 +76,7 @@ def test_nothing_is_asked_of_a_region_that_is_not_known(monkeypatch):
     assert (found.growth, found.anchor, found.astray) == (None, None, None)
     assert found.checks["visits"] is None
     assert found.reason == "a map: no trapping region"
+    assert stated(table(one_to_one=False), region="no cones").reason == f"a map: {REFUSED['continuous']}"
     for name, value in (("wide", "no cones"), ("region", "no cones"), ("anchor", None)):
         assert stated(**{name: value}).checks["visits"] is None
     without = stated(anchor=None)

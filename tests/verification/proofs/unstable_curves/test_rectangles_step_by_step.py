@@ -97,14 +97,14 @@ def test_a_slope_lies_in_the_middle_of_those_that_may_do_and_above_all_curves():
 def test_over_an_interval_the_region_lies_between_the_heights_of_its_columns_and_of_those_beside(
     by_hand, some_cells, low, high
 ):
-    region = by_hand(
-        SimpleNamespace(charts=CHARTS, joins=()), columns=8, cells=some_cells(4, charts=2, columns=8, rows=64), rows=64
-    )
-    rows = Course(region).rows
-    for chart, shift, wide in ((0, 0.0, 1), (1, 4.0, 2)):
-        on = slice(int(low // 0.25) - 1, int(high // 0.25) + 2)
-        found = _span(region, chart, shift + wide * low, shift + wide * high)
-        assert found == (rows[0][chart, on].min(), rows[1][chart, on].max())
+    map = SimpleNamespace(charts=CHARTS, joins=())
+    for seed in range(5):
+        region = by_hand(map, columns=8, cells=some_cells(seed, charts=2, columns=8, rows=64), rows=64)
+        rows = Course(region).rows
+        for chart, shift, wide in ((0, 0.0, 1), (1, 4.0, 2)):
+            on = slice(int(low // 0.25) - 1, int(high // 0.25) + 2)
+            found = _span(region, chart, shift + wide * low, shift + wide * high)
+            assert found == (rows[0][chart, on].min(), rows[1][chart, on].max())
 
 
 def test_an_interval_next_to_an_end_of_a_chart_has_no_columns_beside_it(by_hand):
@@ -153,7 +153,7 @@ def test_a_box_that_is_cut_lost_or_of_unknown_derivative_is_not_followed(by_hand
 
     def steeper(boxes):
         ((piece, slopes),) = full(boxes)
-        return [(piece, slopes._replace(by_phi=BallArray(1 + boxes.x[0] + boxes.y[0], 0.0)))]
+        return [(piece, slopes._replace(by_phi=BallArray(1 + boxes.x[0] + boxes.y[0], 0.25)))]
 
     def sent(lost, chart):
         def images(boxes):
@@ -173,8 +173,8 @@ def test_a_box_that_is_cut_lost_or_of_unknown_derivative_is_not_followed(by_hand
     assert _followed(by_hand(sent([], 0)), 0, box, 1) is None
     entry = _followed(by_hand(by(steeper)), 0, box, 1)[2][0][1]  # over all parts
     step = (box[0][1] - box[0][0]) / CUTS, (box[1][1] - box[1][0]) / CUTS
-    assert float(entry.m - entry.r) == pytest.approx(1 + box[0][0] + box[1][0], abs=1e-12)
-    assert float(entry.m + entry.r) == pytest.approx(1 + box[0][1] - step[0] + box[1][1] - step[1], abs=1e-12)
+    assert float(entry.m - entry.r) == pytest.approx(0.75 + box[0][0] + box[1][0], abs=1e-12)
+    assert float(entry.m + entry.r) == pytest.approx(1.25 + box[0][1] - step[0] + box[1][1] - step[1], abs=1e-12)
     for change in (vague, half, lambda boxes: full(boxes) * 2):
         assert _followed(by_hand(by(change)), 0, box, 1) is None
 

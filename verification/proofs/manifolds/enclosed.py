@@ -143,12 +143,17 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
 
     middle = iterated(lambda x: step(*rule(x)), start, Stop(steps=NEWTON), kept=acb.mid).x
     values, rows = rule(middle)
-    least = arb(2) ** (-ctx.prec + 8)
-    box = [x + around_zero(4 * size(d) + least) for x, d in zip(middle, step(values, rows), strict=True)]
+    box = tried(middle, step(values, rows))
     found = stepped(middle, box, lambda: step(values, rule(box)[1]))
     if found.status is not Status.UNIQUE:
         raise TooWideError("saddle", "an interval Newton step did not contract; the balls are too wide")
     return found.zero
+
+
+def tried(middle: Sequence[acb], steps: Sequence[acb]) -> list[acb]:
+    """A box about points in which a zero may be, some times as far as Newton's method moves them: to be proved."""
+    least = arb(2) ** (-ctx.prec + 8)
+    return [x + around_zero(4 * size(step) + least) for x, step in zip(middle, steps, strict=True)]
 
 
 def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], parameter: acb) -> tuple[acb, acb]:

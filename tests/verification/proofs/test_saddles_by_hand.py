@@ -1,13 +1,16 @@
 """Saddles in complex balls: words where they are analytic, multipliers by hand, and what separates them."""
 
 import cmath
+from types import SimpleNamespace
 
 import pytest
 from flint import acb, arb
 from sympy import Rational
 
 from verification.arithmetic.balls import FUNCTIONS, working
+from verification.arithmetic.series import Jet
 from verification.proofs.manifolds import enclosed as room
+from verification.proofs.manifolds import tangency
 from verification.proofs.manifolds.enclosed import (
     TooWideError,
     around_zero,
@@ -18,6 +21,7 @@ from verification.proofs.manifolds.enclosed import (
 )
 from verification.proofs.manifolds.plane_map import Henon
 from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.manifolds.tangency import Precision, Scale, pair
 
 HENON, FIXED = Henon(Rational(3, 10)), Orbit("fixed point", (0.63,))
 POINTS = 0.5 + 0.25j, 0.75 - 0.5j, 2.0 + 0.875j
@@ -109,4 +113,73 @@ def test_a_saddle_has_one_multiplier_inside_the_unit_circle_and_one_outside(monk
         return
     with pytest.raises(TooWideError, match="not separated") as refused:
         enclosed_saddle(FIXED, HENON, acb(1))
+    assert refused.value.item == "saddle"
+
+
+@pytest.fixture
+def square(monkeypatch):
+    """A stand-in for series: the coefficients of both bounces are 1 and the square of the parameter, or twice that."""
+    asked = []
+
+    def enclosed(saddle, unstable, order, unit, chief):
+        (at,) = saddle.points
+        asked.append((unstable, order, unit, chief))
+        jets = tuple(Jet(acb(1), k * at * at) for k in (1, 2))
+        return SimpleNamespace(saddle=saddle, pair=lambda: jets, over=lambda i, radius: acb(i, radius) + 0 * at)
+
+    monkeypatch.setattr(tangency, "enclosed_saddle", lambda orbit, map, at: SimpleNamespace(points=(at,)))
+    monkeypatch.setattr(tangency, "enclosed", enclosed)
+    monkeypatch.setattr(tangency, "remainder", lambda made, outer: arb(0.0625))
+    return asked
+
+
+SCALE = Scale(True, 0.5, 3, None, more=10)
+
+
+def test_a_pair_has_the_values_at_a_parameter_and_slopes_that_hold_two_steps_around_it(square):
+    """Of `x**2` at 3/4: within Cauchy's bound of the second derivative on the disc, four times the step."""
+    precision, orbit = Precision(6), Orbit("of two bounces", (0.1, 0.2))
+    with working(precision.bits):
+        made = pair(orbit, HENON, arb(0.75), SCALE, precision)
+        step, disc = precision.step, precision.disc
+        assert square == [(True, precision.order + 10, 0.5, 3)] * 3
+        for k, places, slopes in zip((1, 2), made.places, made.slopes, strict=True):
+            assert [float(x) for x in places] == [1, k * 0.5625]
+            assert slopes[0].contains(0)
+            for away in (-2, 0, 2):
+                assert slopes[1].contains(2 * k * (arb(0.75) + away * step).mid())
+            ball = acb(0.75) + around_zero(disc)
+            largest = size(k * ball * ball - k * acb(0.5625))
+            wanted = 4 * step * 2 * largest / (disc - 2 * step) ** 2
+            assert float(slopes[1].rad()) == pytest.approx(float(wanted), rel=1e-6)
+            assert abs(float(slopes[1].mid()) - 1.5 * k) < 1e-5
+        assert made.margin.overlaps(disc - 2 * step)
+        assert float(made.margin) == pytest.approx(1e-4 - 2e-6)
+        assert float(made.error) == 0.0625
+        assert len(made.tube) == 4  # one beyond each end
+        for i, x in zip((-1, 0, 1, 2), made.tube, strict=True):
+            assert (float(x.mid()), float(x.rad())) == pytest.approx((i, 0.0625), rel=1e-6)
+
+
+def test_steps_beyond_the_disc_of_parameters_prove_nothing(square):
+    """On a disc no larger than two steps there is no bound of a derivative two steps away."""
+    for digits, large in ((1, False), (2, False), (3, True), (4, True)):
+        precision = Precision(digits)
+        with working(precision.bits):
+            assert bool(precision.disc > 2 * precision.step) is large
+            if large:
+                assert pair(FIXED, HENON, arb(0.75), SCALE, precision).margin > 0
+                continue
+            with pytest.raises(TooWideError, match="digits") as refused:
+                pair(FIXED, HENON, arb(0.75), SCALE, precision)
+            assert refused.value.item == "saddle"
+
+
+@pytest.mark.parametrize("other", [0, 1])
+def test_a_pair_is_of_one_cycle_over_the_disc_and_at_both_parameters(square, monkeypatch, other):
+    answers = iter([k != other for k in range(2)])
+    monkeypatch.setattr(tangency, "one_cycle", lambda around, here: next(answers))
+    precision = Precision(6)
+    with working(precision.bits), pytest.raises(TooWideError, match="may be another") as refused:
+        pair(FIXED, HENON, arb(0.75), SCALE, precision)
     assert refused.value.item == "saddle"

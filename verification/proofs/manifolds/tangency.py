@@ -190,6 +190,8 @@ def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: P
     """The pair near an exact parameter, with the saddle and the remainder proved for every parameter of the disc."""
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc
+    if not disc > 2 * step:
+        raise TooWideError("saddle", f"with {precision.digits} digits no disc is larger than the steps in it")
     beyond = (parameter + step).mid()
 
     def near(at: acb) -> Enclosed:

@@ -278,6 +278,6 @@ def test_the_cycle_at_one_parameter_is_the_one_around_it_only_where_each_of_its_
 def test_what_is_left_out_is_bounded_by_the_larger_end_of_a_ball():
     """A remainder known as a ball is at most its upper end, whichever sign it has."""
     for bound in (arb("1e-9", "5e-10"), -arb("1e-9", "5e-10"), arb(0, "1.5e-9")):
-        around = tangency._around(bound)
+        around = tangency._within(arb(0), bound)
         assert all(around.contains(arb("1.499e-9") * sign) for sign in (1, -1))
         assert around.rad() < 1.6e-9

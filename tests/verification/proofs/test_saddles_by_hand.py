@@ -9,6 +9,7 @@ from sympy import Rational
 
 from verification.arithmetic.balls import FUNCTIONS, working
 from verification.arithmetic.series import Jet
+from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds import enclosed as room
 from verification.proofs.manifolds import tangency
 from verification.proofs.manifolds.enclosed import (
@@ -21,7 +22,7 @@ from verification.proofs.manifolds.enclosed import (
 )
 from verification.proofs.manifolds.plane_map import Henon
 from verification.proofs.manifolds.saddle import Orbit
-from verification.proofs.manifolds.tangency import Precision, Scale, pair
+from verification.proofs.manifolds.tangency import Contact, Precision, Scale, pair
 
 HENON, FIXED = Henon(Rational(3, 10)), Orbit("fixed point", (0.63,))
 POINTS = 0.5 + 0.25j, 0.75 - 0.5j, 2.0 + 0.875j
@@ -183,3 +184,29 @@ def test_a_pair_is_of_one_cycle_over_the_disc_and_at_both_parameters(square, mon
     with working(precision.bits), pytest.raises(TooWideError, match="may be another") as refused:
         pair(FIXED, HENON, arb(0.75), SCALE, precision)
     assert refused.value.item == "saddle"
+
+
+def test_each_round_of_a_mirrored_cycle_turns_the_sign_of_a_contact():
+    mirror, plain = Orbit("mirrored", (0.1,), Closure(-1, (0, 1))), Orbit("plain", (0.1,))
+    for sign in (1, -1):
+        for early in range(3):
+            for late in range(3):
+                for first, second, turns in (
+                    (mirror, plain, early),
+                    (plain, mirror, late),
+                    (mirror, mirror, early + late),
+                ):
+                    found = Contact(first, second, 3, sign, 0.1, 0.1, 1.0).mirrored(early, late)
+                    assert found == sign * (-1) ** turns
+                    assert type(found) is int
+    assert Contact(mirror, mirror, 3, 1, 0.1, 0.1, 1.0).kind == "homoclinic"
+    assert Contact(mirror, plain, 3, 1, 0.1, 0.1, 1.0).kind == "heteroclinic"
+
+
+@pytest.mark.parametrize(("digits", "step", "disc"), [(3, 3, 2), (5, 5, 3), (6, 6, 4), (20, 20, 12), (24, 24, 15)])
+def test_boxes_of_parameters_are_as_wide_as_the_digits_and_lie_in_a_disc_of_three_fifths_of_them(digits, step, disc):
+    precision = Precision(digits)
+    with working(precision.bits):
+        assert float(precision.step) == pytest.approx(10.0**-step)
+        assert float(precision.disc) == pytest.approx(10.0**-disc)
+        assert float(precision.step.rad()) == float(precision.disc.rad()) == 0

@@ -125,16 +125,17 @@ class Pair:
         there: Jet = horner(places, Jet(z, arb(1), arb(0)))
         moving: Jet = horner(slopes, Jet(z, arb(1)))
         return Near(
-            there.c[0] + _around(e),
-            there.c[1] + _around(2 * e),
-            2 * there.c[2] + _around(8 * e),
-            moving.c[0] + _around(e / self.margin),
-            moving.c[1] + _around(2 * e / self.margin),
+            _within(there.c[0], e),
+            _within(there.c[1], 2 * e),
+            _within(2 * there.c[2], 8 * e),
+            _within(moving.c[0], e / self.margin),
+            _within(moving.c[1], 2 * e / self.margin),
         )
 
 
-def _around(bound: arb) -> arb:
-    return arb(0, bound.abs_upper())
+def _within(x: arb, bound: arb) -> arb:
+    """All numbers no farther from `x` than a bound."""
+    return x + arb(0, bound.abs_upper())
 
 
 def scale(orbit: Orbit, map: PlaneMap, parameter: float, unstable: bool, outer: int) -> Scale:
@@ -200,7 +201,7 @@ def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: P
 
     def slope(here: acb, beside: acb, around: acb) -> arb:
         second = 2 * size(around - here) / (disc - 2 * step) ** 2
-        return ((beside - here) / (beyond - parameter)).real + _around(4 * step * second)
+        return _within(((beside - here) / (beyond - parameter)).real, 4 * step * second)
 
     around = near(acb(parameter) + around_zero(disc))
     error = remainder(around, precision.outer)
@@ -210,7 +211,7 @@ def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: P
     bounces = list(zip(*(made.pair() for made in (here, beside, around)), strict=True))
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]
-    tube = [around.over(i, arb(0.5)).real + _around(error) for i in range(-1, len(orbit.start) + 1)]
+    tube = [_within(around.over(i, arb(0.5)).real, error) for i in range(-1, len(orbit.start) + 1)]
     return Pair(around.saddle, scale, places, slopes, error, disc - 2 * step, tube)
 
 

@@ -65,6 +65,22 @@ def test_every_flight_of_an_orbit_between_its_ends_must_be_clear(monkeypatch):
     assert asked == [5]
 
 
+@pytest.mark.parametrize("hit", [None, 0, 1, 2])
+def test_one_flight_that_may_be_obstructed_is_enough_and_places_are_told_without_their_turns(monkeypatch, hit):
+    """Of the orbit, and of those from and to the saddles; angles far away are the same within half a turn of 0."""
+    asked = []
+    monkeypatch.setattr(touching, "unobstructed", lambda table, run: asked.append(run) or len(asked) - 1 != hit)
+    tubes = [arb(-20), arb(3)], [arb(9.5), arb(-3)]
+    made = SimpleNamespace(map=Pinball(egg(3)).over(balls(64)), pairs=[SimpleNamespace(tube=tube) for tube in tubes])
+    clear = touching.Touching.clear(made, touching.Point([arb(k) for k in (99, 0, 4, 40, 99)], [], arb(0)))
+    assert clear is (hit is None)
+    for run, given in zip(asked, ([0, 4, 40], [-20, 3], [9.5, -3]), strict=False):
+        wanted = [(0, pytest.approx(np.angle(np.exp(1j * x)))) for x in given]
+        assert [(component, float(x)) for component, x in run] == wanted
+    made.map = SimpleNamespace(words=balls(64))  # of another kind
+    assert touching.Touching.clear(made, touching.Point([arb(0)] * 3, [], arb(0))) is False
+
+
 def test_a_segment_that_may_cross_the_border_has_no_image():
     pieces = dict.fromkeys(border_collision.SIGNS, SimpleNamespace(of=lambda p: p))
     unknown, above, beyond = (arb(0), arb(0, 1)), (arb(1), arb(5)), (arb(2), arb(6))

@@ -15,6 +15,7 @@ from verification.proofs.manifolds import enclosed, proof, tangency
 from verification.proofs.manifolds.claim import TangencyClaim, worked_through
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.known import CONTACTS, SHAPE
+from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import ITEMS, Proof, tangency_proved
 from verification.proofs.periodic.interval_newton import Enclosure, Status
 
@@ -141,6 +142,52 @@ def test_a_proof_that_stops_says_which_items_came_before(monkeypatch, why):
 
     assert {item for item, value in found.checks.items() if value is True} == set(known)
     assert {item for item, value in found.checks.items() if value is None} == set(ITEMS) - set(known)
+
+
+@pytest.mark.parametrize(
+    ("bounces", "answers", "halves", "held"),
+    [
+        (proof.LONG, [True], [False], True),
+        (proof.LONG + 1, [True], [True], True),
+        (proof.LONG + 1, [None, True], [True, False], True),
+        (proof.LONG + 1, [None, None], [True, False], False),
+        (proof.LONG + 1, [ValueError(), True], [True, False], True),
+        (proof.LONG + 1, [ZeroDivisionError(), None], [True, False], False),
+    ],
+)
+def test_long_systems_are_solved_in_halves_first_and_whole_where_that_proves_nothing(
+    monkeypatch, bounces, answers, halves, held
+):
+    system, asked, given = SimpleNamespace(bounces=bounces, halves=False), [], iter(answers)
+
+    def proved(*_):
+        asked.append(system.halves)
+        answer = next(given)
+        if isinstance(answer, Exception):
+            raise answer
+        return Proof(arb(0), dict.fromkeys(ITEMS, True) | {"quadratic": answer})
+
+    monkeypatch.setattr(proof, "Touching", lambda *_: system)
+    monkeypatch.setattr(proof, "_proved", proved)
+    assert tangency_proved(CLAIM.contact, CLAIM.map, VALUE, 20).holds is held
+    assert asked == halves
+
+
+@pytest.mark.parametrize("components", [1, 2, 3])
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("convex", [True, None])
+def test_chords_are_free_in_a_convex_table_whose_curve_closes_or_that_has_several(
+    monkeypatch, components, closed, convex
+):
+    monkeypatch.setattr(proof, "convex", lambda _: convex)
+    monkeypatch.setattr(proof, "closes_smoothly", lambda _: closed)
+    map = Pinball(SimpleNamespace(components=[None] * components))
+    assert proof.admissible(map) is (convex if closed or components > 1 else None)
+    for falls in (True, False):
+        monkeypatch.setattr(proof, "falling", lambda *_, falls=falls: falls)
+        for law in (SimpleNamespace(uniform=True), SimpleNamespace(uniform=False)):
+            smooth = convex and closed and (law.uniform or falls)
+            assert proof.smooth(replace(map, law=law), arb(0.5)) is (True if smooth else None)
 
 
 BALL, OPEN = arb(1, 0.1), arb(0, 1)

@@ -1,16 +1,19 @@
 """What keeps a contact from being one of a table under a law: each reason alone, with tables and laws by hand."""
 
+import math
 from fractions import Fraction
+from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
-from sympy import Rational
+from flint import arb
+from sympy import Rational, Symbol, sqrt
 
 from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds import proof
 from verification.proofs.manifolds.known import SHAPE, table
 from verification.proofs.manifolds.plane_map import Henon, Pinball
-from verification.proofs.manifolds.proof import objection
+from verification.proofs.manifolds.proof import PIECES, PLACES, falling, objection
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact
 
@@ -133,3 +136,50 @@ def test_no_law_is_asked_of_another_map_than_the_pinball_map():
     assert Fraction(*GLIDE.shift) == Fraction(1, 3)
     third = Orbit("a triangle", (0.1,), THIRD)
     assert objection(Contact(third, third, 3, -1, 0.1, 0.1, 0.5), table(SHAPE), 0.5) == ""
+
+
+def ends(ball):
+    """Of a ball, in float64."""
+    return float(ball.lower()), float(ball.upper())
+
+
+def pieces(some, end):
+    """Whether balls follow one another without a gap from `-end` to `end`, each of the same width."""
+    some = sorted(some, key=lambda ball: float(ball.mid()))
+    met = all(a.overlaps(b) for a, b in pairwise(some))
+    wide = {round(float(ball.rad()) * len(some) / end, 6) for ball in some}
+    return met and wide == {1.0} and some[0].contains(-end) and some[-1].contains(end)
+
+
+@pytest.mark.parametrize("placed", [True, False])
+def test_a_law_falls_where_its_slope_is_negative_over_pieces_of_all_angles_and_places(monkeypatch, placed):
+    asked, wrong = [], []
+
+    def slope(eta, parameter, theta):
+        asked.append((eta, theta))
+        return None, arb(0) if any(eta.contains(a) and theta.contains(b) for a, b in wrong) else arb(-1)
+
+    monkeypatch.setattr(proof, "law_kernel", lambda law: None)
+    monkeypatch.setattr(proof, "load", lambda kernel, words: slope)
+    given = SimpleNamespace(placed=placed, phi=Symbol("x") ** 2)
+    assert falling(given, arb(0.5))
+    angles, places = ({ends(pair[i]): pair[i] for pair in asked}.values() for i in (0, 1))
+    assert pieces(angles, math.pi / 2)
+    assert pieces(places, math.pi)
+    turns = PLACES if placed else 1
+    assert (len(places), len(angles)) == (turns, PIECES // turns)
+    assert len({(ends(a), ends(b)) for a, b in asked}) == len(asked) == PIECES
+    for a in (-1.57, 0.3, 1.57):
+        for b in (-3.14, 3.14):
+            wrong[:] = [(a, b)]
+            assert not falling(given, arb(0.5))
+
+
+def test_a_law_with_a_root_or_at_no_contraction_is_not_known_to_fall(monkeypatch):
+    monkeypatch.setattr(proof, "law_kernel", lambda law: None)
+    monkeypatch.setattr(proof, "load", lambda kernel, words: lambda *_: (None, arb(-1)))
+    x = Symbol("x")
+    for phi, falls in ((x**3 + 1 / x, True), (sqrt(x), False), (x**2 + x**x, False)):
+        given = SimpleNamespace(placed=False, phi=phi)
+        assert falling(given, arb(0.5)) is falls
+        assert not falling(given, None)

@@ -7,7 +7,9 @@ import pytest
 from flint import acb, arb
 from sympy import Rational
 
-from verification.arithmetic.balls import FUNCTIONS, working
+from symbolic.tables import egg
+from symbolic.tables.law import Law
+from verification.arithmetic.balls import FLOAT64, FUNCTIONS, balls, working
 from verification.arithmetic.series import Jet
 from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds import enclosed as room
@@ -20,7 +22,8 @@ from verification.proofs.manifolds.enclosed import (
     multipliers_of,
     size,
 )
-from verification.proofs.manifolds.plane_map import Henon
+from verification.proofs.manifolds.known import SHAPE, table
+from verification.proofs.manifolds.plane_map import Henon, pinball
 from verification.proofs.manifolds.saddle import Orbit
 from verification.proofs.manifolds.tangency import Contact, Precision, Scale, pair
 
@@ -210,3 +213,42 @@ def test_boxes_of_parameters_are_as_wide_as_the_digits_and_lie_in_a_disc_of_thre
         assert float(precision.step) == pytest.approx(10.0**-step)
         assert float(precision.disc) == pytest.approx(10.0**-disc)
         assert float(precision.step.rad()) == float(precision.disc.rad()) == 0
+
+
+def test_the_rule_of_the_henon_map_and_its_derivatives_are_those_of_its_formula():
+    """`1 - a*x**2 + 3/10*x[-1] - x[1]`, up to a factor; drawn are `x' = 1 - a*x**2 + y` and `y' = 3/10*x`."""
+    map, near, a = Henon(Rational(3, 10)).over(FLOAT64), (0.5, 0.25, 1.0), 1.5
+    value = map.rule(near, a)
+    truth, slopes, by = 1 - a * 0.0625 + 0.15 - 1.0, (0.3, -2 * a * 0.25, -1.0), -0.0625
+    factor = value / truth
+    assert map.slopes(near, a) == pytest.approx([factor * x for x in slopes])
+    again, others, moving = map.linear(near, a)
+    assert (again, *others, moving) == pytest.approx([value, *(factor * x for x in (*slopes, by))])
+    assert map.turn == 0
+    assert map.plane(0.5, 0.25) == pytest.approx((0.25, 0.15))
+    assert map.rule((0.5, 0.25, 1 - a * 0.0625 + 0.15), a) == pytest.approx(0)
+
+
+@pytest.mark.parametrize("map", [HENON, table(SHAPE)], ids=["henon", "egg"])
+def test_the_rule_along_series_is_the_same_in_balls_and_in_float64(map):
+    jets = [(0.2, 0.5, 0.25), (2.3, -0.25, 0.125), (4.2, 0.125, 1.0)]
+    floats, words = map.over(FLOAT64), map.over(balls(100))
+    near = [Jet(*c) for c in jets], [Jet(*(arb(x) for x in c)) for c in jets]
+    with working(100):
+        value, others, moving = floats.linear_along(near[0], 0.75)
+        known, slopes, by = words.linear_along(near[1], arb(0.75))
+        for one, other in zip((value, *others, moving), (known, *slopes, by), strict=True):
+            assert [float(x) for x in other.c] == pytest.approx(list(one.c), abs=1e-12)
+        along = floats.rule_along(near[0], 0.75), words.rule_along(near[1], arb(0.75))
+        assert [float(x) for x in along[1].c] == pytest.approx(list(along[0].c), abs=1e-12)
+        assert list(along[0].c) == pytest.approx(list(value.c), abs=1e-12)
+        step = 1e-6
+        there = [floats.rule([c[0] + sign * step * c[1] for c in jets], 0.75) for sign in (1, -1)]
+        assert (there[0] - there[1]) / (2 * step) == pytest.approx(value.c[1], rel=1e-6)
+
+
+def test_a_map_has_the_rotations_of_its_table_unless_the_law_knows_the_place():
+    five = egg(5).at(alpha="1/40")
+    assert pinball(five).turn == 5
+    assert pinball(five, Law("-lam*eta + eta**3/99")).turn == 5
+    assert pinball(five, Law("-lam*eta + cos(theta)*eta**3/99")).turn == 1

@@ -6,16 +6,18 @@ from types import SimpleNamespace
 
 import pytest
 from flint import arb
+from sympy import Rational
 
 from symbolic.tables import egg
 from verification.app.cli import main
+from verification.arithmetic.balls import working
 from verification.named import tangency_entries
 from verification.named.files import checked, document
 from verification.proofs.manifolds import enclosed, proof, tangency
 from verification.proofs.manifolds.claim import TangencyClaim, worked_through
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.known import CONTACTS, SHAPE
-from verification.proofs.manifolds.plane_map import Pinball
+from verification.proofs.manifolds.plane_map import Henon, Pinball
 from verification.proofs.manifolds.proof import ITEMS, Proof, tangency_proved
 from verification.proofs.periodic.interval_newton import Enclosure, Status
 
@@ -188,6 +190,53 @@ def test_chords_are_free_in_a_convex_table_whose_curve_closes_or_that_has_severa
         for law in (SimpleNamespace(uniform=True), SimpleNamespace(uniform=False)):
             smooth = convex and closed and (law.uniform or falls)
             assert proof.smooth(replace(map, law=law), arb(0.5)) is (True if smooth else None)
+
+
+@pytest.mark.parametrize(
+    ("stable", "unstable", "dissipative"),
+    [
+        (arb("0.3"), arb(2), True),
+        (-arb("0.3"), arb(2), True),
+        (arb("0.3"), -arb(2), True),
+        (arb("0.6"), arb("2.5"), False),
+        (arb("0.6"), -arb("2.5"), False),
+        (arb("0.5"), arb(2), None),
+        (arb("0.5", "0.1"), arb(2), None),
+        (arb("0.7"), arb("2.8"), False),
+    ],
+)
+@pytest.mark.parametrize(("holds", "contact"), [(True, CONTACTS["boundary"]), (None, CONTACTS["merging"])])
+def test_an_orbit_shrinks_areas_where_the_product_of_its_multipliers_is_below_one(
+    monkeypatch, stable, unstable, dissipative, holds, contact
+):
+    monkeypatch.setattr(proof, "nonresonant", lambda *given: [float(x) for x in given])
+    monkeypatch.setattr(proof, "smooth", lambda map, parameter: (map, float(parameter)))
+    found = Proof(arb(0.5), dict.fromkeys(ITEMS, True) | {"quadratic": holds}, multipliers=(stable, unstable))
+    said = proof.strange_attractors(contact, "a map", found)
+    assert list(said) == list(proof.STRANGE)
+    assert said["dissipative"] is dissipative
+    assert said["tangency"] is holds
+    assert said["homoclinic"] is (contact.unstable == contact.stable)
+    assert said["analytic"] == ("a map", 0.5)
+    assert said["nonresonant"] == [abs(float(stable)), abs(float(unstable))]
+    none = proof.strange_attractors(contact, "a map", replace(found, multipliers=()))
+    assert (none["dissipative"], none["nonresonant"]) == (None, None)
+
+
+@pytest.mark.parametrize("order", [1, 2, 7, 99, 100, 101])
+def test_multipliers_are_not_resonant_up_to_an_order(order):
+    """`abs(stable)**i*abs(unstable)**j` is 1 for `i = order`, `j = order + 1`, and no smaller ones."""
+    with working(200):
+        unstable = arb(2)
+        stable = (-arb(2).log() * (order + 1) / order).exp()
+        assert proof.nonresonant(stable, unstable) is (True if order > proof.RESONANCES else None)
+        assert proof.nonresonant(arb(0.5, 0.5), unstable) is None
+
+
+def test_any_flight_is_free_where_a_map_is_no_billiard():
+    map = Henon(Rational(3, 10))
+    assert proof.admissible(map) is True
+    assert proof.smooth(map) is True
 
 
 BALL, OPEN = arb(1, 0.1), arb(0, 1)

@@ -1,18 +1,20 @@
 """Small steps of the proofs on all orbits, each by itself: walks, flights, discs, and landings next to a border."""
 
+from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
+from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.common_boundary import Disc, attracts
 from verification.proofs.global_dynamics.fates import Cluster, holding
 from verification.proofs.global_dynamics.flights import flown, newton
 from verification.proofs.global_dynamics.graph import Cells, Grid, MorseGraph, Transitions
-from verification.proofs.global_dynamics.regions import shares
+from verification.proofs.global_dynamics.regions import Region, shares
 
 ROUND = Disc((0.1, 0.2), ((1.0, 0.0), (0.0, 1.0)), 0.01)
 
@@ -173,3 +175,16 @@ def test_shares_of_phase_space_are_bounds_with_room_for_roundings(count):
     assert high > 0
     block[:] = True
     assert shares(made, 0)[1] == 1
+
+
+@pytest.mark.parametrize(("parts", "held"), [(1, True), (16, True), (17, False), (0, False)])
+def test_a_document_of_a_region_says_into_how_many_parts_its_boxes_are_cut_up_to_sixteen(parts, held):
+    numbers = {"kind": "trapping region", "schema": 1, "lam": ["1/3", "1/2"], "columns": 4, "rows": 2, "parts": parts}
+    document = numbers | {"scene": Scene("circle", lam="1/2").document, "runs": [[0, 1, 3, 0, 2]]}
+    if not held:
+        with pytest.raises(ValueError, match="parts"):
+            Region.from_dict(document)
+        return
+    found = Region.from_dict(document)
+    assert (found.parts, found.columns, found.rows, found.lam) == (parts, 4, 2, (Fraction(1, 3), Fraction(1, 2)))
+    assert found.cells.row.tolist() == [0, 1]

@@ -289,6 +289,22 @@ def test_a_rectangle_about_a_point_holds_it_inside(at):
         assert high[0] - low[0] < 1e-14
 
 
+@pytest.mark.parametrize(("on", "arc", "at"), [
+    (0, (0.0, 1.0), None), (1, (0.0, 1.0), 0.625), (1, (0.4375, 0.5625), 0.5), (0, (0.5, 1.0), 0.875),
+])  # fmt: skip
+def test_a_landing_is_taken_if_it_lies_in_the_arc_on_its_component_and_else_a_guess_or_the_middle(on, arc, at):
+    """Landings at 1/4, on the component that is asked for, and at 1/2 on the next; a guess is 1/8 beyond the middle."""
+    stub = SimpleNamespace(
+        landed=(integers(0, 1), floats(0.25, 0.5), [BallArray(floats(10.0, 20.0), floats(0, 0))]),
+        map=SimpleNamespace(place=lambda chart, at: (chart.tolist(), at.m.tolist())),
+        _polished=lambda on, chart, near: near + 0.125,
+    )
+    ball, place = Chords._near(stub, integers(on), integers(0), hull(floats(arc[0]), floats(arc[1])))
+    assert ball.m.tolist() == [0.25 if at is None else at]
+    assert not np.any(ball.r)
+    assert ([x.m.tolist() for x in place] == [[10.0]]) if at is None else (place == ([0], [at]))
+
+
 def test_where_sides_cancel_a_reach_is_what_rounding_may_leave():
     """Of `2*theta - phi` on a set along `phi = 2*theta`: nothing, but for the last bits of all terms."""
     sides = np.array([[[0.5], [-0.25]], [[1.0], [-0.5]]])

@@ -251,16 +251,17 @@ def test_the_reach_of_a_cluster_is_that_of_its_furthest_box():
 class Landings:
     """In the place of a map: every box lands on one arc, and `theta` shrinks by a half, or is multiplied by so much."""
 
-    def __init__(self, wide=1.0, closed=True, smooth=True, joins=0, less=0, others=(), factor=0.5, none=False):
+    def __init__(self, wide=1.0, closed=True, smooth=True, joins=0, less=0, others=(), factor=0.5, none=False, far=0.0):
         self.wide, self.closed, self.smooth, self.joins, self.less = wide, closed, smooth, joins, less
-        self.factor, self.none = factor, none
+        self.factor, self.none, self.far = factor, none, far
         self.others = [(Piece(np.arange(count), None, None, None, False), None) for count in others]
 
     def derivatives(self, boxes):
         count = boxes.chart.size - self.less
         chart = np.arange(count) // self.joins % 2 if self.joins else np.zeros(count, dtype=int)
         low = np.linspace(-self.wide / 2, 0, count)
-        piece = Piece(np.arange(count), chart, low, low + self.wide / 2, self.smooth)
+        high = low + self.wide / 2 + self.far * (np.arange(count) < 192)  # further of the first cluster
+        piece = Piece(np.arange(count), chart, low, high, self.smooth)
         zero = BallArray(np.zeros(count), np.zeros(count))
         stretch = BallArray(np.full(count, self.factor), np.zeros(count))
         return [] if self.none else [(piece, Slopes(stretch, zero, zero, zero, zero)), *self.others]
@@ -289,6 +290,8 @@ class Landings:
         (Landings(others=[1, 0]), [(9, 9)], None),
         (Landings(wide=7.0), [(9, 9), (25, 25)], [True, True]),
         (Landings(wide=7.0), [(9, 9), (25, 29), (29, 25)], None),  # of two clusters one is wider: with it a whole turn
+        (Landings(far=6.0), [(9, 9), (27, 27)], None),  # of two clusters one lands within more than a turn
+        (Landings(far=3.0), [(9, 9), (27, 27)], [True, True]),
         (Landings(), [(9, 9), (9, 32), (32, 9)], None),  # 32 is the outside: some box is lost
     ],
 )

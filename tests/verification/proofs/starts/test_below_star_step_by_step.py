@@ -153,9 +153,10 @@ def test_where_a_ball_is_too_wide_what_was_proved_before_stays(monkeypatch, fail
 def test_the_map_of_what_is_carried_is_that_of_the_contractions_up_to_above_lambda_star(monkeypatch):
     asked = []
     monkeypatch.setattr(below_star, "attracts", lambda images, core: asked.append(images) or {"one": False})
-    monkeypatch.setattr(below_star, "hulls", lambda _: 1 / 0)
+    monkeypatch.setattr(below_star, "hulls", lambda depth: asked.append(depth) or 1 / 0)
     assert BelowStar((), None).checks["core"] is None
     assert asked[0].range == (NEXT, TOP)
+    assert float(asked[1].mid()) == pytest.approx(float(enclosed()[1].mid()) - float(NEXT), rel=1e-9)
     assert float(NEXT) < float(enclosed()[1].mid()) < float(TOP)
 
 

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -342,3 +343,31 @@ def test_where_an_image_is_not_enclosed_nothing_is_covered(monkeypatch):
     monkeypatch.setattr(horseshoes, "_image", lambda *_: None)
     made = Horseshoe(HENON, 1.4, 1e-3, 1, (random_h_set(np.random.default_rng(0)),), ())
     assert made._covering(HENON, arb(1), Edge(0, 0)) == (False, False)
+
+
+@pytest.mark.parametrize(("share", "proved"), [(0.99, False), (1.01, True), (3.0, True)])
+def test_the_image_of_an_affine_map_is_found_from_a_guess_beside_it_where_a_step_stays_in_the_trial_ball(
+    monkeypatch, share, proved
+):
+    """`2*x[1] = x[-1] + 3*x[0] + 1`: 7/4 after 1/4 and 3/4, guessed as 2; half-widths 1/8 and 1/16."""
+
+    class Affine:
+        def over(self, words):
+            return SimpleNamespace(following=lambda *_: 2.0)
+
+        def rule(self, near, parameter):
+            return 2 * near[2] - near[0] - 3 * near[1] - parameter
+
+        def slopes(self, near, parameter):
+            return arb(-1), arb(-3), arb(2)
+
+    step = 0.25 + 0.125 / 2 + 3 * 0.0625 / 2  # to the zeros of all rules over the h-set
+    monkeypatch.setattr(horseshoes, "_roughly", lambda *_: arb(0, share * step))
+    source = HSet((0.25, 0.75), (0.0625, 0.03125), (-0.0625, 0.03125))
+    found = _image(Affine(), arb(1), source, 1.0)
+    assert (found is not None) is proved
+    if found:
+        (here, there), slopes = found
+        assert (float(here), float(there), *map(float, slopes)) == (0.75, 1.75, 0.5, 1.5)
+    monkeypatch.setattr(Affine, "slopes", lambda *_: (arb(-1), arb(-3), arb(2, 2.5)))
+    assert _image(Affine(), arb(1), source, 1.0) is None

@@ -96,3 +96,10 @@ def test_another_statement_is_not_proved_by_the_same_advice(altered):
 def test_points_outside_of_the_strip_are_refused():
     with pytest.raises(ValueError, match="outside"):
         checked(renamed(points=[[0, 2.0, 0.5]]), Certificate.from_dict)
+
+
+@pytest.mark.parametrize("given", ["012", (0, 1.0, 0.0), [0, 1.0], [0, 1e400, 0.0], [0, 1.0, -1e400], [0, "nan", 0.0]])
+@pytest.mark.parametrize("name", ["points", "saddle"])
+def test_a_phase_point_is_a_list_of_a_component_and_two_finite_numbers(name, given):
+    with pytest.raises(ValueError, match="is no phase point"):
+        Certificate.from_dict(written() | {name: [given] if name == "points" else given})

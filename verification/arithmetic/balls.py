@@ -254,6 +254,20 @@ def between(low: float, high: float) -> arb:
     return arb(low).union(arb(high))
 
 
+Box = tuple[tuple[float, float], ...]  # midpoint and half width of each unknown
+
+
+def bisected(box: Box) -> list[Box]:
+    """A box, cut across its longest side.
+
+    >>> bisected(((0.0, 1.0), (3.0, 2.0)))
+    [((0.0, 1.0), (2.0, 1.0)), ((0.0, 1.0), (4.0, 1.0))]
+    """
+    longest = max(range(len(box)), key=lambda i: box[i][1])
+    (middle, half), rest = box[longest], box[longest + 1 :]
+    return [(*box[:longest], (end, half / 2), *rest) for end in (middle - half / 2, middle + half / 2)]
+
+
 def cuts(low: float, high: float, longest: float) -> list[arb]:
     """A stretch as touching balls, none of them much longer than `longest`.
 

@@ -9,7 +9,7 @@ from sympy import CRootOf, Integer, Pow, Rational, S, Symbol, cbrt, pi, sqrt
 
 from numeric.backends import elementary
 from verification.arithmetic import balls as module
-from verification.arithmetic.balls import ARRAYS, FLOAT64, bits_of, cuts, decimal, enclose, halves, working
+from verification.arithmetic.balls import ARRAYS, FLOAT64, bisected, bits_of, cuts, decimal, enclose, halves, working
 
 
 def test_a_rational_is_a_quotient_and_arrays_have_the_functions_that_kernels_have():
@@ -104,3 +104,12 @@ def test_halves_meet_in_the_middle():
     assert max(left.rad(), right.rad()) < 0.5000001
     assert bits_of(10) == 34
     assert bits_of(10, 5) == 39
+
+
+@pytest.mark.parametrize("longest", range(3))
+def test_the_halves_of_a_box_are_all_of_it_and_meet_in_a_face(longest):
+    box = tuple((float(i), 2.0 if i == longest else 1.0) for i in range(3))
+    low, high = bisected(box)
+    assert low[longest] == (longest - 1.0, 1.0)
+    assert high[longest] == (longest + 1.0, 1.0)
+    assert all(part[i] == box[i] for part in (low, high) for i in range(3) if i != longest)

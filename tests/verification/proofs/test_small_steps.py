@@ -31,7 +31,7 @@ from verification.proofs.manifolds.plane_map import Henon, Pinball, pinball
 from verification.proofs.manifolds.tangency import Precision
 from verification.proofs.periodic import returning, torus, triangles
 from verification.proofs.periodic.bifurcation import _nonzero
-from verification.proofs.periodic.interval_newton import Cover, Status, no_others
+from verification.proofs.periodic.interval_newton import Cover, Status, interval_newton, no_others
 from verification.proofs.slap_map import transfer
 from verification.proofs.starts import division
 from verification.proofs.starts.basin_edge import BasinEdge
@@ -323,3 +323,15 @@ def test_parameters_of_a_box_reach_as_far_as_its_digits_say(digits):
 
 def test_places_of_a_table_of_which_no_symmetry_is_told_are_known_up_to_whole_turns():
     assert Pinball(circle).turn == 1
+
+
+def test_what_few_bits_do_not_decide_is_asked_of_all_bits():
+    """A slope of `2^-200`, as a difference of two numbers near 1, which few bits do not tell from 0."""
+
+    def solved(_, box, value):
+        third = arb(1) / 3
+        return [value[0] / (arb(2) ** -200 + (3 * third - 1))]
+
+    system = SimpleNamespace(value=lambda *_: [arb(0)], solved=solved)
+    few, all_of_them = (interval_newton(system, [arb(0)], arb(1), bits).status for bits in (130, 400))
+    assert (few, all_of_them) == (Status.UNKNOWN, Status.UNIQUE)

@@ -37,7 +37,7 @@ from symbolic.motion.chords import chord_kernel, law_kernel
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.law import Law
 from symbolic.tables.table import Table
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import Box, balls, bisected, working
 from verification.cycles.chain import Chain
 from verification.cycles.lengths import arc_length
 from verification.cycles.newton import System
@@ -167,7 +167,6 @@ def dense(chain: Chain) -> arb_mat:
 
 BITS = 64
 SMALLEST = 2.0**-30
-Box = tuple[tuple[float, float], ...]  # midpoint and half width of the first bounce, then of each gap
 ANGLES = 512  # pieces of the incidence angles
 Tick = Callable[[str], None]
 Reflection = Callable[[arb, arb], list[tuple[arb, arb, arb]]]
@@ -225,7 +224,7 @@ def no_others(
                     continue
                 if max(half for _, half in box) < SMALLEST:
                     return Completeness(n, None, boxes, known)
-                queue += halves(box)
+                queue += bisected(box)
     return Completeness(n, True, boxes, known)
 
 
@@ -238,17 +237,6 @@ def start(turn: int, n: int, gap: float) -> Box:
     reach, middle = np.ceil(2**10 * pi / turn) / 2**10, 3.125
     half = np.ceil(2**10 * (2 * pi - gap - middle)) / 2**10
     return ((0.0, float(reach)), *(((middle, float(half)),) * (n - 1)))
-
-
-def halves(box: Box) -> list[Box]:
-    """A box, cut across its longest side.
-
-    >>> halves(((0.0, 1.0), (3.0, 2.0)))
-    [((0.0, 1.0), (2.0, 1.0)), ((0.0, 1.0), (4.0, 1.0))]
-    """
-    longest = max(range(len(box)), key=lambda i: box[i][1])
-    (middle, half), rest = box[longest], box[longest + 1 :]
-    return [(*box[:longest], (end, half / 2), *rest) for end in (middle - half / 2, middle + half / 2)]
 
 
 def reflection(law: Law, contraction: arb, table: Table) -> Reflection:

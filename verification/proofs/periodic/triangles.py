@@ -39,12 +39,12 @@ from symbolic.motion.chords import chord_kernel, polar_polygon_kernel, polygon_k
 from symbolic.tables import egg
 from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import theta
-from verification.arithmetic.balls import Arithmetic, balls, bits_of, exact_balls, working
+from verification.arithmetic.balls import Arithmetic, Box, balls, bisected, bits_of, exact_balls, working
 from verification.arithmetic.iteration import Tick, Vector, silent
 from verification.cycles.critical import Small
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex
-from verification.proofs.periodic.interval_newton import Box, Status, halves, interval_newton
+from verification.proofs.periodic.interval_newton import Status, interval_newton
 
 BITS = 80
 
@@ -214,7 +214,7 @@ def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick
         smallest = min(smallest, *(half for _, half in box))
         if max(half for _, half in box) < SMALLEST:
             return Exclusion(None, boxes, done, smallest)
-        queue += halves(box)
+        queue += bisected(box)
     return Exclusion(None if queue else True, boxes, done, smallest)
 
 

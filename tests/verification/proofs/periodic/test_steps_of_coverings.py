@@ -391,26 +391,3 @@ def test_krawczyks_operator_holds_the_cycle_of_each_contraction_and_is_hardly_wi
             assert all(image.overlaps(arb(x, 1e-14)) for x in places)
             moved = (max(places) - min(places)) / 2
             assert float(image.rad()) < 1.3 * moved + radius / 6
-
-
-def test_what_few_bits_do_not_decide_is_asked_of_all_bits():
-    """A slope of `2^-200`, as a difference of two numbers near 1, which few bits do not tell from 0."""
-
-    def solved(_, box, value):
-        third = arb(1) / 3
-        return [value[0] / (arb(2) ** -200 + (3 * third - 1))]
-
-    system = SimpleNamespace(value=lambda *_: [arb(0)], solved=solved)
-    assert [newton.interval_newton(system, [arb(0)], arb(1), bits).status for bits in (130, 400)] == [
-        Status.UNKNOWN,
-        Status.UNIQUE,
-    ]
-
-
-@pytest.mark.parametrize("longest", range(3))
-def test_the_halves_of_a_box_are_all_of_it_and_meet_in_a_face(longest):
-    box = tuple((float(i), 2.0 if i == longest else 1.0) for i in range(3))
-    low, high = newton.halves(box)
-    assert low[longest] == (longest - 1.0, 1.0)
-    assert high[longest] == (longest + 1.0, 1.0)
-    assert all(part[i] == box[i] for part in (low, high) for i in range(3) if i != longest)

@@ -35,7 +35,7 @@ class Circle:
                 on = np.flatnonzero((b >= start) & (a <= stop))
                 ends = [np.clip(s[on], start, stop) - start + lows[chart] for s in (a, b)]
                 rows.append((on, np.full(on.size, chart), *ends, *(y[on] / 4 for y in boxes.y)))
-        return collected(rows, np.arange(boxes.chart.size))
+        return collected(rows, boxes.chart.size)
 
 
 def span(chart, low, high, first, last):

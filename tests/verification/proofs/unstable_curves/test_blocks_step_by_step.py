@@ -131,6 +131,18 @@ def test_stable_slopes_that_become_horizontal_or_grow_without_end_are_none(bent,
         assert (stable_slopes(bent) is not None) is known
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_range_of_slopes_is_widened_on_either_side_until_it_is_kept(bent, monkeypatch, side):
+    """The inverse takes `q` to `0.9*q - 1`, or to `0.9*q + 1`, whose fixed point only a wide range holds."""
+    at = np.arange(bent.cells.chart.size)
+    one, zero = (BallArray(np.full(2 * at.size, x), 0.0) for x in (1.0, 0.0))
+    monkeypatch.setattr(attractions, "derivatives", lambda *_: (np.tile(at, 2), np.repeat([0, 1], at.size), None))
+    monkeypatch.setattr(attractions, "matrix", lambda _: ((one, one * -side), (zero, one * 0.9)))
+    low, high = stable_slopes(replace(bent, cones=(np.full(at.size, -0.01), np.full(at.size, 0.01))))
+    assert np.all((side * high if side > 0 else side * low) >= 10)
+    assert np.all((low < 10 * side) & (10 * side < high))
+
+
 class Walk:
     """Spans that are told, one set after the other."""
 

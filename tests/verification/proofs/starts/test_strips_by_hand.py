@@ -119,6 +119,8 @@ def test_a_strip_starts_as_a_parallelogram_that_leans_in_the_middle_of_its_lines
     assert sets.sides[1, 1, 0] < -0.0625
     wide = SimpleNamespace(lam=BallArray(0.5, 0.125))
     assert one_strip().started(wide).rest[1, 0] == pytest.approx(0.125 * 0.5 + 0.125 * 0.125, rel=1e-9)
+    alike = one_strip()._replace(right_lean=floats(0.5))  # lines that do not part leave room for a rounding alone
+    assert 1e-15 < alike.started(wall).rest[0, 0] < 1e-13
 
 
 def test_a_norm_of_no_bounces_is_that_of_the_matrix(wall):

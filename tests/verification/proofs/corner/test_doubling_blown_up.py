@@ -7,6 +7,7 @@ from sympy import Rational
 from symbolic.cycles.thresholds import lambda_c
 from symbolic.tables import egg
 from verification.arithmetic.balls import real_ball, working
+from verification.cycles.chain import trace_and_determinant
 from verification.proofs.corner import corner_orbit
 from verification.proofs.corner.corner_orbit import BITS, MOST, RADII, divided, half, linearised, slope_at_zero, step
 from verification.proofs.periodic.interval_newton import Enclosure, Status
@@ -183,3 +184,12 @@ def test_all_bounces_of_the_branch_are_asked_to_be_inside(monkeypatch):
         assert w.contains(e)
         assert v.contains((e * found.m).mid())
     assert v.rad() < 1.1 * MOST * abs(found.m).upper()
+
+
+def test_half_an_orbit_has_its_bounce_on_the_wall_at_e_and_that_on_the_arc_at_m_times_e():
+    with working(BITS):
+        e, m, lam = arb("0.0625"), arb("-0.5"), arb("0.25")
+        chain = linearised(e, arb("-0.03125"), lam).plain
+        for found, wanted in zip(half(e, m, lam), trace_and_determinant(chain.rows, chain.sign), strict=True):
+            assert found.overlaps(wanted)
+            assert found.rad() < 1e-12

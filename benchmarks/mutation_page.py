@@ -158,8 +158,9 @@ def summary(name: str, figures: dict[str, dict]) -> str:
     first = sum(entry.get("first", killed(entry)) for entry in figures.values())
     low, high = map(percent, wilson(first, asked))
     text += f". Asked was a random part of {total}. Before anybody had read a survivor {first} of them were killed,"
-    text += f" {percent(first / asked)}: of all, {low} to {high} (Wilson's 95 per cent interval). The others were"
-    return text + " killed later, by longer tests or by tests written for them after they were read."
+    text += f" {percent(first / asked)}: of all, {low} to {high} (Wilson's 95 per cent interval)."
+    later = " The others were killed later, by longer tests or by tests written for them after they were read."
+    return text + (later if hits > first else "")
 
 
 def sample_row(sample: dict) -> str:

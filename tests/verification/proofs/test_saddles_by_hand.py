@@ -7,6 +7,7 @@ import pytest
 from flint import acb, arb
 from sympy import Rational
 
+from numeric import PinballMap
 from symbolic.tables import egg
 from symbolic.tables.law import Law
 from verification.arithmetic.balls import FLOAT64, FUNCTIONS, balls, working
@@ -252,3 +253,15 @@ def test_a_map_has_the_rotations_of_its_table_unless_the_law_knows_the_place():
     assert pinball(five).turn == 5
     assert pinball(five, Law("-lam*eta + eta**3/99")).turn == 5
     assert pinball(five, Law("-lam*eta + cos(theta)*eta**3/99")).turn == 1
+
+
+@pytest.mark.parametrize(("theta", "phi"), [(0.25, 0.5), (2.0, -0.75)])
+def test_two_places_are_the_phase_point_of_the_particle_that_flies_from_one_to_the_next(theta, phi):
+    flown = PinballMap("egg", lam=0.5, alpha="0.08").step(theta, phi)
+    here, leaving = pinball(egg(3).at(alpha="0.08")).plane(theta, float(flown.theta))
+    assert (here, leaving) == (theta, pytest.approx(phi, abs=1e-12))
+
+
+def test_the_exit_angle_of_another_law_is_the_laws_own():
+    map = pinball(egg(3).at(alpha="0.08"), Law("-lam*eta - eta**3/8"))
+    assert map.exit(0.5, 0.25, 1.0) == pytest.approx(-0.140625)  # lam = 1/4 at the place 1

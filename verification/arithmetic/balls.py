@@ -257,15 +257,15 @@ def between(low: float, high: float) -> arb:
 Box = tuple[tuple[float, float], ...]  # midpoint and half width of each unknown
 
 
-def bisected(box: Box) -> list[Box]:
-    """A box, cut across its longest side.
+def bisected(box: Box, side: int | None = None) -> list[Box]:
+    """A box, cut across its longest side, or across the one that is named.
 
     >>> bisected(((0.0, 1.0), (3.0, 2.0)))
     [((0.0, 1.0), (2.0, 1.0)), ((0.0, 1.0), (4.0, 1.0))]
     """
-    longest = max(range(len(box)), key=lambda i: box[i][1])
-    (middle, half), rest = box[longest], box[longest + 1 :]
-    return [(*box[:longest], (end, half / 2), *rest) for end in (middle - half / 2, middle + half / 2)]
+    across = max(range(len(box)), key=lambda i: box[i][1]) if side is None else side
+    (middle, half), rest = box[across], box[across + 1 :]
+    return [(*box[:across], (end, half / 2), *rest) for end in (middle - half / 2, middle + half / 2)]
 
 
 def cuts(low: float, high: float, longest: float) -> list[arb]:

@@ -26,7 +26,7 @@ from flint import arb
 from symbolic.expressions.text import load
 from symbolic.motion.chords import chord_kernel, ends_kernel
 from symbolic.tables import cuspless
-from verification.arithmetic.balls import FLOAT64, balls, cuts, halves, joined, working
+from verification.arithmetic.balls import FLOAT64, Box, balls, bisected, cuts, halves, joined, working
 from verification.arithmetic.iteration import Stop, Tick, Vector, iterated, silent
 from verification.cycles.problem import mirrored
 from verification.proofs.corner.corner import (
@@ -213,21 +213,19 @@ def fourth_on_wall(
     >>> fourth_on_wall(0.01, 0.0, 0.03).on_wall
     True
     """
-    queue, boxes = [(0.0, angle, (lowest + highest) / 2, (highest - lowest) / 2)], 0
+    queue: list[Box] = [((0.0, angle), ((lowest + highest) / 2, (highest - lowest) / 2))]
+    boxes = 0
     area = angle * (highest - lowest) / 2 or 1.0
     with working(BITS):
         while queue:
-            phi, wide, lam, half = queue.pop()
+            (phi, wide), (lam, half) = box = queue.pop()
             boxes += 1
             if boxes > budget or max(wide, half) < SMALLEST:
                 return Fourth(None, boxes)
             if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING), or_lower):
                 tick(wide * half / area)
                 continue
-            if wide > half:
-                queue += [(phi - wide / 2, wide / 2, lam, half), (phi + wide / 2, wide / 2, lam, half)]
-            else:
-                queue += [(phi, wide, lam - half / 2, half / 2), (phi, wide, lam + half / 2, half / 2)]
+            queue += bisected(box, 0 if wide > half else 1)
     return Fourth(True, boxes)
 
 

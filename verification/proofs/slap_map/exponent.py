@@ -58,7 +58,7 @@ from flint import arb
 from symbolic.cycles.polygons import COSINE, centre_beyond_boundary, centre_far_inside
 from symbolic.expressions.text import kernel, load
 from symbolic.tables.table import alpha
-from verification.arithmetic.balls import balls, between, working
+from verification.arithmetic.balls import Box, balls, between, bisected, working
 from verification.arithmetic.iteration import Tick, silent
 from verification.proofs.corner.corner import ARC, BITS, WALL
 from verification.proofs.corner.return_map import Flights, Piece
@@ -144,8 +144,7 @@ def judged(near: Pieces, digits: int, inverse: Inverted, known: Variation | None
 
 
 SMALLEST = 2.0**-30  # halves of halves must stay exact in floats
-Box = tuple[tuple[float, float], tuple[float, float]]  # middle and half width, of C and of alpha
-WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # a little more than the shapes up to 1/10, cut off at them
+WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # of C and of alpha: shapes up to 1/10 and some more, cut off there
 
 
 @dataclass(frozen=True)
@@ -185,10 +184,8 @@ def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
 
 def halves(box: Box) -> list[Box]:
     """The two halves of a box, cut across its longer side; shapes are a tenth as long as cosines."""
-    (c, wide), (shape, high) = box
-    if wide > 10 * high:
-        return [((c + side * wide / 2, wide / 2), (shape, high)) for side in (-1, 1)]
-    return [((c, wide), (shape + side * high / 2, high / 2)) for side in (-1, 1)]
+    (_, wide), (_, high) = box
+    return bisected(box, 0 if wide > 10 * high else 1)
 
 
 @dataclass(frozen=True)

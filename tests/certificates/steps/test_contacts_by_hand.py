@@ -1,26 +1,21 @@
 """Steps of the second reader's tangencies, each by itself: frames, graphs under a round, equations of a contact."""
 
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 
+import by_hand
 import pytest
+from by_hand import number
 
 P = 100
+holds = partial(by_hand.holds, units=16)
 
 
 @pytest.fixture(scope="module")
 def tangency(check):
     return check.beside("tangency")
-
-
-def number(check, x):
-    return check.I.of(Fraction(x), P)
-
-
-def holds(found, true, units=16) -> bool:
-    """Does an interval hold a fraction, and is it no wider than so many units of its last place?"""
-    return found.lo <= Fraction(true) * 2**found.p <= found.hi and found.width() <= units
 
 
 def framed(check, tangency, own):
@@ -44,7 +39,7 @@ def test_a_frame_leans_and_moves_with_lam_and_coordinates_in_it_are_those_that_i
     assert all(holds(x, true) for x, true in zip(side.centred(lam), zero, strict=True))
     assert holds(theta, zero[0] + Fraction(1, 3) + Fraction(1, 2) * Fraction(2, 5))
     assert holds(psi, zero[1] + Fraction(1, 4) * Fraction(1, 3) - Fraction(2, 5))
-    assert all(holds(x, true, 64) for x, true in zip(side.framed(theta, psi, lam), ("1/3", "-2/5"), strict=True))
+    assert all(holds(x, true, units=64) for x, true in zip(side.framed(theta, psi, lam), ("1/3", "-2/5"), strict=True))
     assert names["b"] == "a letter"
     assert names["lam"] is lam
     assert set(names) == ({"b", "lam", "1/lam"} if own else {"b", "lam"})
@@ -74,7 +69,7 @@ def test_a_jet_along_a_manifold_has_its_derivatives_whichever_letter_it_is_over(
     del wanted[0, 0, 2]  # second derivatives by lam alone are not known
     assert found.degree == 2
     assert len(found.c) == 10
-    assert all(holds(check.I.of(found.c[at[e]], P), true, 64) for e, true in wanted.items())
+    assert all(holds(check.I.of(found.c[at[e]], P), true, units=64) for e, true in wanted.items())
 
 
 def test_a_polynomial_with_jets_for_its_letters_is_the_polynomial_of_them(check, tangency):

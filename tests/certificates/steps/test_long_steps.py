@@ -7,17 +7,9 @@ from random import Random
 from types import SimpleNamespace
 
 import pytest
+from by_hand import holds, number
 
 P = 100
-
-
-def number(check, x, p=P):
-    return check.I.of(Fraction(x), p)
-
-
-def holds(found, true, units=4) -> bool:
-    """Does an interval hold a fraction, and is it no wider than so many units of its last place?"""
-    return found.lo <= Fraction(true) * 2**found.p <= found.hi and found.width() <= units
 
 
 def cycle(check, long, parts, sign=1, twist=1):

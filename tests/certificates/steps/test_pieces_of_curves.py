@@ -1,21 +1,20 @@
 """The second reader looks at all of a boundary: pieces and pairs of arcs leave nothing out, and are seen one by one."""
 
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 
+import by_hand
 import pytest
 
 P = 64
+number = partial(by_hand.number, p=P)
 
 
 @pytest.fixture(scope="module")
 def curves(check):
     return check.beside("curves")
-
-
-def number(check, x, p=P):
-    return check.I.of(Fraction(x), p)
 
 
 def ends(x) -> tuple[Fraction, Fraction]:

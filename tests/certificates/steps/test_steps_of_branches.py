@@ -6,13 +6,10 @@ from math import pi
 from types import SimpleNamespace
 
 import pytest
+from by_hand import number
 
 EGG = {"table": "egg", "shape": {"alpha": "2/25"}}
 TURN, P = Fraction(1, 3), 100
-
-
-def number(check, x, p=P):
-    return check.I.of(Fraction(x), p)
 
 
 def branch(check, crisis, along="0", across="1", reach="1/16", slope="1/64"):

@@ -1,18 +1,17 @@
 """What a corner orbit is more than a cycle: slopes on either side of both corners, multipliers, chords and a name."""
 
 from fractions import Fraction
+from functools import partial
 from itertools import product
 from random import Random
 from types import SimpleNamespace
 
+import by_hand
 import pytest
 
 P = 60
+number = partial(by_hand.number, p=P)
 ROUND = (3, 1), (0, Fraction(1, 2)), (1, 1)  # the derivative of a round, and the slopes by both of where its corner is
-
-
-def number(check, x):
-    return check.I.of(Fraction(x), P)
 
 
 def cornered(check, motion=2, arc=3, straight=-1, fall=-5, shift=4, rounds=(ROUND, ROUND), theta1="1/4"):

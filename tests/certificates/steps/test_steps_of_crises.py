@@ -7,14 +7,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from by_hand import number
 
 GIVEN = json.loads((Path(__file__).parents[3] / "certificates" / "crisis-between.json").read_text())
 EGG = {"table": "egg", "shape": {"alpha": "2/25"}}
 TURN, P = Fraction(1, 3), 100
-
-
-def number(check, x, p=P):
-    return check.I.of(Fraction(x), p)
 
 
 def saddle(start=-0.2, sign=1, shift=(1, 3), name="s"):

@@ -2,18 +2,17 @@
 
 import json
 from fractions import Fraction
+from functools import partial
 from math import pi
 from pathlib import Path
 from types import SimpleNamespace
 
+import by_hand
 import pytest
 
 FOLDER = Path(__file__).parents[3] / "certificates"
 P = 90
-
-
-def number(check, x, p=P):
-    return check.I.of(Fraction(x), p)
+number = partial(by_hand.number, p=P)
 
 
 @pytest.mark.parametrize(("free", "box"), [("", None), ("lam", "1/2"), ("alpha", "1/3")])

@@ -5,12 +5,9 @@ from math import atan2, cos, pi, sin, sqrt
 
 import mpmath
 import pytest
+from by_hand import number
 
 P = 100
-
-
-def number(check, x, p=P):
-    return check.I.of(Fraction(x), p)
 
 
 def same(check, x, true, units=2**24):

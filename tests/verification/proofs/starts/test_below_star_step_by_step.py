@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats
 from flint import arb
 
 from numeric import PinballMap
@@ -28,10 +29,6 @@ CELLS = ((ARC, 1.5, EDGE, -0.01, 0.01, True, True),
          (ARC, 1.5, EDGE, -0.1, 0.1, True, True),
          (ARC, 1.5, EDGE, -0.01, 0.01, False, False),
          (WALL, 1.5, EDGE, -0.01, 0.01, True, False))  # fmt: skip
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 def graph_of(cells, reached, recurrent, edges=(), asked=None):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats, integers
 
 from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.boxes import Boxes
@@ -14,14 +15,6 @@ from verification.proofs.starts.parallelograms import Parallelograms
 
 FLAT = Core(0, 0.0, 0.0, 1.0, 0.5, 1.0, 4)  # `|theta| <= 1`, `|phi| <= 1`, in four cells
 MAP = SimpleNamespace(mirrored=True)
-
-
-def integers(*values):
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 def points(theta, phi=0.0, chart=0) -> Parallelograms:

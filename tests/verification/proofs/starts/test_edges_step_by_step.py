@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats
 from flint import acb, arb
 
 from verification.proofs.global_dynamics.boxes import Boxes
@@ -12,10 +13,6 @@ from verification.proofs.starts import basin_edge
 from verification.proofs.starts.basin_edge import SLACK, BasinEdge, _cells
 
 PLACE = 0.25, 0.5  # of a saddle; a bounce turns it by 1
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 def box(*ends) -> Boxes:

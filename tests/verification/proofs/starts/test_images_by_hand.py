@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats, integers
 
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.boxes import Boxes
@@ -12,14 +13,6 @@ from verification.proofs.global_dynamics.flights import Piece
 from verification.proofs.starts import parallelograms
 from verification.proofs.starts.chords import DOUBLINGS, REACH, Chords
 from verification.proofs.starts.parallelograms import Parallelograms, carried
-
-
-def integers(*values):
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 def points(theta, phi, rest=0.0) -> Parallelograms:

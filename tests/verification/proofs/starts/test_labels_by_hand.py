@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats, integers
 
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.boxes import Chart
@@ -13,14 +14,6 @@ from verification.proofs.starts.labels import Labels, Targets, mapped
 
 SHORT, LONG = Chart("short", (0.0, 1.0), (-1.0, 1.0)), Chart("long", (1.0, 3.0), (-2.0, 2.0), kept=True)
 FINE = 1 << 14  # rows that tell where a curve crosses
-
-
-def integers(*values):
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 def landing(source, chart=0, smooth=True, **given) -> Landed:

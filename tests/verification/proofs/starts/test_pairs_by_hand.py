@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats, integers
 
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.boxes import Chart
@@ -22,14 +23,6 @@ ROWS = ((0, 0.25, 0.75, 0.25, 1.75, 2.0, 1.0, 0.5, 0.25, 1.0, 0.5),
         (2, 1.25, 1.75, 2.25, 2.75, 2.0, 0.5, 0.125, 1.0, 0.5, 0.25),
         (3, 0.25, 1.75, 2.25, 2.75, 8.0, 0.25, 1.0, 2.0, -0.5, 0.125))  # fmt: skip
 LEADS = {0: (0, 1), 1: (2,), 2: (1,), 3: (2,), 4: (2, 4)}  # to which boxes each row leads
-
-
-def integers(*values):
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 class Stub:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats, integers
 
 from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.boxes import Chart
@@ -13,14 +14,6 @@ from verification.proofs.starts.labels import Labels, Targets
 from verification.proofs.starts.typical import LARGEST, SLACK, TINY, Balance, Cut
 
 ONE, TWO = Chart("one", (0.0, 2.0), (-1.0, 1.0)), Chart("two", (2.0, 4.0), (-1.0, 1.0))
-
-
-def integers(*values):
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 def labelled(cells, charts=(ONE, TWO), slope=1.0) -> Labels:

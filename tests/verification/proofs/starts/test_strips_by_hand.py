@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from by_hand import floats, integers
 
 from symbolic import Scene
 from verification.arithmetic.arrays import BallArray
@@ -17,14 +18,6 @@ from verification.proofs.starts.core import Core
 from verification.proofs.starts.strips import SLACK, Strips, bounded, settled, steepest, strips, unsettled
 
 CORE = Core(0, 0.0, 0.0, 1.0, 0.5, 1.0, 4)
-
-
-def integers(*values):
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    return np.array(values, dtype=float)
 
 
 @pytest.fixture(scope="module")

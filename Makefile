@@ -1,6 +1,6 @@
 # `make verify` judges the paper, `make test` tests the package; both make .venv first.
-# `make test` runs lint and all tests but the dearest, in about five minutes on two cores once all is installed. Those are
-# `make slow`, half an hour; `make quick` runs what takes no tenth of a second. tests/slow.txt has the seconds of each.
+# `make test` runs lint and all tests but those marked slow, in a few minutes on two cores once all is installed; these
+# are `make slow`.
 # On another machine: make PYTHON=python3.12, make test JOBS=8.
 
 PYTHON ?= python3
@@ -8,7 +8,7 @@ JOBS ?= auto
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: verify test slow quick browser check-all formal lint docs dist letter bench mutation torture clean
+.PHONY: verify test slow golden browser check-all formal lint docs dist letter bench torture clean
 .DELETE_ON_ERROR:
 # Compiled modules are kept, whatever the environment says: otherwise each command that a test runs compiles all anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -19,17 +19,18 @@ verify: $(VENV)/main.stamp
 	@status=0; $(BIN)/pinball verify --report report --work benchmarks/records/work_precision.json || status=$$?; \
 	test $$status -le 1 && test -f report/report.json
 
-# File by file, the dearest first: what a file computes for several tests is computed once.
-PYTEST := $(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile --no-loadscope-reorder
+# File by file: what a file computes for several tests is computed once.
+PYTEST := $(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile
 
 test: lint
 	$(PYTEST) -m "not slow"
 
 slow: $(VENV)/test.stamp
-	$(PYTEST) -m slow
+	$(PYTEST) -m slow $$(grep -rl --include='test_*.py' '^@pytest.mark.slow' tests)
 
-quick: $(VENV)/test.stamp
-	$(PYTEST) -m quick
+# Writes anew what the package says today, which `make test` compares: a change is a line of a difference.
+golden: $(VENV)/test.stamp
+	$(BIN)/python tests/test_golden.py
 
 # The pages, those of the docs too, in a headless Chromium, which must be on the path or named by CHROMIUM.
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp docs
@@ -76,17 +77,6 @@ bench: $(VENV)/bench.stamp
 	-$(BIN)/python benchmarks/work_precision.py --compare
 	-$(BIN)/python benchmarks/extremes.py --check
 
-# Two hours from nothing: stops and resumes; see docs/mutation.md. First the module's own tests, then all that reach it.
-mutation: $(VENV)/test.stamp $(VENV)/mutation.stamp
-	test -f report/mutation/cover.json || $(BIN)/python benchmarks/mutation.py cover
-	for storey in symbolic numeric; do \
-	  $(BIN)/python benchmarks/mutation.py run --only "$$storey/*" --near --budget 12 && \
-	  $(BIN)/python benchmarks/mutation.py run --only "$$storey/*" --again survived --budget 60 && \
-	  $(BIN)/python benchmarks/mutation.py page --only "$$storey/*" || exit 1; \
-	done
-	$(BIN)/python benchmarks/mutation.py core --count 120 --seed 3
-	$(BIN)/python benchmarks/mutation.py page --count 120 --seed 3
-
 # Half an hour of attacks on two free cores, without `processors`, which is asked by name; see docs/reliability.md.
 torture: $(VENV)/test.stamp
 	$(BIN)/python benchmarks/torture.py
@@ -99,7 +89,6 @@ clean:
 $(VENV)/main.stamp: extras := [plot,sweep]
 $(VENV)/test.stamp: extras := [test]
 $(VENV)/bench.stamp: extras := [bench]
-$(VENV)/mutation.stamp: extras := [mutation]
 $(VENV)/docs.stamp: extras := [docs,plot,sweep]
 $(VENV)/dist.stamp: extras := [dist]
 $(VENV)/browser.stamp: extras := [browser]

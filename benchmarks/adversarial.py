@@ -1,25 +1,16 @@
-"""A million points for each labelled case: did the kernel take the right zero, and how exact was it?
+"""Errors of the kernels on a million points of each labelled hard case: is the zero the right one, and how exact?
 
-The two columns `/condition` divide by one plus the row sums of the derivative matrix, the condition numbers; `beyond`
-and `from` say how many points go beyond 4 (position) or 8 (direction), and the smallest condition number among them.
-The reference is the same step on 80-bit floats, with elementary functions and zeros to their own last bits
-(`verification/measure/extremes/kernels.py`); that the step itself is right is what
-tests/numeric/flights/test_accuracy.py shows,
-with 50 digits. `judge` is how far the reference moves when the state is rounded once more in 80 bits: what it can
-tell, of one point in 16 and of all that are over the bounds. A point is beyond only where that does not explain it.
+    python benchmarks/adversarial.py [POINTS [WORD]]            all cases, or those whose label has the word
+    python benchmarks/adversarial.py pieces [POINTS [WORD]]     tables of sides and arcs: the table of docs/tables.md
+    python benchmarks/adversarial.py inside [POINTS]            tables given by a radius: flights stay inside
+    python benchmarks/adversarial.py splines [POINTS [WORD]]    splines: every zero of every cubic is a candidate
 
-    python benchmarks/adversarial.py [POINTS [WORD]]        only the cases whose label has the word
-
-Tables of sides and arcs are judged otherwise (`verification/measure/extremes/by_hand.py`: every piece tried, in 80
-bits), at every size, and so are tables given by a radius once more, by points along each flight that must be inside:
-
-    python benchmarks/adversarial.py pieces [POINTS [WORD]]     the table of docs/tables.md
-    python benchmarks/adversarial.py inside [POINTS]
-
-Splines are judged by every zero of every cubic, halved to its last bit; where a line passes the end of a piece or a
-tangent within rounding and the two differ, the exact map decides with 50 digits:
-
-    python benchmarks/adversarial.py splines [POINTS [WORD]]
+The reference is the same step on 80-bit floats (`verification/measure/extremes/kernels.py`); that this step is right is
+tested with 50 digits in tests/numeric/flights/test_accuracy.py. Columns `/condition` are divided by the condition
+number, one plus the row sums of the derivative matrix; `beyond` counts points with errors above 4 (position) or 8
+(direction), `from` is the smallest condition number among them, and `judge` is how far the reference moves when the
+state is rounded once more in 80 bits. Tables of sides and arcs are compared with every piece tried in 80 bits
+(`by_hand.py` there), splines with every zero; where rounding decides, with the exact map in 50 digits.
 """
 
 import sys
@@ -48,7 +39,7 @@ EPS = 2.0**-52
 
 
 def say(text):
-    """A line on standard output, at once."""
+    """Prints a line on standard output at once."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 
@@ -69,7 +60,7 @@ def main(count, word):
 
 
 def line(case):
-    """What is said of a case."""
+    """The line of the output for one case."""
     own, found, going = bounced(case)
     order = np.argsort(steps(case.map, own), kind="stable")
     sizes = np.empty((4, order.size))
@@ -91,13 +82,13 @@ def line(case):
 
 
 class Counted(ArrayBackend):
-    """Float64, counting the steps of each point's marches."""
+    """A float64 backend that counts the steps of each point's marches."""
 
     def __init__(self, count):
         self.steps = np.zeros(count)
 
     def repeat(self, condition, body, state, limit, steady=False):
-        """As `ArrayBackend.repeat`, counted."""
+        """As `ArrayBackend.repeat`, with counts."""
 
         def counted(state):
             active = condition(state)
@@ -108,7 +99,7 @@ class Counted(ArrayBackend):
 
 
 def steps(map, own):
-    """How many steps the marches of each point take: all wait for the last, so those of like length go together."""
+    """The number of steps of each point's marches; points of similar counts are computed together."""
     ops = Counted(own[0].size)
     with np.errstate(all="ignore"):
         map.family.bounce(ops, map.law, map.shape, np.full(own[0].size, float(map.lam)), own)
@@ -116,7 +107,7 @@ def steps(map, own):
 
 
 def judged_by_80_bits(map, own, found):
-    """Errors in position and direction, and how far the judge may be off: of all beyond, and one in 16 others."""
+    """Errors in position and direction, and the uncertainty of the reference for all large ones and 1 of 16 others."""
     (truth,) = references(map, own, MOVED[:1])
     errors = apart(map, truth, found)
     asked = ~(errors[0] <= 4 * EPS) | ~(errors[1] <= 8 * EPS)
@@ -132,7 +123,7 @@ MOVED = "none", "first", "middle"  # never all alike: angles must move against e
 
 
 def references(map, own, moves):
-    """The landings in 80 bits, with the last bit of some numbers moved."""
+    """The landings in 80 bits, with the last bit of some numbers changed."""
     lam = np.full(own[0].size, np.longdouble(float(map.lam)))
     shape = [np.longdouble(x.numerator) / np.longdouble(x.denominator) for x in map.exact_shape]
     with np.errstate(all="ignore"):
@@ -179,7 +170,7 @@ FEW = 2_000  # points of which an 80-bit array stays in the cache
 
 
 def by_hand(count, word):
-    """The tables of sides and arcs."""
+    """Measures the tables of sides and arcs."""
     say(f"{count} points a case; errors sideways in units of 2**-52 of the numbers added up")
     say("| table | flights | points | stopped | wrong | largest error | farthest reason to stop |")
     say("|---|---|---|---|---|---|---|")
@@ -199,7 +190,7 @@ def by_hand(count, word):
 
 
 def summed(map, count):
-    """Points, how many stopped, how many are wrong, the largest error and the weakest reason to stop, of every kind."""
+    """Totals of every kind: points, stopped, wrong, the largest error, and the weakest reason to stop."""
     rows = {}
     for seed in range(-(-count // BLOCK)):
         for label, starts in hard(map, min(count, BLOCK), seed).items():
@@ -212,7 +203,7 @@ def summed(map, count):
 
 
 def map_max(old, new):
-    """The larger of each two."""
+    """The larger of each pair."""
     return [max(x, y) for x, y in zip(old, new, strict=True)]
 
 
@@ -220,7 +211,7 @@ PARTS = ((np.arange(64) + 0.5) / 64)[:, None]
 
 
 def inside(count, word):
-    """Flights on tables given by a radius: 64 points of each must lie inside, to 64 units. Doubts go to 80 bits."""
+    """Measures flights on tables given by a radius: 64 points of each lie inside, to 64 units; doubts go to 80 bits."""
     say("| table | flights | points | stopped | outside |")
     say("|---|---|---|---|---|")
     for name in LONG_RADII:
@@ -238,7 +229,7 @@ def inside(count, word):
 
 
 def ring(count, radius):
-    """The spline through so many points about the origin, at six decimals."""
+    """The spline through so many points around the origin, with six decimals."""
     angle = 2 * np.pi * np.arange(count) / count
     x, y = 1.5 * radius(angle) * np.cos(angle), radius(angle) * np.sin(angle)
     return tables.from_points([(f"{a:.6f}", f"{b:.6f}") for a, b in zip(x, y, strict=True)])
@@ -261,7 +252,7 @@ ASTRAY = 1e-6  # of the table: farther from the judge's landing is another one
 
 
 def splines(count, word):
-    """Splines: what stopped, what is in doubt, and what landed elsewhere than the judge and the exact map say."""
+    """Measures splines: flights stopped, undecided, and landed elsewhere than the reference and the exact map say."""
     say(f"{count} points a case; errors sideways in units of 2**-52 of the table")
     say("| spline | flights | points | stopped | in doubt | wrong | largest error |")
     say("|---|---|---|---|---|---|---|")
@@ -279,12 +270,12 @@ def splines(count, word):
 
 
 def map_text(row):
-    """Counts, and a number."""
+    """The entries of a table's row: four counts and a number with two digits, as text."""
     return [*(str(x) for x in row[:4]), f"{row[4]:.2g}"]
 
 
 def counted(case):
-    """Points, stopped, in doubt, wrong, and the largest error to the side of those that are right."""
+    """Counts of points, stopped, undecided and wrong, and the largest sideways error of the right ones."""
     own, after, going = bounced(case)
     truth = cubic_hits(case.map, own)
     x, y = case.map.states.point(after[0].astype(int), after[1])
@@ -303,7 +294,7 @@ def counted(case):
 
 
 def farthest_outside(map, ops, own, found):
-    """How far outside the wall a flight is at most, to first order, over one and the distance from the origin."""
+    """The largest distance of flights outside the wall, to first order, relative to one plus that from the origin."""
     shape = [ops.number(float(x)) for x in map.shape]
     (x0, y0), (x1, y1) = (map.family.point(ops, *rows[:2], *shape) for rows in (own, found))
     x, y = x0 + PARTS * (x1 - x0), y0 + PARTS * (y1 - y0)

@@ -1,7 +1,6 @@
 """Baseline: NumPy over trajectories, with the functions that `sympy.lambdify(..., cse=True)` makes of the table.
 
-What one writes first with SymPy at hand: angles are the state, the flight equation is solved by
-Newton in the mean parameter, tangents and curvature come from lambdify.
+It is what one writes first with SymPy: angles are the state, Newton's method solves the flight equation.
 """
 
 from fractions import Fraction
@@ -45,7 +44,7 @@ class Lambdified:
 
 
 class LambdifiedEllipse:
-    """The ellipse's quadratic, with lambdified frames."""
+    """The quadratic of the ellipse, with frames from lambdify."""
 
     def __init__(self, a):
         table = tables.ellipse.at(a=a)
@@ -91,7 +90,7 @@ class LambdifiedCardioid:
 
 
 def baseline(name, shape):
-    """The NumPy baseline of a table, or None."""
+    """The NumPy baseline of a table; None where there is none."""
     if name == "ellipse":
         return LambdifiedEllipse(shape["a"])
     if name == "cardioid":

@@ -1,12 +1,8 @@
-"""The numerical dossier, `docs/numerics.md`, made from the measurements that lie in the repository.
+"""Writes the page `docs/numerics.md` from recorded measurements: `python benchmarks/dossier.py`.
 
-    python benchmarks/dossier.py
-
-writes the page from `bench.json` and `bench_avx2.json` (`pinball bench --json`, on two processors) and
-`work_precision.json` in `benchmarks/records`, `docs/leave_out.md`, `docs/mutation.md`,
-`verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`;
-each is written by the command that the page names. The words are in `dossier.md` beside this file. Nothing is measured
-here, and a test holds the page to its sources.
+The sources are `bench.json`, `bench_avx2.json` and `work_precision.json` in `benchmarks/records`, `docs/leave_out.md`,
+`verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`, each written by the command that the
+page names, and the text in `dossier.md` beside this file. A test compares the page with its sources.
 """
 
 import json
@@ -15,11 +11,11 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from verification.measure.extremes.near import Stability
+from verification.measure.extremes.near import StabilityVerdict
 from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.choice import crossovers, entries
 from verification.measure.work.figure import times
-from verification.measure.work.row import Row, duration, footer, front, short
+from verification.measure.work.row import MethodResult, duration, footer, front, short
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"
@@ -27,22 +23,12 @@ KERNEL = "float64 llvm"
 RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one particle at a time": "numba"}
 PLAIN = "float64 the paper's way, in Python"
 SWEEP = "sweep"  # what rows of sweeps name in place of a table
-ASKED = {  # by the beginnings of their names
-    "told": "orbits, angles and points",
-    "length": "orbits, with arc length",
-    "step": "step of one",
-    "derivative": "derivative of one",
-    "single": "orbit of one",
-    "steps": "step of 100,000",
-    "batched": "derivative of 100,000",
-    "rest": "exponents",
-}
 BOUNDS = 4, 8  # units of 2**-52: of the place and of the direction
 MANY = 100  # digits
 
 
 def load(name):
-    """One of the files in the repository."""
+    """The content of one of the files in the repository."""
     return json.loads((ROOT / name).read_text(encoding="utf-8"))
 
 
@@ -52,7 +38,7 @@ def table(head, lines):
 
 
 def bounce(bench):
-    """A line for each table: errors, times, and the ratios to what one would use instead."""
+    """A line for each table: errors, times, and the ratios to the usual alternatives."""
     lines = []
     for scene, shape in SCENES.items():
         own = {
@@ -72,7 +58,7 @@ def bounce(bench):
 
 
 def calls(bench):
-    """A line for each call that `pinball bench` holds to a bar, a column for each table: ratios, or else times."""
+    """A line for each call that `pinball bench` bounds, with a column for each table: ratios, or else times."""
     found, bars = {}, {}
     for row in [row for row in bench["calls"] if row["scene"] in SCENES]:
         what = row["call"], row["against"] if row["against"].startswith("a ") else ""
@@ -83,26 +69,14 @@ def calls(bench):
     return table(["call", "bar", *SCENES], lines)
 
 
-def spans(bench):
-    """From the least to the most of the paper's tables, of calls by their beginnings: times, and ratios."""
-    found = {}
-    for name, call in ASKED.items():
-        own = [row for row in bench["calls"] if row["scene"] in SCENES and row["call"].startswith(call)]
-        own = [row for row in own if name != "rest" or row["scene"] == "ellipse"]
-        for key, words in (("seconds", duration), ("ratio", "{:.2g}".format)):
-            ends = dict.fromkeys(words(end(row[key] for row in own)) for end in (min, max))
-            found[name if key == "seconds" else f"{name}_ratio"] = " to ".join(ends)
-    return found
-
-
 def elsewhere(bench):
-    """What particles at rest cost on tables that are not the paper's, as ratios."""
+    """The cost of particles at rest on tables that are not the paper's, as ratios."""
     rows = [row for row in bench["calls"] if row["scene"] not in (*SCENES, SWEEP)]
     return ", ".join(f"{row['scene']} {row['ratio']:.2g}" for row in rows), max(row["bar"] for row in rows)
 
 
 def sweeps(bench):
-    """What tasks take when several workers share a sweep, beside one alone, and how well its seconds were foretold."""
+    """The cost of tasks when several workers share a sweep, relative to one, and the error of its predicted time."""
     rows = [row for row in bench["calls"] if row["scene"] == SWEEP]
     return ", ".join(f"{row['call']} {row['ratio']:.2f} (bar {row['bar']:.2f})" for row in rows)
 
@@ -119,12 +93,12 @@ def kernels(benches):
 
 
 def pair(case):
-    """Errors of place and direction."""
+    """Errors of place and direction, as text."""
     return f"{case['position']:.2g}, {case['direction']:.2g}"
 
 
 def threads(bench):
-    """What a second thread gives."""
+    """The gain from a second thread."""
     own = {(row["scene"], row["kernel"]): row["seconds_per_bounce"] for row in bench["rows"]}
     gains = [own[scene, "llvm"] / own[scene, "llvm, 2 threads"] for scene in SCENES]
     return f"Two threads are {min(gains):.2f} to {max(gains):.2f} times as fast as one."
@@ -142,7 +116,7 @@ def questions(document, rows):
 
 
 def doubles(rows):
-    """The finest answer in float64, and the quickest way that comes within a digit of it."""
+    """The most exact answer in float64, and the fastest within a digit of it."""
     own = [row for row in rows if row.arithmetic == "float64" and not row.textbook and row.error is not None]
     if not own:
         return ""
@@ -152,13 +126,13 @@ def doubles(rows):
 
 
 def proved(rows):
-    """The time that many digits and their proof take."""
+    """The shortest time in which a method of ours gives `MANY` digits with their proof; empty if none does."""
     own = [row.seconds for row in rows if row.proved and row.digits == MANY and row.error is not None]
     return duration(min(own)) if own else ""
 
 
 def usual_way(rows):
-    """The best of the usual ways beside the quickest of ours that is no worse."""
+    """Text: the most exact usual method, its error, and its time relative to our fastest method as exact."""
     found = [row for row in rows if row.textbook and row.error is not None]
     if not found:
         return ""
@@ -169,7 +143,7 @@ def usual_way(rows):
 
 
 def broken(rows):
-    """How often a usual way did not keep what its tolerance promised."""
+    """How often a usual method did not keep the error that its tolerance promised."""
     asked = [row for row in rows if row.textbook and row.promise is not None]
     worst = [row for row in asked if row.kept is False]
     ours = [row for row in rows if not row.textbook and row.kept is False]
@@ -182,7 +156,7 @@ def broken(rows):
 
 
 def choice(document, rows):
-    """Which arithmetic is cheapest, by digits, for each question whose setting is digits."""
+    """The cheapest arithmetic by digits, for each question whose setting is digits."""
     lines = []
     for name in document["questions"]:
         known = entries([row for row in rows if row.question == name])
@@ -194,25 +168,25 @@ def choice(document, rows):
 
 
 def step(digits, picked):
-    """From how many digits on, and what."""
+    """Text for one row of the table of choices: from how many digits on an arithmetic is the cheapest, and its name."""
     return f"from {digits} {picked.method}" if digits > 1 else picked.method
 
 
 def verdicts(record):
-    """Cases by method and verdict."""
+    """The number of cases by method and verdict."""
     lines = []
     for kernel in dict.fromkeys(one["kernel"] for one in record):
         own = Counter(one["verdict"] for one in record if one["kernel"] == kernel)
         backward = [float(one["backward"]) for one in record if one["kernel"] == kernel and "backward" in one]
-        lines.append([kernel, *(str(own[v.name] or "") for v in Stability), f"{max(backward, default=0):.2g}"])
-    return table(["method", *(v.name.lower() for v in Stability), "largest backward error"], lines)
+        lines.append([kernel, *(str(own[v.name] or "") for v in StabilityVerdict), f"{max(backward, default=0):.2g}"])
+    return table(["method", *(v.name.lower() for v in StabilityVerdict), "largest backward error"], lines)
 
 
 def exceptions(record):
-    """What is unstable, sensitive or stopped, together where the way out is the same."""
+    """The unstable, sensitive and stopped cases, grouped by workaround."""
     kept = {}
     for one in record:
-        if one["verdict"] != Stability.STABLE.name:
+        if one["verdict"] != StabilityVerdict.STABLE.name:
             kept.setdefault((one["verdict"].lower(), one["instead"]), []).append(one)
     lines = []
     for (verdict, instead), several in kept.items():
@@ -223,7 +197,7 @@ def exceptions(record):
 
 
 def scenes(text):
-    """The line with the fewest operations and the one with the most, of each table."""
+    """For each table the lines with the fewest and the most operations."""
     cells = [
         [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| ")
     ]
@@ -237,13 +211,8 @@ def scenes(text):
     return table(["table", "least operations", "most", "doubles of state", "MB", "ms to the answer"], lines)
 
 
-def mutation(text):
-    """What the page on mutants sums up, a sentence or two for each storey."""
-    return "\n\n".join(line for line in text.splitlines() if re.match(r"`(symbolic|numeric)`: ", line))
-
-
 def fuzz(text, corpus):
-    """What the fuzzer did."""
+    """The result of the fuzzer."""
     runs = re.search(r"([\d,]+) executions take[^:]*: ([^.]*)\.", text)
     return f"{runs[1]} executions, {runs[2]}. The {len(corpus)} texts that reached new code are regression tests"
 
@@ -252,7 +221,10 @@ def page():
     """The text of the page."""
     bench, work = load("benchmarks/records/bench.json"), load("benchmarks/records/work_precision.json")
     other = load("benchmarks/records/bench_avx2.json")
-    record, rows = load("verification/measure/extremes/recorded.json"), [Row.from_dict(row) for row in work["rows"]]
+    record, rows = (
+        load("verification/measure/extremes/recorded.json"),
+        [MethodResult.from_dict(row) for row in work["rows"]],
+    )
     loose = [f"`{name}`" for name, about in work["questions"].items() if not about["certified"]]
     return TEXT.read_text().format(
         machine=footer(bench["machine"]),
@@ -267,7 +239,6 @@ def page():
         own_elsewhere=elsewhere(bench)[0],
         elsewhere="{} (bar {:g})".format(*elsewhere(other)),
         sweeps=sweeps(bench),
-        **spans(bench),
         uncertified=f" (of {', '.join(loose)} a long run)" if loose else "",
         many=MANY,
         questions=questions(work, rows),
@@ -278,7 +249,6 @@ def page():
         verdicts=verdicts(record),
         exceptions=exceptions(record),
         scenes=scenes((ROOT / "docs" / "leave_out.md").read_text().split("## Before")[0]),
-        mutation=mutation((ROOT / "docs" / "mutation.md").read_text()),
         fuzz=fuzz((ROOT / "benchmarks" / "fuzz.py").read_text(), load("tests/symbolic/corpus.json")),
     )
 

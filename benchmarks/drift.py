@@ -1,9 +1,7 @@
-"""Does the conserved product of angular momenta in the elastic ellipse drift, or walk at random?
+"""Drift of the conserved product of angular momenta in the elastic ellipse: `python benchmarks/drift.py [COLLISIONS]`.
 
-    python benchmarks/drift.py [COLLISIONS]
-
-Over `n` collisions of many particles, the mean change of `L1*L2` over `n` is the drift; its standard error
-is the walk's. The product is formed in 80 bits from the kernel's state, so that only the map rounds.
+Over `n` collisions of many particles the mean change of `L1*L2` over `n` is the drift; a random walk shows in its
+standard error. The product is formed in 80 bits from the kernel's state, so that only the map rounds.
 """
 
 import sys
@@ -17,13 +15,13 @@ PARTICLES = 2048
 
 
 def say(text):
-    """A line on standard output, at once."""
+    """Prints a line on standard output at once."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 
 
 def product(map, rows):
-    """`L1*L2` about the foci, of the exact particle whose rounded state the rows are."""
+    """The product `L1*L2` about the foci, of the exact particle whose rounded state is in the rows."""
     ux, uy, vx, vy = (row.astype(np.longdouble) for row in rows)
     size = np.hypot(ux, uy)
     ux, uy = ux / size, uy / size

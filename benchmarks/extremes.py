@@ -1,13 +1,13 @@
-"""Every stiff and extreme case by every kernel: writes docs/extremes.md and the record that tests compare.
+"""Runs every stiff and extreme case on every kernel, and writes docs/extremes.md and the record that tests compare.
 
     python benchmarks/extremes.py [--longer] [--check]
     python benchmarks/extremes.py --collisions 1e9 [--particles 256] [--only WORD]
     python benchmarks/extremes.py --page
 
-`--longer` adds what takes a minute, cycles of period 2^8 and 2^12 and a product of 10^4 matrices; the page in the
-repository has it. `--check` writes nothing and says which verdicts differ from the record; the exit code is then 1.
-`--collisions` measures the long orbits alone, so many collisions of all particles together, and keeps their lines
-for the page with the command, each as soon as it is measured. `--page` writes the page again from what is kept.
+`--longer` adds cases that take a minute: cycles of period 2^8 and 2^12 and a product of 10^4 matrices; the page in the
+repository has them. `--check` writes nothing and lists the verdicts that differ from the record; the exit status is
+then 1. `--collisions` measures only the long orbits, with so many collisions in total, and records each as soon as it
+is measured. `--page` writes the page again from the records.
 """
 
 import argparse
@@ -22,7 +22,7 @@ PAGE = Path(__file__).resolve().parent.parent / "docs" / "extremes.md"
 
 
 def found(several):
-    """All rows, with a line on standard error for each."""
+    """All rows; prints a line on standard error for each."""
     made = []
     for group, case, answers in several:
         made.append((group, case, answers))
@@ -31,7 +31,7 @@ def found(several):
 
 
 def moved(now):
-    """The verdicts that are not as recorded."""
+    """The verdicts that differ from the record."""
     kept = {(one["case"], one["kernel"]): one["verdict"] for one in json.loads(RECORD.read_text())}
     return [
         f"{one['case']}, {one['kernel']}: {kept.get((one['case'], one['kernel']), 'new')} -> {one['verdict']}"
@@ -41,12 +41,12 @@ def moved(now):
 
 
 def kept(path, several):
-    """Writes a record, a line for each finding."""
+    """Writes a record, one line for each finding."""
     path.write_text("[\n" + ",\n".join(json.dumps(one) for one in several) + "\n]\n")
 
 
 def long(collisions, particles, only):
-    """The long orbits, each kept as soon as it is measured."""
+    """Measures the long orbits, and records each as soon as it is measured."""
     command = f"python benchmarks/extremes.py --collisions {collisions:.3g} --particles {particles}"
     for one in orbits(collisions, particles):
         if only in one.name:

@@ -1,20 +1,16 @@
-"""What a scene and a question cost before the first bounce, and what is left out: writes docs/leave_out.md.
+"""Measures the cost of a scene and a question before the first bounce, and writes docs/leave_out.md.
 
-    python benchmarks/first_result.py [RUNS]        from the start of a process to its first result, and to its end:
-                                                    warm, and with an empty cache
-    python benchmarks/first_result.py page [RUNS]   the table of docs/leave_out.md
+    python benchmarks/first_result.py [RUNS]
 
-Each line of the table is a fresh process. Operation counts come from the generated text, modules from
-`sys.modules`, memory from `VmHWM` of Linux (getrusage would count the parent's), times are the shortest of some runs.
+Each line of the table is a fresh process. Operation counts come from the generated text, modules from `sys.modules`,
+memory from `VmHWM` of Linux (getrusage would count the parent's), times are the shortest of some runs.
 """
 
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 from numeric import PinballMap
@@ -26,10 +22,6 @@ from verification.measure.work.bench import LAWS
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "leave_out.md"
 TABLES = SCENES | {"stadium": {}}  # and one that is not the paper's, by its name
-ORBITS = {
-    name: f"PinballMap({name!r}, lam=0.95" + "".join(f", {key}={value!r}" for key, value in shape.items()) + ")"
-    for name, shape in TABLES.items()
-}
 QUESTIONS = {"end": {}, "orbit": {"record": True}, "exponents": {"exponents": True}}
 EVERYTHING = KernelSpec(
     "pinball", record=True, exponents=True
@@ -56,58 +48,45 @@ ASKED = {
 PRIVATE = ("_", "cython_runtime", "sitecustomize", "usercustomize")
 WORDS = """# What a scene does not need
 
-Each line is a fresh process that asks one question of one scene, with the kernel in the cache. *Operations* are the
-vector instructions of one bounce, compares and selects included, and *share* is what is left of the kernel that
-does everything for that table: general `lam`, a tangent vector and a record. *State* is the doubles kept for a
-particle. A component index is part of the state of the cuspless table and of the stadium; the others have one component
-and no index. *Modules* are those of `numeric` and the packages beside it (of llvmlite only its version is read).
-*Memory* is the peak of the resident set above that of a process that only imports NumPy, and *time* the processor's
-from NumPy's import to the answer, the shortest of three runs on a busy machine.
+A kernel contains only what its question needs. Each line is a fresh process that asks one question of one scene, with
+the kernel in the cache:
 
-The stadium stands for the tables of `tables.GALLERY`: asked for by name, `PinballMap("stadium", straight=2)`, what its
-kernel is made from is kept like that of the paper's tables. `tables.stadium()` is the exact table, and needs SymPy.
+- *operations*: vector instructions of one bounce, compares and selects included; *share*: their part of the kernel that
+  does everything for that table, with a general contraction, a tangent vector and a record;
+- *state*: doubles kept for a particle; the cuspless table and the stadium have a component index among them;
+- *modules*: those of `numeric`, and the packages beside it (of llvmlite only its version is read);
+- *memory*: the peak of the resident set above that of a process that only imports NumPy; *time*: the processor's
+  from NumPy's import to the answer.
 
-`python benchmarks/first_result.py page` writes this page; `tests/verification/measure/test_leave_out_page.py` holds
-operations, state and modules to their line. The split by kind of instruction is in [kernels.md](kernels.md).
+The stadium stands for the tables of `tables.GALLERY`: by name, as in `PinballMap("stadium", straight=2)`, it needs no
+SymPy; the exact table `tables.stadium()` does.
+
+`python benchmarks/first_result.py` writes this page; `tests/verification/measure/test_leave_out_page.py` compares
+operations, state and modules with it. The split by kind of instruction is in [kernels.md](kernels.md).
 """
-COLD = """
-## Before and after the cache
+COLD = r"""
+## With an empty cache and with a full one
 
-Before anything is on disk the same process compiles the kernel, of what SymPy made of the table: for those with a name
-that comes with the package (`numeric/lowering/shipped.py`), for others it is derived once. Here the question is the
-exponents at `lam` = 19/20; *before* is with an empty cache and *after* with what it left there.
+With an empty cache the same process compiles the kernel. What SymPy derives of a table comes with the package for
+those with a name (`numeric/lowering/shipped.py`); for others it is derived once. The question is the exponents at
+$\lambda = 19/20$; *before* is with an empty cache and *after* with what the first process left there.
 """
 
 
 def environment(folder):
-    """Without what keeps Python from caching its modules, and with a kernel cache of its own."""
+    """The environment without settings that keep Python from caching modules, and with its own kernel cache."""
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     return kept | {"PINBALL_CACHE": folder, "PYTHONPATH": str(ROOT)}
 
 
-def milliseconds(program, runs, folder, before=lambda: None):
-    """From the start of a process to the line that it prints, and to its end: medians over some runs."""
-    times = []
-    for _ in range(runs + 1):
-        before()
-        start = time.perf_counter()
-        with subprocess.Popen([sys.executable, "-c", program], env=environment(folder), stdout=subprocess.PIPE) as made:
-            assert made.stdout is not None
-            assert made.stdout.readline()
-            answered = time.perf_counter() - start
-            assert made.wait() == 0
-        times.append((1e3 * answered, 1e3 * (time.perf_counter() - start)))
-    return [statistics.median(column) for column in zip(*times[1:], strict=True)]
-
-
 def program(name, law, asked):
-    """The text of a process that asks one question of one scene."""
+    """The text of a program that asks one question about one scene."""
     shape = "".join(f", {key}={value!r}" for key, value in TABLES[name].items())
     return PROBE.format(name=name, lam=LAWS[law], shape=shape, asked=ASKED[asked])
 
 
 def probe(text, folder, runs=1, warm=True):
-    """What a process imported, its peak memory in kB and its shortest time in seconds; a first one fills the cache."""
+    """The modules that a process imported, its peak memory in kB and its shortest time, with filled caches."""
     said = []
     for _ in range(runs + warm):
         done = subprocess.run(
@@ -120,7 +99,7 @@ def probe(text, folder, runs=1, warm=True):
 
 
 def counted(name, law, asked):
-    """Operations, the share of the kernel that does everything, and the doubles of a particle's state."""
+    """The number of operations, relative to the kernel with everything, and the doubles of a particle's state."""
     map = PinballMap(name, lam=LAWS[law], **TABLES[name])
     question = KernelSpec(law, **QUESTIONS[asked])
     own, whole = (
@@ -130,14 +109,14 @@ def counted(name, law, asked):
 
 
 def line(name, law, asked, said):
-    """The part of a line that a test can hold: all but memory and time."""
+    """The part of a line that a test can compare: all but memory and time."""
     own, share, state = counted(name, law, asked)
     modules = f"{len(said['own'])}: {', '.join(top for top in said['tops'] if top != 'numeric') or 'none'}"
     return f"| {name} | {law} | {asked} | {own} | {share:.0%} | {state} | {modules} |"
 
 
 def cost(said, alone):
-    """Memory above that of a process that only imports NumPy, and time after that import."""
+    """The memory above that of a process that only imports NumPy, and the time after that import."""
     return f"{(said['peak'] - alone['peak']) / 1024:.1f} | {1e3 * said['spent']:.0f}"
 
 
@@ -167,27 +146,5 @@ def page(runs):
     return "\n".join([*lines, *colds]) + "\n"
 
 
-def main(runs):
-    """The times of the paper's tables, and of the stadium."""
-    with tempfile.TemporaryDirectory() as folder:
-
-        def forget():
-            for path in Path(folder).iterdir():
-                path.unlink()
-
-        sys.stdout.write(f"{'milliseconds':<14}{'first result':>14}{'to the end':>12}{'cold':>9}{'to the end':>12}\n")
-        for name, text in (("interpreter", "print(0)"), ("import numpy", "import numpy; print(0)")):
-            sys.stdout.write("{:<14}{:>14.0f}{:>12.0f}\n".format(name, *milliseconds(text, runs, folder)))
-        for name, map in ORBITS.items():
-            text = f"from numeric import PinballMap; print({map}.orbit(0.3, 0.2, 10).theta[-1])"
-            warm, cold = milliseconds(text, runs, folder), milliseconds(text, max(runs // 3, 3), folder, forget)
-            sys.stdout.write("{:<14}{:>14.0f}{:>12.0f}{:>9.0f}{:>12.0f}\n".format(name, *warm, *cold))
-        sys.stdout.write("Cold: the kernel is compiled; what SymPy makes of these tables comes with the package.\n")
-
-
 if __name__ == "__main__":
-    words = sys.argv[1:]
-    if words[:1] == ["page"]:
-        PAGE.write_text(page(int(words[1]) if len(words) > 1 else 5))
-    else:
-        main(int(words[0]) if words else 25)
+    PAGE.write_text(page(int(sys.argv[1]) if len(sys.argv) > 1 else 5))

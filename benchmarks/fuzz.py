@@ -1,10 +1,10 @@
-"""Coverage-guided fuzzing of everything that reads what a user types: `fuzz.py [EXECUTIONS] [CORPUS]`.
+"""Coverage-guided fuzzing of the parsers of user input: `fuzz.py [EXECUTIONS] [CORPUS]`.
 
-atheris (libFuzzer) makes up bytes; half of them are read as text, half as indices of words of the grammar. Each text
-goes to the formula parser, the number parser, a scene and a start. Whatever they do not accept must be a `ValueError`
-of one line; a hang of more than 20 seconds, another exception, or text that is compiled or run is a crash, which
-libFuzzer writes to a file. Texts that reached new code stay in CORPUS; those of one run are kept as regression tests
-in `tests/symbolic/corpus.json`. 300,000 executions take about 8 minutes: no crash, no hang, nothing executed.
+atheris (libFuzzer) generates bytes; half of them are read as text, half as indices of words of the grammar. Each text
+goes to the formula parser, the number parser, a scene and a start. A refusal must be a `ValueError` of one line; a hang
+of more than 20 seconds, another exception, or text that is compiled or run is a crash, which libFuzzer writes to a
+file. Texts that reach new code stay in CORPUS; those of one run are regression tests in `tests/symbolic/corpus.json`.
+300,000 executions take about 8 minutes: no crash, no hang, nothing executed.
 """
 
 import sys
@@ -24,20 +24,20 @@ reading = False
 
 
 def watch(event: str, arguments: tuple[object, ...]) -> None:
-    """Called by Python on whatever a program might do behind one's back."""
+    """An audit hook: fails when the program compiles, executes or opens anything."""
     if reading and event in FORBIDDEN and not (event == "compile" and arguments[0] is None):
         raise SystemExit(f"while text was read: {event} {arguments!r:.200}")
 
 
 def text_of(data: bytes) -> str:
-    """Bytes as text, or as words of the grammar."""
+    """The bytes as text, or as words of the grammar."""
     if data[:1] < b"\x80":
         return data[1:].decode("utf-8", errors="surrogateescape")
     return "".join(WORDS[byte % len(WORDS)] for byte in data[1:])
 
 
 def read(data: bytes) -> None:
-    """One execution."""
+    """One execution: parses the text of the bytes in each way."""
     global reading
     text = text_of(data)
     readers = (
@@ -60,7 +60,7 @@ def read(data: bytes) -> None:
 
 
 def main() -> None:
-    """Runs libFuzzer; its own options may follow."""
+    """Runs libFuzzer, whose own options may follow on the command line."""
     executions, *rest = sys.argv[1:] or ["100000"]
     options = [sys.argv[0], f"-runs={executions}", "-timeout=20", "-max_len=200", "-rss_limit_mb=4096", *rest]
     parse("sqrt(2)*cos(theta)**2 + exp(theta)/3 + atan(theta) - log(2)")  # what SymPy imports late is imported now

@@ -1,10 +1,10 @@
-"""What judging each claim takes, and which claims share results: the record by which `pinball verify` shares out work.
+"""Records the time to judge each claim, and which claims share results, for the scheduling of `pinball verify`.
 
     python benchmarks/judges.py          # five minutes; writes verification/paper/claims/focusing/seconds.json
     python benchmarks/judges.py --jobs 4 # reads it: how long so many processes need, by the record
 
-The claims are judged one after the other in one process, and every function of the package that keeps its results
-notes which claim computed one and which took it from there: what the first spared the other.
+The claims are judged in turn in one process, and every caching function of the package notes which claim computed a
+result and which reused it: the time that the first saved the other.
 """
 
 import functools
@@ -28,7 +28,7 @@ taken: dict[tuple[str, str], float] = {}  # what a claim was saved by another
 
 
 def noting(function: Callable[..., Any]) -> Callable[..., Any]:
-    """As `functools.cache`, with notes of who computed what."""
+    """As `functools.cache`, with notes of the claims that compute and reuse results."""
     name = f"{function.__module__}.{function.__qualname__}"
     kept: dict[Any, tuple[Any, str, float]] = {}  # a result, the claim that computed it, and how long that took
 
@@ -50,7 +50,7 @@ def noting(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def note_all() -> None:
-    """From here on what the package's modules cache is noted; call it before they are imported."""
+    """Makes the caches of the package's modules take notes; call it before they are imported."""
     cache, lru_cache = functools.cache, functools.lru_cache
 
     def noted(function: Any) -> Any:
@@ -66,7 +66,7 @@ def note_all() -> None:
 
 
 def spared() -> dict[str, dict[str, float]]:
-    """By claim, the seconds that it saved each other one, where that was more than `WORTH`."""
+    """For each claim the seconds that it saved each other one, where that was more than `WORTH`."""
     found: dict[str, dict[str, float]] = {}
     for (first, other), seconds in sorted(taken.items()):
         if round(seconds, DIGITS) > WORTH:
@@ -75,7 +75,7 @@ def spared() -> dict[str, dict[str, float]]:
 
 
 def measure() -> None:
-    """Judges everything, and writes the record."""
+    """Judges all claims and writes the record."""
     global judged
     note_all()
     report = import_module("verification.paper.report.report")
@@ -95,7 +95,7 @@ def measure() -> None:
 
 
 def shown(jobs: int) -> None:
-    """How long `jobs` processes need, dearest group first, beside an even share of the work."""
+    """The time that `jobs` processes need, most expensive group first, compared with an even share of the work."""
     report = import_module("verification.paper.report.report")
     groups = report.shared_out(report.catalogue(), jobs)
     ends = [0.0] * jobs

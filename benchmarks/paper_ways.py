@@ -1,7 +1,7 @@
-"""The paper's own ways to follow a particle, as a reader of its appendix would write them: floats, and no tricks.
+"""Baseline: the paper's own methods to follow a particle, as a reader of its appendix would write them, in floats.
 
-Ellipse: the quadratic. Cardioid: the cubic of [BackerDullin1997]. Cuspless: the same, cut off at the
-wall. Egg: Newton-Raphson along the ray. Each takes and returns `(component, theta, phi)`.
+Ellipse: the quadratic. Cardioid: the cubic of [BackerDullin1997]. Cuspless: the same, cut off at the wall. Egg:
+Newton-Raphson along the ray. Each takes and returns `(component, theta, phi)`.
 """
 
 import math
@@ -10,7 +10,7 @@ import numpy as np
 
 
 def leave(tangent, phi):
-    """The direction of exit angle `phi` from a boundary of unit tangent `tangent`."""
+    """The direction of the exit angle `phi` from a boundary with unit tangent `tangent`."""
     (tx, ty), c, s = tangent, math.cos(phi), math.sin(phi)
     return s * tx - c * ty, s * ty + c * tx
 
@@ -32,7 +32,7 @@ def circle(component, theta, phi, lam):
 
 
 def ellipse(component, theta, phi, lam, a):
-    """The far zero of the quadratic that the line makes of `(x/a)**2 + y**2 = 1`."""
+    """The far zero of the quadratic of the ray in `(x/a)**2 + y**2 = 1`."""
     x, y = a * math.cos(theta), math.sin(theta)
     v = leave(unit(-a * math.sin(theta), math.cos(theta)), phi)
     t = -2 * (x * v[0] / a**2 + y * v[1]) / (v[0] ** 2 / a**2 + v[1] ** 2)
@@ -46,7 +46,7 @@ def cardioid_tangent(theta):
 
 
 def cardioid(component, theta, phi, lam, reach=math.pi):
-    """The cubic in `tan(theta1/2)` through `numpy.roots`; of its real zeros ahead, the nearest."""
+    """The nearest real zero ahead of the cubic in `tan(theta1/2)`, by `numpy.roots`."""
     v = leave(cardioid_tangent(theta), phi)
     r = 1 + math.cos(theta)
     x, y = r * math.cos(theta), r * math.sin(theta)
@@ -91,7 +91,7 @@ def cuspless(component, theta, phi, lam):
 
 
 def egg(component, theta, phi, lam, alpha):
-    """Newton-Raphson for the length of the flight, from the length in the unit circle."""
+    """Newton-Raphson for the length of the flight, from its length in the unit circle."""
     rho = 1 + alpha * math.cos(3 * theta)
     slope = -3 * alpha * math.sin(3 * theta)
 

@@ -1,4 +1,4 @@
-"""Chaos in the egg below alpha = 0.06, where the paper found none: a fine search, and long runs at what it finds.
+"""A search for chaos in the egg below alpha = 0.06, where the paper found none, with long runs where it finds any.
 
 python benchmarks/parameter_space.py [--quick]
 
@@ -25,13 +25,13 @@ TRANSIENT = 200_000
 
 
 def search(shape, lams, starts, bounces, transient):
-    """The contractions at which some particle is chaotic, and how many of the particles."""
+    """The contractions at which some particle is chaotic, and the number of such particles."""
     found = run(parameter_space(np.array([shape]), lams, starts, bounces, transient, seed=SEED)).chaotic.values[0]
     return {float(lams[j]): int(found[j]) for j in np.nonzero(found)[0]}
 
 
 def follow(shape, lam, transient):
-    """The share of chaotic particles, how many of those still are after a long run, and their exponent."""
+    """The share of chaotic particles, the share that stays chaotic in a long run, and their exponent."""
     map = map_of(egg(3, shape), lam)
     first = measured(map, interior_starts(map, PARTICLES, SEED), 4000, transient)
     on = np.nonzero(first.chaotic)[0]
@@ -44,7 +44,7 @@ def follow(shape, lam, transient):
 
 
 def reported(shape, lams, starts, bounces, transient):
-    """One line for a shape, at the contraction where most particles were chaotic."""
+    """The line for a shape, at the contraction with the most chaotic particles."""
     found = search(shape, lams, starts, bounces, transient)
     said = "none"
     if found:

@@ -1,4 +1,4 @@
-"""Baseline: one particle at a time in numba, with angles, libm and Newton; what one writes in numba first."""
+"""Baseline: one particle at a time in numba, with angles, libm and Newton's method, as one would first write it."""
 
 import math
 
@@ -18,7 +18,7 @@ def _wrapped(theta):
 
 @njit
 def _incidence(psi, tangent):
-    """The incidence as an angle: both directions are known as angles already."""
+    """The angle of incidence, from both directions, which are known as angles."""
     return _wrapped(psi - tangent + math.pi / 2)
 
 
@@ -42,7 +42,7 @@ def ellipse(theta, phi, lam, bounces, a):
 
 
 def _egg(law):
-    """The egg, with a law that gives the exit angle."""
+    """The next bounce on the egg, with a law that gives the exit angle."""
 
     @njit
     def bounce(theta, phi, lam, bounces, alpha):
@@ -176,7 +176,7 @@ def cuspless(theta, phi, lam, bounces, a):
 
 
 def _polar(radius):
-    """A table `r(theta)`: sixty steps along the ray's polar angle, the first change of sign, bisection and Newton."""
+    """The next bounce on a table `r(theta)`: first change of sign in sixty steps, bisection and Newton."""
 
     @njit
     def bounce(theta, phi, lam, bounces, a):
@@ -255,10 +255,10 @@ def every(step, theta, phi, lam, bounces, a):
 
 
 def numbers(table):
-    """A table of pieces as one row for each: kind, ends, and four numbers of `x` and of `y`.
+    """A table of pieces with one row for each: kind, ends, and four numbers of `x` and of `y`.
 
-    A side and a cubic are polynomials, of kinds 0 and 2; an arc of a circle, of kind 1, is
-    `(x0 + x1*cos(theta), y0 + y1*sin(theta))`.
+    Sides and cubics are polynomials, of kinds 0 and 2; an arc of a circle, of kind 1, is `(x0 + x1*cos(theta), y0 +
+    y1*sin(theta))`.
     """
     rows = []
     for part in table.components:
@@ -275,7 +275,7 @@ def numbers(table):
 
 @njit
 def _side(row, x, y, vx, vy):
-    """Parameter and length of the flight to a side; where it is missed the length is infinite."""
+    """The parameter and the length of the flight to a side; the length is infinite where it is missed."""
     across = vx * row[8] - vy * row[4]
     if across == 0:
         return 0.0, math.inf
@@ -288,7 +288,7 @@ def _side(row, x, y, vx, vy):
 
 @njit
 def _circle(row, x, y, vx, vy, leaves):
-    """The same to an arc of a circle: the nearer of the two places, of those on the arc."""
+    """The same for an arc of a circle: the nearer of the two intersections, among those on the arc."""
     ex, ey = x - row[3], y - row[7]
     half = ex * vx + ey * vy
     inside = half * half - (ex * ex + ey * ey - row[4] * row[4])
@@ -308,7 +308,7 @@ def _circle(row, x, y, vx, vy, leaves):
 
 @njit
 def _cubic(row, x, y, vx, vy, leaves, theta):
-    """The same to a cubic: cut where its distance from the line turns; in each part bisection and Newton."""
+    """The same for a cubic: split where its distance from the line is extremal; bisection and Newton in each part."""
     c0, c1 = vx * (row[7] - y) - vy * (row[3] - x), vx * row[8] - vy * row[4]
     c2, c3 = vx * row[9] - vy * row[5], vx * row[10] - vy * row[6]
     if leaves:  # the zero that is known is divided out
@@ -363,7 +363,7 @@ def _frame(row, theta):
 
 @njit
 def every_on_pieces(rows, component, theta, phi, lam, bounces):
-    """Particles on a table of pieces: each flight tries all of them and keeps the nearest hit."""
+    """Particles on a table of pieces: each flight tries all pieces and keeps the nearest hit."""
     for i in range(theta.size):
         k, at, out = component[i], theta[i], phi[i]
         for _ in range(bounces):

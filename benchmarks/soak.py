@@ -1,7 +1,4 @@
-"""Many collisions on every table: none outside, none lost.
-
-python benchmarks/soak.py [COLLISIONS]
-"""
+"""Many collisions on every table, none outside and none lost: `python benchmarks/soak.py [COLLISIONS]`."""
 
 import sys
 import time
@@ -17,7 +14,7 @@ PARTICLES, PART = 8192, 2000
 
 
 def say(text):
-    """A line on standard output, at once."""
+    """Prints a line on standard output at once."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 

@@ -1,8 +1,7 @@
-"""The ways that readers of the paper would write first: brentq, numpy.roots, lambdify, differences, single shooting.
+"""Baselines of `pinball work`: methods that readers of the paper would write first, in plain SciPy and NumPy.
 
-Plain SciPy and NumPy in float64, no tricks, one function for each way; `map` is a compiled map with `step` and `orbit`,
-so that what is compared is the way and not the step. They are the baselines of `pinball work`, and agree with it as
-far as float64 lets them.
+They use brentq, numpy.roots, lambdify, differences and single shooting, one function for each method. `map` is a
+compiled map with `step` and `orbit`, so that the method is compared and not the step.
 """
 
 import math
@@ -17,7 +16,7 @@ from sympy import lambdify
 
 
 def egg_by_brentq(component, theta, phi, lam, alpha, xtol):
-    """One bounce on the egg: `brentq` for the length of the flight, inside and outside told by the radius."""
+    """One bounce on the egg: `brentq` for the length of the flight, with inside and outside by the radius."""
 
     def tangent(at):
         r, d = 1 + alpha * math.cos(3 * at), -3 * alpha * math.sin(3 * at)
@@ -42,7 +41,7 @@ def egg_by_brentq(component, theta, phi, lam, alpha, xtol):
 
 
 def moved(step, speed, particle, ds, dphi):
-    """Arc length (to first order about the landing) and exit angle after a step from a neighbour."""
+    """Arc length (to first order about the landing) and exit angle after a step from a neighbouring point."""
     zero = np.zeros(1, dtype=int)
     theta = particle[0] + ds / float(speed(zero, np.array([particle[0]]))[0])
     landed = step(theta, particle[1] + dphi)
@@ -50,7 +49,7 @@ def moved(step, speed, particle, ds, dphi):
 
 
 def differences(step, speed, particle, one, other):
-    """The matrix from the differences of neighbours, each given as a factor of `(ds, dphi)`."""
+    """The derivative matrix from differences of neighbours, each given as a factor of `(ds, dphi)`."""
     columns = []
     here = step(*particle)
     rate = float(speed(np.zeros(1, dtype=int), np.array([float(here.theta)]))[0])
@@ -62,17 +61,17 @@ def differences(step, speed, particle, one, other):
 
 
 def forward(step, speed, particle, h):
-    """Forward differences."""
+    """The derivative matrix by forward differences."""
     return differences(step, speed, particle, h, 0.0)
 
 
 def central(step, speed, particle, h):
-    """Central differences."""
+    """The derivative matrix by central differences."""
     return differences(step, speed, particle, h, -h)
 
 
 class Lambdified:
-    """`sympy.lambdify` of the chord's angle and of the matrix; `brentq` for the landing."""
+    """One step with `sympy.lambdify` of the chord's angle and of the matrix, and `brentq` for the landing."""
 
     def __init__(self, ends, angle, entries):
         self.angle = lambdify(ends, angle, "math", cse=True)
@@ -127,7 +126,7 @@ def largest_multiplier(map, x, period, h=1e-6):
 
 
 def flip(map_at, start, period, low, high, xtol):
-    """Where the multiplier of a followed cycle is -1: `brentq` over the contraction, shooting within."""
+    """The contraction at which the multiplier of a followed cycle is -1: `brentq`, with shooting inside."""
 
     def over(lam):
         map = map_at(lam)
@@ -138,7 +137,7 @@ def flip(map_at, start, period, low, high, xtol):
 
 
 def period_of(map, start, bounces, longest, same=1e-6):
-    """The period of the cycle that a particle has settled on after so many bounces."""
+    """The period of the cycle on which a particle is after so many bounces."""
     theta, phi = iterated(map, *start, bounces)
     orbit = map.orbit(theta, phi, longest)
     for period in range(1, longest + 1):
@@ -148,7 +147,7 @@ def period_of(map, start, bounces, longest, same=1e-6):
 
 
 def doubling_seen(map_at, start, period, low, high, bounces):
-    """Where a settled particle's period first exceeds `period`: bisection, as one reads it off a diagram."""
+    """The contraction at which a particle's period first exceeds `period`, by bisection, as read off a diagram."""
     while high - low > 1e-12:
         middle = (low + high) / 2
         if period_of(map_at(middle), start, bounces, 2 * period) > period:
@@ -159,7 +158,7 @@ def doubling_seen(map_at, start, period, low, high, bounces):
 
 
 def fold_seen(map_at, start, period, low, high, xtol):
-    """Where shooting no longer finds the cycle, walking from above: bisection on success."""
+    """The contraction below which shooting no longer finds the cycle, by bisection on success."""
     x = np.array(start, dtype=float)
     while high - low > xtol:
         middle = (low + high) / 2
@@ -176,7 +175,7 @@ def fold_seen(map_at, start, period, low, high, xtol):
 
 
 def corner_by_brentq(xtol):
-    """`lambda*`: for each contraction a particle from the corner is followed for two bounces on the cardioid's arc."""
+    """The value `lambda*`: a particle from the corner is followed for two bounces on the cardioid's arc."""
     join = 2 * math.pi / 3
 
     def point(at):
@@ -224,7 +223,7 @@ def corner_by_findroot(digits):
 
 
 def two_particles(step, particle, bounces, apart=1e-8):
-    """The largest exponent, of a neighbour put back to its distance after each bounce [BenettinGalganiStrelcyn1976]."""
+    """The largest exponent, by a neighbour rescaled after each bounce [BenettinGalganiStrelcyn1976]."""
     theta, phi = particle
     near_theta, near_phi, total = theta + apart, phi, 0.0
     for _ in range(bounces):
@@ -254,24 +253,24 @@ def by_qr(step, derivative, particle, bounces):
 
 
 def length_by_quad(speed, theta, epsabs):
-    """`scipy.integrate.quad` over the speed."""
+    """The length of the boundary by `scipy.integrate.quad` of the speed."""
     return quad(speed, 0.0, theta, epsabs=epsabs, epsrel=epsabs, limit=200)[0]
 
 
 def length_by_sums(speed, theta, points):
-    """Cumulated trapezia on a grid over the whole boundary, and interpolation."""
+    """Arc length by cumulative trapezoids on a grid over the whole boundary, and interpolation."""
     grid = np.linspace(-math.pi, math.pi, points)
     sums = cumulative_trapezoid(speed(grid), grid, initial=0.0)
     return float(np.interp(theta, grid, sums) - np.interp(0.0, grid, sums))
 
 
 def parameter_by_brentq(speed, s, xtol):
-    """The parameter at arc length `s`: `brentq` over `quad`."""
+    """The parameter at arc length `s`, by `brentq` over `quad`."""
     return brentq(lambda at: quad(speed, 0.0, at, epsabs=1e-13, epsrel=1e-13)[0] - s, -math.pi, math.pi, xtol=xtol)
 
 
 def parameter_by_sums(speed, s, points):
-    """The same by interpolation in cumulated trapezia."""
+    """The same by interpolation in cumulative trapezoids."""
     grid = np.linspace(-math.pi, math.pi, points)
     sums = cumulative_trapezoid(speed(grid), grid, initial=0.0)
     return float(np.interp(s + np.interp(0.0, grid, sums), sums, grid))
@@ -308,7 +307,7 @@ BRACKET = (1.4, 1.53, 1.65)
 
 
 def critical_by_roots():
-    """The zero of that polynomial next to `NEAR`, by `numpy.roots`."""
+    """The zero of the polynomial next to `NEAR`, by `numpy.roots`."""
     roots = np.roots(CRITICAL)
     real = roots[np.abs(roots.imag) < 1e-3].real
     return float(real[np.argmin(np.abs(real - NEAR))])

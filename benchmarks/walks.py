@@ -1,8 +1,7 @@
-"""Which files of the package three questions pass through: `python benchmarks/walks.py [--files]`.
+"""Lists the files of the package whose functions run for three questions: `python benchmarks/walks.py [--files]`.
 
-A file counts when one of its functions runs; what runs while a module is imported does not. Each walk is walked twice,
-by a process of its own each time: first with nothing kept on disk, then with what the first has kept. `--files` names
-the files in the order in which they are entered.
+Code that runs while a module is imported does not count. Each question is asked twice, each time in a new process:
+first with empty caches, then with the filled ones. `--files` prints the files in the order in which they are entered.
 """
 
 import contextlib
@@ -28,7 +27,7 @@ WALKS = {
 
 
 def entered(command: str) -> tuple[list[str], int]:
-    """The files whose functions run, in the order in which they are entered, and the exit status of the command."""
+    """The files whose functions run, in order, and the exit status of the command."""
     from verification.app import cli
 
     found: dict[str, None] = {}
@@ -51,7 +50,7 @@ def entered(command: str) -> tuple[list[str], int]:
 
 
 def walked(command: str) -> tuple[list[str], list[str]]:
-    """The files on the way with nothing kept, and with what is kept then."""
+    """The files used with empty caches, and with filled ones."""
     with tempfile.TemporaryDirectory() as folder:
         call = [sys.executable, __file__, "--walk", command.format(folder=folder)]
         kept = os.environ | {"PINBALL_CACHE": folder}
@@ -66,7 +65,7 @@ def walked(command: str) -> tuple[list[str], list[str]]:
 @click.option("--files", is_flag=True, help="Name the files.")
 @click.option("--walk", "command", help="The files of one command, as JSON, with what is kept now.")
 def main(files: bool, command: str | None) -> None:
-    """Which files three questions pass through."""
+    """Prints the files of three questions."""
     if command is not None:
         found, status = entered(command)
         click.echo(json.dumps(found))

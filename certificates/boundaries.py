@@ -1,18 +1,22 @@
-"""Boundaries and laws of one's own, for `check.py`: pieces, periods, symmetry and marks, from their formulas alone.
+"""User-defined boundaries and laws, for `check.py`: their pieces, periods, symmetry and marks, from the formulas alone.
 
-A formula is a tree, as `check.parse` makes it. What is asked of one is seen in its nodes, or refused.
+A formula is a syntax tree from `check.parse`. A property is proved from the nodes of the tree, or the document is
+refused.
 """
 
 import ast
 from fractions import Fraction
 
-from check import I, Unproved, Wrong, beside, evaluate, need, parse, pi
+from check import I, Wrong, beside, evaluate, need, parse, pi
+from identity import atom, exact, function
+from identity import plus as added
+from identity import times as multiplied
 
-ODD, EVEN = ("sin", "tan", "sinh", "tanh", "atan"), ("cos", "cosh", "abs", "Abs")  # as functions
+ODD, EVEN = ("sin", "tan", "sinh", "tanh", "atan"), ("cos", "cosh", "abs", "Abs")  # odd and even functions
 
 
 def parity(node):
-    """1 of a formula that theta -> -theta, eta -> -eta leaves as it is, -1 of one whose sign it turns, 0 of others."""
+    """1 for a formula that is even under theta -> -theta, eta -> -eta, -1 for an odd one, 0 for others."""
     if isinstance(node, ast.Constant):
         return 1
     if isinstance(node, ast.Name):
@@ -33,14 +37,14 @@ def parity(node):
 
 
 def symmetric(table, parts):
-    """Is each of these components its own image under theta -> -theta, and the law its own under both signs?"""
-    wanted = {1: [1], 2: [1, -1]}  # of the radius; of x and y
+    """True if each of these components is its own image under theta -> -theta, and the law is odd in both signs."""
+    wanted = {1: [1], 2: [1, -1]}  # parities of the radius; of x and y
     even = all([parity(node) for node in table.parts[k][:-2]] == wanted[len(table.parts[k]) - 2] for k in parts)
     return even and (table.law is None or parity(table.law) == -1)
 
 
 def linear(node):
-    """The coefficients of a sum of letters and `pi` times fractions, the constant under no name; None of another."""
+    """The coefficients of a sum of letters and `pi` times fractions, the constant as ""; None for other formulas."""
     if isinstance(node, ast.Constant | ast.Name):
         return {"": node.value} if isinstance(node, ast.Constant) else {node.id: Fraction(1)}
     if isinstance(node, ast.UnaryOp):
@@ -56,7 +60,7 @@ def linear(node):
 
 
 def times(x, y):
-    """The product of two such sums where one of them is a fraction."""
+    """The product of two such sums, if one of them is a fraction."""
     if x is None or {*x} <= {""}:
         x, y = y, x
     return x and y and ({k: v * y[""] for k, v in x.items()} if {*y} == {""} else None)
@@ -72,7 +76,7 @@ def has_theta(node):
 
 
 def slope(node):
-    """The fraction that theta has in a formula that is else free of it; None of one that is not of this form."""
+    """The coefficient of theta in a formula that is linear in theta and free of it otherwise; None for others."""
     if not has_theta(node):
         return Fraction(0)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
@@ -82,7 +86,7 @@ def slope(node):
 
 
 def periodic(node):
-    """Does theta stand only in sines, cosines and tangents of whole numbers times theta, and of what has none?"""
+    """True if theta occurs only in sines, cosines and tangents of whole multiples of theta plus constants."""
     if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("sin", "cos", "tan"):
         rate = slope(node.args[0])
         if rate is not None and rate.denominator == 1:
@@ -93,13 +97,13 @@ def periodic(node):
 
 
 def closed(part):
-    """Is a component a curve that comes round after 2*pi, from its formulas and its ends?"""
+    """True if a component is a closed curve of period 2*pi, from its formulas and its ends."""
     *formulas, start, end = part
     return linear(ast.BinOp(end, ast.Sub(), start)) == {"pi": 2} and all(map(periodic, formulas))
 
 
 def called_by(way, said):
-    """A boundary in words."""
+    """A boundary in words, as in titles of documents."""
     return {
         "polar": lambda: f"polar {said}",
         "parametric": lambda: f"parametric {'; '.join(said)}",
@@ -108,120 +112,88 @@ def called_by(way, said):
 
 
 def pieces(way, said):
-    """The components of a boundary: formulas of each, and the ends of theta."""
+    """The components of a boundary: the formulas of each, and the ends of theta."""
     if way == "component":
         return [[entry[key] for key in ("x", "y", "from", "to")] for entry in said]
     return [[said, "-pi", "pi"]] if way == "polar" else [[*said, "-pi", "pi"]]
 
 
-def own(table, way, scene):
-    """Which components are closed, and where the map is undefined; a radius is positive where nothing is marked.
+def own(table, way, scene, span):
+    """The closed components, and the points where the map is undefined; proves that the boundary bounds a table.
 
-    Where a law has theta, and not its period, a bounce lies between the ends."""
+    For a letter with a range, `span`, this is proved for the whole range. A law that is not periodic in theta holds for
+    bounces between the ends only.
+    """
     length = table.law and any(getattr(node, "id", "") == "s" for node in ast.walk(table.law))
     need(not length, "scene: a law with s, arc length as an integral, is read by `pinball check` alone", Wrong)
     if way != "table":
-        table.turns = [beside("curves").inside]
+        shape = scene.get("shape", {})
+        letters(table, shape)
+        known = {name: exact(parse(text), {})[0] for name, text in shape.items() if name != span}
         table.closed = list(map(closed, table.parts))
-        table.curves = joined(table, scene)
+        table.curves = joined(table, known)
         table.marks = [marked(table, mark) for mark in scene.get("undefined", [])]
-        if way == "polar" and not table.marks:
-            positive(table)
+        cusps = cusped(table, scene.get("undefined", []), known) if way == "polar" else []
+        beside("curves").outline(table, span, cusps)
     if table.law and not periodic(table.law):
         table.closed = [False] * len(table.parts)
 
 
-def fraction(node, names):
-    """The value of a formula of fractions, sums, products and whole powers; None of another."""
-    if isinstance(node, ast.Constant | ast.Name):
-        return node.value if isinstance(node, ast.Constant) else names.get(node.id)
-    parts = [getattr(node, key) for key in ("operand", "left", "right") if hasattr(node, key)]
-    found = [fraction(part, names) for part in parts]
-    if not found or None in found:
-        return None
-    x, y, op = found[0], found[-1], type(node.op)
-    if op in (ast.USub, ast.UAdd, ast.Add, ast.Sub, ast.Mult):
-        return {ast.USub: -x, ast.UAdd: x, ast.Add: x + y, ast.Sub: x - y, ast.Mult: x * y}[op]
-    if op is ast.Div:
-        return x / y if y else None
-    bits = x.numerator.bit_length() + x.denominator.bit_length()
-    fit = op is ast.Pow and y.denominator == 1 and bits * abs(y) < 10**6 and (x or y > 0)
-    return x ** int(y) if fit else None
-
-
-def number(node, names, p):
-    """The value of a formula: as a fraction where it is one, else as an interval."""
-    found = fraction(node, {name: x for name, x in names.items() if isinstance(x, Fraction)})
-    letters = {name: I.of(x, p) for name, x in names.items()}
-    return I.of(evaluate(node, letters, p)[0], p) if found is None else found
-
-
-def settings(scene, p):
-    """The numbers of a scene's parameters: nine times, from end to end, where one has a range."""
-    ends = {name: text.partition("..") for name, text in scene.get("shape", {}).items()}
-    ends = {name: [number(parse(at[k] or at[0]), {}, p) for k in (0, 2)] for name, at in ends.items()}
-    shares = [Fraction(k, 8) for k in range(9 if ".." in "".join(scene.get("shape", {}).values()) else 1)]
-    return [{name: low + (high - low) * share for name, (low, high) in ends.items()} for share in shares]
-
-
-def joined(table, scene):
-    """Refuses a piece that does not run forward, and pieces that are no closed curves, one after the other.
-
-    A curve goes on where the next piece begins at a piece's end, and else has to be back where it began."""
-    p, cases, known = table.p, settings(scene, table.p), {*scene.get("shape", {}), "theta", "pi", "E"}
+def letters(table, shape):
+    """Refuses a formula with a letter without number or range, and a letter that no formula has."""
     for k, part in enumerate(table.parts, 1):
-        nodes = [node for tree in part for node in ast.walk(tree)]
-        called = {getattr(node.func, "id", "") for node in nodes if isinstance(node, ast.Call)}
-        words = {node.id for node in nodes if isinstance(node, ast.Name)} - called
-        need(words <= known, f"scene: piece {k} has a letter without a number or a range", Wrong)
-        for here, there in zip(cases, cases[1:] or cases, strict=False):
-            names = {name: I.of(x, p).hull(I.of(there[name], p)) for name, x in here.items()}
-            low, high = (number(node, names, p) for node in part[-2:])
-            need(I.of(high - low, p) > 0, f"scene: piece {k} does not run forward, from less to more", Wrong)
-    for names in cases:
-        tips, first, curves = [[tip(part, end, names, p) for end in part[-2:]] for part in table.parts], 0, []
-        for k, (_, last) in enumerate(tips, 1):
-            if k == len(tips) or not meet(last, tips[k][0], p):
-                back = meet(last, tips[first][0], p)
-                need(back, f"scene: the boundary is not closed: piece {k} ends where no other begins", Wrong)
-                curves, first = [*curves, range(first, k)], k
+        need(
+            words(part) <= {*shape, "theta", "pi", "E"},
+            f"scene: piece {k} has a letter without a number or a range",
+            Wrong,
+        )
+    used = words([*(tree for part in table.parts for tree in part), *([table.law] if table.law else [])])
+    need({*shape} <= used, "scene: the table has other letters, and so has the law", Wrong)
+
+
+def words(trees):
+    """The letters of formulas."""
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    called = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+    return {node.id for node in nodes if isinstance(node, ast.Name) and id(node) not in called}
+
+
+def joined(table, known):
+    """The closed curves of a boundary, each a range of pieces whose ends are proved to be the same points.
+
+    A curve continues where the next piece begins at the end of a piece, and must otherwise be closed.
+    """
+    tips, first, curves = [[tip(part, end, known) for end in part[-2:]] for part in table.parts], 0, []
+    for k, (_, last) in enumerate(tips, 1):
+        if k == len(tips) or last != tips[k][0]:
+            back = last == tips[first][0] or (first == k - 1 and table.closed[first])
+            need(back, f"scene: the boundary is not closed: piece {k} is not seen to end where another begins", Wrong)
+            curves, first = [*curves, range(first, k)], k
     return curves
 
 
-def tip(part, end, names, p):
-    """The point at an end of a piece."""
-    at = names | {"theta": number(end, names, p)}
-    found = [number(node, at, p) for node in part[:-2]]
-    if len(found) > 1:
-        return found
-    s, c = I.of(at["theta"], p).sin_cos()
-    return c * found[0], s * found[0]
+def tip(part, end, known):
+    """The point at an end of a piece, as sums in the letters without numbers."""
+    at = known | {"theta": exact(end, known)[0]}
+    found = [exact(node, at)[0] for node in part[:-2]]
+    return found if len(found) > 1 else [multiplied(found[0], function(name, at["theta"])) for name in ("cos", "sin")]
 
 
-def meet(one, other, p):
-    """Are two points the same: exactly where they are fractions, and else as far as intervals see?"""
-    gaps = [x - y for x, y in zip(one, other, strict=True)]
-    return all(not gap if isinstance(gap, Fraction) else 0 in I.of(gap, p) for gap in gaps)
-
-
-def positive(table):
-    """Refuses a radius that may not be, over the range of a free parameter."""
-    queue, spent = [(Fraction(-1), Fraction(1))], 0
-    while queue:
-        a, b = queue.pop()
-        spent += 1
-        need(spent < 500, "scene: the radius may not be positive", Wrong)
-        names = table.letters | {"theta": pi(64) * I.of(a, 64).hull(I.of(b, 64))}
-        try:
-            radius = I.of(evaluate(table.parts[0][0], names, 64)[0], 64)
-            need(radius.hi > 0, "scene: the radius may not be positive", Wrong)
-            queue += [] if radius > 0 else [(a, (a + b) / 2), ((a + b) / 2, b)]
-        except Unproved:  # a formula may have no value on a wide piece
-            queue += [(a, (a + b) / 2), ((a + b) / 2, b)]
+def cusped(table, marks, known):
+    """The marked places, modulo `2*pi`, at which radius and slope are 0: there a radius may vanish."""
+    found = []
+    for (_, place), mark in zip(table.marks, marks, strict=True):
+        theta = exact(parse(mark["theta"]), known)[0]
+        for turn in (-2, 0, 2):
+            at = known | {"theta": added(theta, atom("pi"), turn)}
+            if exact(table.parts[0][0], at) == ({}, {}):
+                found.append((mark["theta"], I.of(place, table.p) + pi(table.p) * turn))
+    need(len({text for text, _ in found}) <= 1, "scene: the radius is 0 at more than one point", Wrong)
+    return [place for _, place in found]
 
 
 def marked(table, mark):
-    """Component and parameter of a point where the map is undefined."""
-    fit = set(mark) == {"name", "component", "theta"} and type(mark["component"]) is int
-    need(fit and 0 <= mark["component"] < len(table.parts), "scene: an undefined point is not understood", Wrong)
+    """The component and parameter of a point where the map is undefined."""
+    fit = 0 <= mark["component"] < len(table.parts)
+    need(fit, "scene: an undefined point is not understood", Wrong)
     return mark["component"], I.of(evaluate(parse(mark["theta"]), table.letters, table.p)[0], table.p)

@@ -1,12 +1,11 @@
-"""A second reader of certificates: `python check.py FILE...`, with nothing but Python's standard library.
+"""An independent checker of certificates: `python check.py FILE...`, with Python's standard library only.
 
-It shares no line with the package that writes them. Numbers are intervals with integers over a power of two for ends;
-the map is formulas in jets (Taylor polynomials). By the interval Newton theorem, where N = m - F'(X)^-1 F(m) is inside
-the box X with middle m, F has one zero in X, it is in N, and F' is regular there: docs/certificate_format.md.
+It shares no code with the package that writes them. Numbers are intervals whose ends are integers over a power of two;
+the map is given by formulas in jets (Taylor polynomials). Interval Newton theorem: if N = m - F'(X)^-1 F(m) lies inside
+the box X with middle m, then F has one zero in X, it is in N, and F' is regular there. See docs/certificate_format.md.
 """
 
 import ast
-import json
 import re
 import sys
 from decimal import Decimal
@@ -16,10 +15,11 @@ from importlib import import_module
 from math import atan, isqrt, prod
 from pathlib import Path
 
-Wrong, Unproved = (type(name, (Exception,), {}) for name in ("Wrong", "Unproved"))  # no certificate; an item fails
+Wrong, Unproved = (type(name, (Exception,), {}) for name in ("Wrong", "Unproved"))  # no certificate; not proved
 value = lambda x: x.c[0] if isinstance(x, Jet) else x
+left = [10**9]  # the remaining steps of formulas for a file
+parse = lambda text: beside("entries").parse(text)  # the tree of a formula
 pi = cache(lambda p: I.of(I.of(1, p + 8).atan() * 4, p))
-sys.set_int_max_str_digits(0)  # a certificate may have thousands of digits; `exact` refuses longer text
 PAPER = {  # the shape's letter, and the components: x and y, or one formula for the radius, and the ends of theta
     "circle": ("", [("1", "-pi", "pi")]),
     "ellipse": ("a", [("a*cos(theta)", "sin(theta)", "-pi", "pi")]),
@@ -42,9 +42,10 @@ SAYS |= {
     "through each other as lam varies.",
 }
 WHAT = {"fold": "the multiplier 1: a fold", "flip": "the multiplier -1: a flip", "focus": "two equal multipliers"}
-length = lambda degree: (degree + 1) * (degree + 2) * (degree + 3) // 6  # how many coefficients three letters have
+length = lambda degree: (degree + 1) * (degree + 2) * (degree + 3) // 6  # the number of coefficients in three letters
 FACTORS = Fraction(1), Fraction(1), Fraction(1, 2), Fraction(1, 6)  # of Taylor's series
-WAYS, SHORT = ("table", "polar", "parametric", "component"), 32  # to say a boundary; bounces of a short cycle
+WAYS, SHORT = ("table", "polar", "parametric", "component"), 32  # forms of a boundary; bounces of a short cycle
+BITS, VALUES = 16_384, 1020  # bits of numbers after and before the point
 
 
 def need(holds, why, error=Unproved):
@@ -53,13 +54,13 @@ def need(holds, why, error=Unproved):
 
 
 def beside(name):
-    """A file beside this one, which imports it: for kinds of their own, or for what no table of the paper needs."""
+    """The module in a file of this folder, loaded when a document needs it."""
     sys.modules.setdefault("check", sys.modules[__name__])
     sys.path += {str(Path(__file__).parent)} - {*sys.path}
     return import_module(name)
 
 
-class Number:  # what follows from a sum, a product and a sign
+class Number:  # operations that follow from sum, product and sign
     __radd__ = lambda self, o: self + o
     __rmul__ = lambda self, o: self * o
     __sub__ = lambda self, o: self + (-o)
@@ -67,7 +68,7 @@ class Number:  # what follows from a sum, a product and a sign
 
 
 class I(Number):
-    """An interval [lo, hi] * 2**-p, with integers lo <= hi; every operation encloses all values of the real one."""
+    """The interval [lo, hi] * 2**-p, with integers lo <= hi; every operation encloses all values of the real one."""
 
     def __init__(self, lo, hi, p):
         self.lo, self.hi, self.p = lo, hi, p
@@ -115,7 +116,7 @@ class I(Number):
 
     @lru_cache(maxsize=99)  # one interval is asked for both, and more than once
     def sin_cos(self):
-        """Those of the middle, by Taylor's series, give or take the radius, since no slope is above 1."""
+        """The sine and the cosine: those of the middle, by Taylor's series, plus or minus the radius."""
         m, p, one = self.mid(), self.p, 1 << self.p
         r, w = self.hi - m.lo, 32 + max(p, m.lo.bit_length())  # a huge argument takes as many more bits of pi
         k = round(Fraction(2 * m.lo << w - p, pi(w).lo)) if abs(m.lo) > one else 0
@@ -131,7 +132,7 @@ class I(Number):
         return [I(max(f.lo - r, -one), min(f.hi + r, one), p) for f in turned]
 
     def atan(self):
-        """At both ends: Newton's method to y, then d = y - atan(x) has sin(d)*sqrt(1+x^2) = sin(y) - x*cos(y)."""
+        """The arctangent at both ends, by Newton's method: d = y - atan(x), sin(d)*sqrt(1+x^2) = sin(y) - x*cos(y)."""
         ends = []
         for x in (I(self.lo, self.lo, self.p), I(self.hi, self.hi, self.p)):
             y = I.of(Fraction(atan(x.real())), x.p).mid()
@@ -146,7 +147,7 @@ class I(Number):
 
 @cache
 def algebra(degree):
-    """The exponents in order, where each stands, and of each the pairs that multiply to it."""
+    """The exponents of the coefficients in order, the index of each, and for each the pairs whose product it is."""
     powers = [(a, b, d - a - b) for d in range(degree + 1) for a in range(d + 1) for b in range(d - a + 1)]
     at = {e: i for i, e in enumerate(powers)}
     rest = lambda e, d: at.get(tuple(a - b for a, b in zip(e, d)))
@@ -192,7 +193,7 @@ class Jet(Number):
         return Jet([self.c[i] * e[letter] for e, i in at.items() if e[letter]], self.degree - 1)
 
     def tighten(self, m, off, p):
-        """The coefficients over boxes from those at their middle, m, and the next ones; or the value from another's."""
+        """The coefficients over boxes from those at the middle, m, and the next; or the value from another jet's."""
         for d in reversed(range(m.degree + 1 if off else 1)):  # the higher ones first, on which the lower ones rest
             slopes = [self.diff(k).c for k in range(3)] if off else []
             for i in range(length(d - 1), length(d)):
@@ -223,7 +224,7 @@ def taylor(x, terms):
 
 
 def implicit(off, near, degree):
-    """The jet of the one zero near an interval, by interval Newton; `off` has value and slope, of jets cut short."""
+    """The jet of the one zero near an interval, by interval Newton; `off` gives value and slope of truncated jets."""
     sure = False
     for _ in range(60):
         last, found = near, near.mid() - off(near.mid(), value)[0] / off(near, value)[1]
@@ -239,22 +240,17 @@ def implicit(off, near, degree):
     return t
 
 
-def parse(text):
-    """The tree of a formula, by Python's own grammar; nothing is executed. A decimal is the one shown."""
-    need(re.fullmatch(r"[\w+\-*/^(). ]{1,2000}", text, re.ASCII), "a formula has characters that mean nothing", Wrong)
-    said = text.strip().replace("^", "**")
-    try:
-        tree = ast.parse(said, mode="eval").body
-        for node in (node for node in ast.walk(tree) if isinstance(node, ast.Constant)):
-            shown = ast.get_source_segment(said, node)
-            node.value = Fraction(shown if re.fullmatch(r"[\d.]+([eE][-+]?\d{1,3})?", shown) else "")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise Wrong(f"the formula {text[:60]} is not understood") from None
-    return tree
-
-
 def evaluate(node, names, p):
-    """A formula and its derivative by theta: letters, pi, + - * / **, sin, cos, roots of numbers; then formulas.py."""
+    """A formula and its derivative by theta; `Unproved` where a value, or the number of steps, is too large."""
+    left[0] -= 1 + (p >> 9) ** 2
+    need(left[0] > 0, "a file takes more steps than this reader gives to one")
+    found = meaning(node, names, p)
+    need(not isinstance(x := value(found[0]), I) or max(-x.lo, x.hi) >> p + VALUES == 0, "a value is too large")
+    return found
+
+
+def meaning(node, names, p):
+    """The value of a letter, pi, + - * / **, sin, cos, or a root of a number; other functions are in formulas.py."""
     kind = type(node).__name__
     if kind == "Constant":
         return node.value, 0
@@ -291,11 +287,11 @@ def evaluate(node, names, p):
 
 
 class Table:
-    """Components, counterclockwise; numbers for letters; a law, or None for `lam` times the angle of arrival."""
+    """A table: components, counterclockwise; numbers for letters; a law, or None for `lam` times the arrival angle."""
 
     def __init__(self, parts, letters, law, p):
         self.parts, self.letters, self.p = [[parse(text) for text in part] for part in parts], letters, p
-        self.law, self.marks, self.turns = law and parse(law), [], []  # where the map is undefined; about a point
+        self.law, self.marks = law and parse(law), []  # where the map is undefined
         self.closed = [len(parts) == 1] * len(parts)  # is it a curve with the period 2*pi? Of the paper's tables
 
     def at(self, part, theta, names, p):
@@ -309,14 +305,14 @@ class Table:
     ends = lambda self, part, p: [I.of(evaluate(node, self.letters, p)[0], p) for node in self.parts[part][-2:]]
 
     def angle(self, here, there, names):
-        """The angle at which a chord leaves: from the inward normal, positive along the tangent, counterclockwise."""
+        """The exit angle of a chord, from the inward normal, positive along the (counterclockwise) tangent."""
         (x, y, tx, ty), (u, v, _, _) = (self.at(*place, names, self.p) for place in (here, there))
         across = (v - y) * tx - (u - x) * ty
         need(across > 0, "admissible: a chord may not leave inwards")
         return I.of(((u - x) * tx + (v - y) * ty) / across, self.p).atan()
 
     def flight(self, part, place, state, names):
-        """The state at the one zero of `direction x (q - start)` about a place; then see `free`."""
+        """The next state: the one zero of `direction x (q - start)` near a place, if `free` proves the chord."""
         (there, near), (theta, psi), p = place, state, self.p
         x, y, tx, ty = self.at(part, theta, names, p)
         s, c = function("sin", psi, p), function("cos", psi, p)
@@ -339,9 +335,10 @@ class Table:
     leaves = lambda self, psi, names: self.own_law(psi, names) if self.law else psi * names["lam"]  # of who arrives
 
     def orbit(self, launch, boxes, way, degree, middle=None, view=None):
-        """The states along a way of places, from what `launch` makes of three letters in boxes, seen at last by `view`.
+        """The states along places, from the start that `launch` makes of three letters in boxes, passed to `view` last.
 
-        Coefficients are tightened by those at the middle of the boxes, or values by those of a `middle` given."""
+        Coefficients are tightened by those at the middle of the boxes, or values by those of a given `middle`.
+        """
         p, off = self.p, None if middle else [x - x.mid() for x in boxes]
         for at, d in [([x.mid() for x in boxes], degree - 1)] * (middle is None) + [(boxes, degree)]:
             letters = [Jet.of(x, d, k) for k, x in enumerate(at)]
@@ -359,8 +356,9 @@ class Table:
     def free(self, start, end, names, p=64):
         """Proves that the chord of two bounces (lists of component and parameter) meets the boundary only there.
 
-        A piece of the boundary is off the chord's line, or not between its ends, or so near to a bounce that the line
-        is crossed once on the way from there; or it is halved. A closed curve has the period 2*pi."""
+        Each piece of the boundary lies off the chord's line, or not between its ends, or so near to a bounce that it
+        crosses the line once; otherwise it is halved. A closed curve has the period 2*pi.
+        """
         start, end = ([(part, I.of(at, p)) for part, at in bounce] for bounce in (start, end))
         (x, y, *_), (u, v, *_) = (self.at(*bounce[0], names, p) for bounce in (start, end))
         dx, dy, looks = u - x, v - y, iter(range(4000))
@@ -388,12 +386,10 @@ class Table:
                 except Unproved:  # a formula may have no value on a wide piece
                     done = False
                 queue += [] if done else [(a, (a + b) / 2), ((a + b) / 2, b)]
-        while self.turns:  # of a table of one's own, once
-            self.turns.pop()(self, (x + u) / 2, (y + v) / 2, names)
 
 
 def newton(equations, box, p):
-    """N, proved to lie in the interior of the box; `equations` gives three jets, of degree 1, or 0 at the middle."""
+    """The interval Newton image N, proved to lie inside the box; `equations` gives jets (degree 0 at the middle)."""
     middle, (a, b, c) = [x.mid() for x in box], (x.gradient(p) for x in equations(box, 1))
     cross = [[v[k - 2] * w[k - 1] - v[k - 1] * w[k - 2] for k, _ in enumerate(v)] for v, w in ((b, c), (c, a), (a, b))]
     values, one = [value(x) for x in equations(middle, 0)], 1 / sum(x * y for x, y in zip(a, cross[0]))  # Cramer's rule
@@ -403,7 +399,7 @@ def newton(equations, box, p):
 
 
 class Cycle:
-    """Bounces in `boxes` on `parts`, closed by theta -> sign*theta; in `box` a letter, `free`, or `lam` as it is."""
+    """A cycle: bounces in `boxes` on `parts`, closed by theta -> sign*theta; `box` encloses `free`, or `lam`."""
 
     def __init__(self, table, kind, parts, boxes, sign, free, box, lam):
         self.table, self.kind, self.parts, self.boxes, self.sign, self.p = table, kind, parts, boxes, sign, table.p
@@ -414,7 +410,7 @@ class Cycle:
         self.way = [*zip(parts, boxes), (parts[0], boxes[0] * sign)]
 
     def equations(self, unknowns, d):
-        """A round later minus now, and what the kind says of the multipliers of a round, or of the start."""
+        """The state after a round minus that before, and the condition on multipliers, or on the start."""
         states = self.run(unknowns, d + 1)
         theta, psi = (x * self.sign for x in states[-1])
         (a, b), (c, e) = ([x.diff(k) for k in (0, 1)] for x in (theta, psi))
@@ -429,7 +425,7 @@ class Cycle:
         return theta - states[0][0], psi - states[0][1], last[self.kind]
 
     def solved(self):
-        """Exactly one solution in the boxes: enclosures of the three unknowns and of the bounces."""
+        """Enclosures of the three unknowns and of the bounces, of the exactly one solution in the boxes."""
         psi = self.table.angle(*zip(self.parts[:2], self.boxes), self.names(self.box))  # of all chains in the boxes
         image = newton(self.equations, [self.boxes[0], psi.wide(psi - psi.mid()), self.box], self.p)
         bounces = [value(theta) for theta, _ in self.run(image, 1)[: len(self.parts)]]
@@ -437,7 +433,7 @@ class Cycle:
         return image, bounces
 
     def admissible(self, bounces, letter):
-        """Bounces on their components, free chords, and no shorter cycle."""
+        """Proves that bounces lie on their components, chords are free, and the period is minimal."""
         table, p, placed = self.table, self.p, []
         apart = lambda part, x, y: 0 not in (((x - y) / 2).sin_cos()[0] if table.closed[part] else x - y)
         for part, x in zip(self.parts + self.parts, bounces + [-x for x in bounces] * (self.sign == -1)):
@@ -455,7 +451,7 @@ class Cycle:
             need(other, "minimal_period: the cycle may be a shorter one, run through several times")
 
     def generic(self, image):
-        """What does not come for nothing: the other multiplier, and the cubic coefficient of a doubling (Kuznetsov)."""
+        """Proves genericity: the other multiplier's condition, and the cubic coefficient of a doubling (Kuznetsov)."""
         states = self.run(image, 1)
         (a, b, _), (c, d, _) = ((x * self.sign).gradient(self.p) for x in states[-1])
         det, one = a * d - b * c, (a - 1) * (d - 1) - b * c
@@ -469,16 +465,16 @@ class Cycle:
             need(0 not in cubic, "nondegenerate: the cubic coefficient of the normal form may be 0")
 
     def along(self, image, states, v, bend):
-        """A round later on the curve `start + v*e + bend*e**2`: the coefficients of `e**2` and `e**3`."""
+        """The state after a round on the curve `start + v*e + bend*e**2`: the coefficients of `e**2` and `e**3`."""
         launch = lambda e, *_: (*(e * y + e * e * z + x for x, y, z in zip(image, v, bend)), self.names(image[2]))
         last = self.table.orbit(launch, [I.of(0, self.p)] * 2 + [image[2]], self.way, 3, states)[-1]
         return [[x.c[algebra(x.degree)[1][k, 0, 0]] * self.sign for x in last] for k in (2, 3)]
 
 
 def exact(pair):
-    mantissa, exponent = (int(text) for text in pair if isinstance(text, str) and len(text) <= 130_000)
-    need(abs(exponent) <= 500_000, "an exponent is out of range", Wrong)
-    return Fraction(mantissa) * Fraction(2) ** exponent
+    mantissa, exponent = pair
+    need(len(mantissa) <= BITS // 3 and abs(int(exponent)) <= BITS, "a number has too many digits", Wrong)
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 def within(name, x, table=None):
@@ -489,26 +485,27 @@ def within(name, x, table=None):
 
 
 def read_scene(scene, free, p):
-    """The table and the contraction that a scene says, and how it is called in words."""
-    known = isinstance(scene, dict) and isinstance(scene.get("shape", {}), dict)
-    more = {"K"} if known and "table" in scene else {"undefined", "origin"}  # marks are of tables of one's own
-    way = [key for key in WAYS if known and not {*scene} - {key, *more, "shape", "law", "lam"}]  # all, of none
+    """The table and the contraction of a scene, and its title in words."""
+    more = {"K"} if "table" in scene else {"undefined", "origin"}  # marks are of tables of one's own
+    way = [key for key in WAYS if not {*scene} - {key, *more, "shape", "law", "lam"}]  # all, of none
     need(len(way) == 1, f"scene: the entries are one of {', '.join(WAYS)}, and K, shape, law, lam, ...", Wrong)
     shape, lam, K, title = scene.get("shape", {}), scene.get("lam"), scene.get("K", 3), scene.get("table")
-    fit = not {"theta", "eta", "lam", "pi", "E"} & {*shape} and title in (None, *PAPER)
-    fit = fit and type(K) is int and 2 <= K <= 1000 and ("K" not in scene or title == "egg")
+    fit = "K" not in scene or title == "egg"
     letter, parts = PAPER.get(title) or ("", beside("boundaries").pieces(way[0], scene[way[0]]))
-    ends, spans = ({name: text.partition("..") for name, text in shape.items() if end in text} for end in ("", ".."))
+    ends = {name: text.partition("..") for name, text in shape.items()}
+    spans = [name for name, at in ends.items() if at[1]]
     given, own = {*shape, free} - {"", "lam"}, {*re.findall(r"\w+", scene.get("law", ""))} - {"theta", "eta", "pi", "E"}
     fit = fit and letter in ("", *given) and (title is None or not given - {letter} - own)
     fit = fit and free in ("", "lam", letter, *spans, *own) and {*spans} == {free} & {*shape} and not (title and spans)
     need(fit, "scene: the table has other letters, or one with a range that is not free, or no such name", Wrong)
     number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p), title)
     letters = {name: number(name, at[0]).hull(number(name, at[2] or at[0])) for name, at in ends.items()}
+    forward = all((number(name, ends[name][2]) - number(name, ends[name][0])).lo > 0 for name in spans)
+    need(forward, "scene: the range of a letter does not run from less to more", Wrong)
     parts = [[text.replace("K", str(K)) for text in part] for part in parts] if title else parts
     table = Table(parts, letters, scene.get("law"), p)
     if title is None or table.law:
-        beside("boundaries").own(table, way[0], scene)
+        beside("boundaries").own(table, way[0], scene, free if spans else None)
     need((free == "lam") == (lam is None), "scene: lam is told where it is not the free letter, and only there", Wrong)
     said = [("phi", scene.get("law")), *shape.items(), ("lam", lam)]
     title = (title or beside("boundaries").called_by(way[0], scene[way[0]])) + f" of {K} points" * (K != 3)
@@ -516,7 +513,7 @@ def read_scene(scene, free, p):
 
 
 def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
-    """The name of a value, from the equations alone: one that symmetry or its place tells, or what is stated of it."""
+    """The name of a value: one that follows from the symmetry or the position of the cycle, or the stated one."""
     same = lambda x, box: (x - pi(p) * 2 * round((x - box).real() / 6.283185307179586)).inside(box)
     mirrored = sign == 1 and all(map(same, [-x for x in bounces], boxes))  # so it is its own image: there is no other
     turned = sign == 1 and all(map(same, [x + pi(p) * Fraction(2, 3) for x in bounces], [*boxes[1:], boxes[0]]))
@@ -532,26 +529,23 @@ def named(kind, sign, parts, bounces, boxes, scene, free, title, p):
 
 
 def checked(given):
-    """The line that says what is proved of a document; `Wrong` or `Unproved` say why not."""
-    if isinstance(given, dict) and given.get("kind") in ("trapping region", "boundary crisis"):
+    """The line that says what is proved of a document; raises `Wrong` or `Unproved` with the reason."""
+    beside("entries").fits(given)
+    left[0] = beside("entries").budget(given)
+    if given["kind"] in ("trapping region", "boundary crisis"):
         return beside("region").trapping(given) if "runs" in given else beside("crisis").crisis(given)
-    need(isinstance(given, dict) and given.get("kind") in KINDS, f"kind must be one of {', '.join(KINDS)}", Wrong)
-    keys = "schema name statement kind scene free bits digits centre radius checks".split()
-    own = {"tangency": "unstable stable orbit meets contact"}.get(given["kind"], "components mirror")
-    need(set(given) == {*keys, *own.split()}, f"the entries must be {', '.join(keys)}, {own}", Wrong)
-    schema, name, words, kind, scene, free, bits, digits, centre, radius, items = map(given.get, keys)
-    need(schema == 4, "this checker reads schema 4", Wrong)
-    need(items == dict.fromkeys(KINDS[kind], True), f"checks must list as true: {', '.join(KINDS[kind])}", Wrong)
+    keys = "name statement kind scene free bits digits centre radius checks".split()
+    name, words, kind, scene, free, bits, digits, centre, radius, items = map(given.get, keys)
+    need({*items} == {*KINDS[kind]}, f"checks must list as true: {', '.join(KINDS[kind])}", Wrong)
     centre, radius, parts = [exact(pair) for pair in centre], exact(radius), given.get("components", [0, 0])
     letters = {"cycle": [""], "corner": ["lam", "phi"], "focus": ["alpha"], "tangency": ["lam"]}.get(kind)
-    fit = type(bits) is type(digits) is int and 16 <= bits <= 200_000 and 1 <= digits <= 60_000 and 0 < radius <= 1
-    fit = fit and isinstance(parts, list) and 2 <= len(parts) <= 1024 and type(given.get("mirror", False)) is bool
-    fit = fit and (free in letters if letters else type(free) is str and free != "") and max(map(abs, centre)) < 10**6
-    need(fit, "bits, digits, free or radius is out of range", Wrong)
+    fit = 0 < radius <= 1 and (free in letters if letters else free != "") and max(map(abs, centre)) < 10**6
+    need(fit, "free, radius or centre is out of range", Wrong)
     p = 16 * min(len(parts), SHORT) + max(bits + 96, *(x.denominator.bit_length() for x in [*centre, radius]))
+    need(p <= BITS, f"bits, centre or radius: this reader takes up to {BITS} bits, and some of them for itself", Wrong)
     table, lam, title = read_scene(scene, "lam" if kind == "corner" else free, p)
     sign, wanted = -1 if given.get("mirror") else 1, {"corner": 2, "tangency": 3}.get(kind, len(parts) + (free != ""))
-    fit = all(type(k) is int and 0 <= k < len(table.parts) for k in parts)
+    fit = all(k < len(table.parts) for k in parts)
     fit = fit and (sign == 1 or ("table" in scene and not table.law) or beside("boundaries").symmetric(table, parts))
     fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and sign == -1))
     need(fit and len(centre) == wanted, "scene, components, centre or mirror do not fit", Wrong)
@@ -559,6 +553,9 @@ def checked(given):
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))
     need(words == said, f"the statement must be: {said!a}", Wrong)
     boxes = [I.of(x - radius, p).hull(I.of(x + radius, p)) for x in centre]
+    if table.law:
+        letter = {free or "lam": boxes[-1] if free else lam}
+        beside("laws").lawful(table, {"lam": lam} | table.letters | letter)
     if kind == "tangency":
         image, true = beside("tangency").touching(given, table, boxes[2], title)
     else:
@@ -576,20 +573,25 @@ def checked(given):
     need(found.width() <= (1 << p) // 10**digits, "precise: the enclosure is wider than the digits say")
     need(name == true, f"the name must be {true!a}", Wrong)
     decimal = Decimal(f"{round(Fraction(found.lo + found.hi, 2 << p) * 10**digits)}e-{digits}")
+    if lam and table.law and "lam" not in beside("boundaries").words([table.law]):
+        said += "\n  The law does not have the contraction that is told."
     return f"proved: {true}{' = ' if free else ', last bounce at '}{decimal:f}, within 1e-{digits}\n  {said}"
 
 
 def main(paths):
-    """Prints a verdict for each file; 0 when all are proved."""
+    """Prints a verdict for each file, and returns 0 if all are proved."""
+    limit = sys.get_int_max_str_digits()
+    sys.set_int_max_str_digits(0)  # `exact` refuses text that is too long
     done = bool(paths)
     for path in paths:
         try:
-            said = checked(json.loads(Path(path).read_text(encoding="utf-8")))
-        except Exception as why:  # also a file that cannot be read, or entries of the wrong kind
+            said = checked(beside("entries").read(path))
+        except Exception as why:  # also a file that cannot be read, or numbers that no step foresees
             told, done = isinstance(why, (Unproved, Wrong)), False
             said = "not proved: " if isinstance(why, Unproved) else "refused: "
             said += str(why) if told else f"this is no certificate ({type(why).__name__})"
         print(f"{ascii(path)[1:-1]}: {said}")
+    sys.set_int_max_str_digits(limit)
     return 0 if done else 1
 
 

@@ -1,10 +1,10 @@
-"""What a corner orbit is more than a cycle, for `check.py`: docs/certificate_format.md says it."""
+"""The hypotheses of a corner orbit beyond those of a cycle, for `check.py`: see docs/certificate_format.md."""
 
 from check import need, value
 
 
 def cornered(cycle, image, theta1):
-    """What the corner orbit says more; the cuspless table's lower corner is its wall's end and its arc's start."""
+    """Proves the further hypotheses of a corner orbit; the lower corner is the wall's end and the arc's start."""
     table, p, slopes, unstable = cycle.table, cycle.p, [], False
     edge, wall = table.ends(0, p)[1], table.ends(1, p)[1]
     need(theta1 > 0 and theta1 < 2, "minimal_period: a bounce may be at a corner or on the axis")
@@ -28,6 +28,6 @@ def cornered(cycle, image, theta1):
 
 
 def called(free, theta1):
-    """The name of a value of the corner orbit, by the place of the bounce between the corners."""
+    """The name of a value of the corner orbit, from the place of the bounce between the corners."""
     true = {"lam": "lambda-star", "phi": "phi-star"}[free]
     return true if abs(theta1.real() - 0.2545) < 0.001 else "an orbit through both corners"

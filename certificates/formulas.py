@@ -1,7 +1,7 @@
-"""Words of formulas that no table of the paper needs, for `check.py`; the headline results rest on that file alone.
+"""Functions that no table of the paper needs, for `check.py`; the headline results rest on that file alone.
 
-`exp`, `log`, `tan`, `atan`, `sinh`, `cosh`, `tanh`, `abs`, `E`, and powers with fractions for exponents, as intervals
-with integer ends and as jets.
+They are `exp`, `log`, `tan`, `atan`, `sinh`, `cosh`, `tanh`, `abs`, the number `E`, and powers with fractional
+exponents, on intervals with integer ends and on jets.
 """
 
 from fractions import Fraction
@@ -10,7 +10,7 @@ from math import prod
 
 from check import I, Jet, function, need, pi, taylor, value
 
-HALF, LARGEST = Fraction(1, 2), 2**16  # of an exponent of e
+HALF, LARGEST = Fraction(1, 2), 708  # an exponent of e: what is larger has a power above 2**1020
 
 
 def point(end, p):
@@ -18,18 +18,18 @@ def point(end, p):
 
 
 def hull(each, x):
-    """A growing function over an interval, from what encloses it at both ends."""
+    """An increasing function over an interval, from its enclosures at both ends."""
     return each(point(x.lo, x.p)).hull(each(point(x.hi, x.p)))
 
 
 @cache
 def log2(p):
-    """log 2 = 2*artanh(1/3)."""
+    """The number log 2 = 2*artanh(1/3)."""
     return I.of(artanh(I.of(Fraction(1, 3), p + 32)) * 2, p)
 
 
 def artanh(x):
-    """x + x**3/3 + x**5/5 + ... of what is at most 1/3: what follows a term is less than the power of x in it."""
+    """The series x + x**3/3 + x**5/5 + ... for `abs(x) <= 1/3`: the rest after a term is less than its power of x."""
     total, high, n = x, x, 1
     while high.size().lo > 1:
         n += 2
@@ -39,12 +39,12 @@ def artanh(x):
 
 
 def twos(x):
-    """About how often log 2 goes into it: any whole number serves."""
+    """About how often log 2 is contained in a number: any whole number is correct."""
     return int(x.real() / 0.6931471805599453)
 
 
 def exp_at(x):
-    """At a point, 2**k times the exponential of what is left: about log 2 at most, by Taylor's series."""
+    """The exponential at a point: 2**k times the exponential of the rest, at most about log 2, by Taylor's series."""
     need(x.lo < LARGEST << x.p, "an exponential is too large")
     if x.lo < -x.p << x.p:
         return I(0, 1, x.p)
@@ -61,7 +61,7 @@ def exp_at(x):
 
 
 def log_at(x):
-    """At a point above 0, k*log 2 more than that of m in [1/2, 1], which is 2*artanh((m - 1)/(m + 1))."""
+    """The logarithm at a point above 0: k*log 2 plus that of m in [1/2, 1], which is 2*artanh((m - 1)/(m + 1))."""
     need(x.lo > 0, "a logarithm of what may not be positive")
     bits, w = x.lo.bit_length(), x.p + 64
     m = I.of(point(x.lo, bits), w)
@@ -69,7 +69,7 @@ def log_at(x):
 
 
 def tanh_at(x):
-    """(1 - u)/(1 + u) with u = exp(-2*x)."""
+    """The hyperbolic tangent (1 - u)/(1 + u) with u = exp(-2*x)."""
     if x.lo < 0:
         return -tanh_at(-x)
     u = exp_at(point(-2 * x.lo, x.p))
@@ -77,14 +77,14 @@ def tanh_at(x):
 
 
 def atan_at(x):
-    """By the angle of 1/x where x is large."""
+    """The arctangent at a point, from that of 1/x where x is large."""
     if x.lo < 0:
         return -atan_at(-x)
     return x.atan() if x.lo <= 2 << x.p else pi(x.p) / 2 - (1 / x).atan()
 
 
 def at_number(name, at, exponent):
-    """The function at an interval: all of these grow, but for a power, which is one of them of another."""
+    """A function at an interval: all are increasing except a power, which is reduced to one of them."""
     if name == "power":
         need(at > 0, "a root of what may not be positive")
         return hull(exp_at, hull(log_at, at) * exponent)
@@ -92,7 +92,7 @@ def at_number(name, at, exponent):
 
 
 def series(name, x, p, exponent=None):
-    """A function of a number or, by Taylor's series up to the third term, of a jet."""
+    """A function of a number or, by Taylor's series to third order, of a jet."""
     at = I.of(value(x), p)
     y = at_number(name, at, exponent)
     if not isinstance(x, Jet):
@@ -114,7 +114,7 @@ def series(name, x, p, exponent=None):
 
 
 def power(x, dx, exponent, p):
-    """A power and its derivative; of what may be 0 only a root, and not its slope."""
+    """A power and its derivative; where the base may be 0, only a root, without derivative."""
     if exponent.denominator == 1:
         low = prod([x] * (abs(int(exponent)) - 1), start=I.of(1, p))
         if exponent < 0:
@@ -128,13 +128,13 @@ def power(x, dx, exponent, p):
 
 
 def square(x):
-    """Not below 0, also over an interval around 0."""
+    """The square of an interval, which is not below 0."""
     y = x * x
     return I(max(0, y.lo), y.hi, y.p) if isinstance(y, I) else y
 
 
 def called(name, x, dx, p):
-    """A function of this vocabulary and its derivative; None for another."""
+    """A function of this vocabulary and its derivative; None for another function."""
     if name in ("exp", "tanh", "log", "atan"):
         y = series(name, x, p)
         slopes = {"exp": lambda: y, "tanh": lambda: 1 - y * y, "log": lambda: function("inverse", x, p)}
@@ -158,9 +158,10 @@ def called(name, x, dx, p):
 
 
 def meaning(kind, mark, parts, p):
-    """A formula from what it is (a name, an operation, a call of one argument) and its parts; None if it says nothing.
+    """The value of a formula's node (a name, an operation, a call) from those of its parts; None if it is unknown.
 
-    A part is a value and its derivative by theta."""
+    A part is a value and its derivative by theta.
+    """
     if kind == "Name" and mark == "E":
         return series("exp", 1, p), 0
     if kind == "UnaryOp" and mark == "UAdd":

@@ -1,11 +1,11 @@
-"""Cycles of many bounces, for `check.py`, which follows short ones all round and loses digits with each bounce.
+"""Cycles of many bounces, for `check.py`, which follows short cycles as orbits and loses digits with each bounce.
 
-Unknown are all bounces and the free parameter. At each bounce two chords meet, and the law says R = 0 of its parameter
-and those of both neighbours. For a multiplier 1 or -1 there is a vector that the linearised R take to 0, and that comes
-back after a round as itself or its negative. Bordered by a row and a column with one entry each, the linear system is
-regular, and with the right-hand side (0, ..., 0, 1) its last unknown, g, is 0 just where there is such a vector.
-Linear systems have an approximate inverse C, in doubles. Where all row sums of abs(1 - C*A) are below 1 for every A in
-a box of matrices, these are regular, and A*x = b has abs(x - y) <= max(abs(C*(b - A*y)))/(1 - the largest sum).
+The unknowns are all bounces and the free parameter. At each bounce the law gives an equation R = 0 in its parameter and
+those of both neighbours. A multiplier 1 or -1 means a null vector of the linearised equations that a round maps to
+itself or its negative. Bordered by a row and a column with one entry each, the linear system is regular, and with the
+right-hand side (0, ..., 0, 1) its last unknown, g, is 0 if and only if there is such a vector. Linear systems have an
+approximate inverse C, in doubles. Where all row sums of abs(1 - C*A) are below 1 for every A in a box of matrices,
+these are regular, and A*x = b has abs(x - y) <= max(abs(C*(b - A*y)))/(1 - the largest sum).
 """
 
 from fractions import Fraction
@@ -13,12 +13,12 @@ from fractions import Fraction
 from check import Cycle, I, Jet, Wrong, algebra, function, need, value
 from tangency import composed
 
-SHIFT, OFF = 64, Fraction(1, 2**40)  # bits of the approximate inverse after the point; beside a singular matrix
+SHIFT, OFF = 64, Fraction(1, 2**40)  # bits of the approximate inverse; shift of a singular matrix
 ROUNDS, GAIN = 2, 24  # of improvement; bits that one gains, and more
 
 
 class Linear:
-    """A square system of intervals, each row a dictionary of its columns; refused where it may be singular."""
+    """A square system of intervals, each row a dictionary from columns; refused where it may be singular."""
 
     def __init__(self, rows, p):
         self.rows, self.p = rows, p
@@ -36,7 +36,7 @@ class Linear:
         need(self.norm < 1, "exists, unique: a linear system may be singular")
 
     def times(self, vector):
-        """The approximate inverse times a vector of intervals."""
+        """The product of the approximate inverse and a vector of intervals."""
         middles, widths = [x.lo + x.hi for x in vector], [x.hi - x.lo for x in vector]
         found = []
         for row in self.inverse:
@@ -48,7 +48,7 @@ class Linear:
         return [b - sum(a * x[j] for j, a in row.items()) for row, b in zip(self.rows, right)]
 
     def solve(self, right, rounds):
-        """Enclosures of the unknowns for every matrix and every right-hand side."""
+        """Enclosures of the unknowns for every matrix and every right-hand side in the intervals."""
         x = [I.of(0, self.p)] * len(right)
         for _ in range(rounds):
             x = [(a + b).mid() for a, b in zip(x, self.times(self.residual(right, x)))]
@@ -57,7 +57,7 @@ class Linear:
 
 
 def inverse(rows):
-    """That of the middles, in doubles: elimination of sparse rows, each with its row of the identity."""
+    """An approximate inverse of the midpoint matrix, in doubles, by elimination of sparse rows."""
     n = len(rows)
     left = [{j: x.real() for j, x in row.items()} for row in rows]
     right = [[float(i == j) for j in range(n)] for i in range(n)]
@@ -86,10 +86,10 @@ def inverse(rows):
 
 
 class Long(Cycle):
-    """A cycle as `check.Cycle`, by the equations of this file."""
+    """A cycle like `check.Cycle`, proved by the equations in the docstring of this file."""
 
     def chords(self, bounces, letter, degree):
-        """Of each chord, and of the first a round later, its angle and, by the law, that of the next one."""
+        """For each chord, and for the first one of the next round, its angle and the one that the law requires next."""
         p, n, found = self.p, len(self.parts), []
         ends = self.round(bounces, 1)
         for k in range(n + 1):
@@ -108,12 +108,12 @@ class Long(Cycle):
         return found
 
     def turned(self, k, twist):
-        """The column of bounce k, and its sign: after a round comes the mirror image, times the twist."""
+        """The column of bounce k, and its sign: after a round comes the mirror image, times the multiplier's sign."""
         n = len(self.parts)
         return k % n, (self.sign * twist) ** (k // n)
 
     def matrix(self, chords, twist, free):
-        """The linearised R, a row for each bounce from the second to the first one of the next round."""
+        """The matrix of the linearised equations: rows for the bounces from the second to the next round's first."""
         rows = []
         for k in range(1, len(self.parts) + 1):
             row = {}
@@ -128,7 +128,7 @@ class Long(Cycle):
         return rows
 
     def bordered(self, rows, edge):
-        """A row and a column more, each with one entry, and the same system turned over."""
+        """The matrix bordered by a row and a column, each with one entry, and its transpose."""
         n, (i, j) = len(rows), edge
         one = I.of(1, self.p)
         more = [row | ({n: one} if k == i else {}) for k, row in enumerate(rows)] + [{j: one}]
@@ -139,19 +139,19 @@ class Long(Cycle):
         return Linear(more, self.p), over
 
     def edge(self, rows):
-        """Where the vectors that the rows nearly take to 0, from the left and from the right, are largest."""
+        """The indices at which approximate left and right null vectors are largest."""
         whole = inverse([row | {k: row[k] + OFF} for k, row in enumerate(rows)])
         right = max(range(len(rows)), key=lambda k: sum(map(abs, whole[k])))
         left = max(range(len(rows)), key=lambda k: sum(abs(row[k]) for row in whole))
         return left, right
 
     def vectors(self, chords):
-        """What the linearised R take to 0, from the right and from the left, up to g; one entry of each is 1."""
+        """The right and the left null vectors of the linearised equations, up to g; one entry of each is 1."""
         system, over = self.bordered(self.matrix(chords, self.twist, False), self.border)
         return [x.solve(self.end, ROUNDS)[:-1] for x in (system, Linear(over, self.p))]
 
     def solved(self):
-        """Exactly one solution in the boxes: enclosures of it, in the order of `Cycle`, and of all bounces."""
+        """Enclosures of the one solution in the boxes, in the order of `Cycle`, and of all bounces."""
         p, n, self.free = self.p, len(self.parts), self.kind != "cycle"
         need(self.kind in ("cycle", "fold", "flip"), "kind: that of a long cycle is another", Wrong)
         self.twist, self.end = -1 if self.kind == "flip" else 1, [I.of(0, p)] * n + [I.of(1, p)]
@@ -175,11 +175,11 @@ class Long(Cycle):
         return [image[0], None, image[-1] if self.free else self.box], self.bounces
 
     def round(self, vector, twist):
-        """A vector, and the first two entries of it a round later."""
+        """A vector over the bounces, extended by its first two entries as they are a round later."""
         return vector + [x * (self.sign * twist) for x in vector[:2]]
 
     def moving(self, chords, w, u):
-        """The derivatives of g by the bounces and the free parameter: those of the matrix, between both vectors."""
+        """The derivatives of g by the bounces and the free parameter, from those of the matrix between both vectors."""
         row, w = {}, self.round(w, self.twist)
         slopes = [[jet.diff(0) * w[k] + jet.diff(1) * w[k + 1] for jet in pair] for k, pair in enumerate(chords)]
         for of_one, y in zip(self.matrix(slopes, 1, True), u):
@@ -188,10 +188,12 @@ class Long(Cycle):
         return row
 
     def generic(self, image):
-        """What does not come for nothing: the other multiplier, and where a cycle of twice the length leaves this one.
+        """Proves the genericity conditions: the other multiplier, and the branching of cycles of twice the length.
 
-        Along w*e + h*e**2, with the h of this cycle's own closure for which R has no e**2, R has e**3 times a vector.
-        Its product with u is not 0: the reduced equation of the longer cycles is a*e + b*e**3 with b not 0."""
+        Along w*e + h*e**2, with the h of this cycle's own closure for which the equations have no e**2, they have e**3
+        times a vector. Its product with u is not 0: the reduced equation of the longer cycles is a*e + b*e**3 with b
+        not 0.
+        """
         n, p, chords = len(self.parts), self.p, self.chords(self.bounces, image[2], 3)
         det = I.of(1, p)
         for k in range(n):
@@ -206,7 +208,7 @@ class Long(Cycle):
             need(0 not in cubic, "nondegenerate: the cubic coefficient of the normal form may be 0")
 
     def along(self, chords, w, h):
-        """Of each R, along w*e + h*e**2, the coefficients of e**2 and e**3."""
+        """The coefficients of e**2 and e**3 in each equation, along w*e + h*e**2."""
         found, w, h = [], self.round(w, self.twist), self.round(h, 1)
         e = Jet.of(0, 3, 0)
         ways = [e * a + e * e * b for a, b in zip(w, h)]

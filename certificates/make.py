@@ -1,7 +1,7 @@
 """Writes the certificates of this folder: `python certificates/make.py [--into DIR] [NAME...]`, from the root.
 
-The values behind the report's headline numbers, and a few cycles so that every kind is there. The same versions of the
-package and its libraries write the same bytes, whatever the machine: a test makes some of them again and compares.
+They belong to the report's headline numbers, with a few cycles so that every kind occurs. The same versions of the
+package and its libraries write the same bytes on every machine: a test makes some of them again and compares.
 """
 
 import argparse
@@ -20,22 +20,22 @@ from symbolic import Law, Scene, tables
 from symbolic.tables.table import Mark, Table
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
-from verification.named.files import checked, document
-from verification.named.locate import certify, locate
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket, grown
-from verification.proofs.global_dynamics.graph import Cells
+from verification.named.locate import locate, proof_near
+from verification.named.theorems import checked
+from verification.proofs.global_dynamics.crisis import bracket
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import Region
 from verification.proofs.manifolds.known import CONTACTS
+from verification.rigorous.absorbing import grown
+from verification.rigorous.boxes import Boxes
 
 Proof = Callable[[], Any]
 HERE = Path(__file__).parent
 REPORTS = HERE.parent / "docs" / "reports"
 NINE = (-2.2794, 0.0999, 2.9941, 2.5028, 1.9891, 1.3928, 0.7008, -0.1020, -1.0494)  # near a cycle at lam = 9/10
 DIGITS = 20
-LONGER = 32  # bounces from which the second reader has equations of its own, which lose no digits
-LONG = {6: 60}  # the second reader follows a cycle all round, and needs two digits for each bounce of a long one
+LONGER = 32  # from so many bounces the checker uses equations that lose no digits
+LONG = {6: 60}  # the checker follows a cycle as an orbit, and needs two digits for each bounce
 LAW = (
     "-lam*tanh(eta) + exp(eta)/90 + log(eta**2 + 1)/20 - tan(eta/2)/9 - atan(eta)/9 + sinh(eta)*cosh(eta)/99"
     " + sqrt(eta + 2)/90 - (eta + 2)**(1/3)/80 + (eta + 3)**(-2)/9"
@@ -58,45 +58,45 @@ EGG, THIRD, HALF = Rational(2, 25), Rational(1, 3), Rational(1, 2)
 
 
 def value(name: str, digits: int = DIGITS, **shape: Expr) -> Proof:
-    """What `pinball locate` proves of a named value."""
+    """The certificate of a value that `pinball locate` proves."""
     return lambda: locate(name, digits, **shape).proof
 
 
 def cycle(table: Table, start: list[float], lam: Expr, law: str = "-lam*eta", parts: tuple[int, ...] = ()) -> Proof:
-    """A cycle by itself, of a table of one component or on these."""
-    return lambda: certify(Problem(table, parts or (0,) * len(start), lam=lam, law=Law(law)), start, DIGITS)
+    """The certificate of a cycle of a table of one component, or on the given components."""
+    return lambda: proof_near(Problem(table, parts or (0,) * len(start), lam=lam, law=Law(law)), start, DIGITS)
 
 
 def flip(
     table: Table, start: list[float], free: str, lam: Expr | None = None, mirror: bool = False, law: str = "-lam*eta"
 ) -> Proof:
-    """A period doubling of a table or law of one's own; the last start is that of the free parameter."""
+    """The certificate of a period doubling under a user's table or law; the last start is for the free parameter."""
     closure = Closure(-1 if mirror else 1)
     problem = Problem(table, (0,) * (len(start) - 1), BifurcationKind.FLIP, free, lam, closure, Law(law))
-    return lambda: certify(problem, start, DIGITS)
+    return lambda: proof_near(problem, start, DIGITS)
 
 
 def doubling_beside(period: int, member: int) -> Proof:
-    """Of a cascade beside the paper's, which bears chaos of its own."""
+    """The certificate of a doubling in another cascade than the paper's."""
 
     def proof() -> Any:
         from verification.paper.egg.egg import side_cascade
 
-        claim = side_cascade(period)[member].claim
-        start = [float(x.mid()) for x in claim.centre]
-        return certify(claim.problem, start, int(2.5 * len(start)))
+        found = side_cascade(period)[member]
+        start = [float(x.mid()) for x in found.centre]
+        return proof_near(found.problem, start, int(2.5 * len(start)))
 
     return proof
 
 
 def inside(report: str, name: str) -> Mapping[str, Any]:
-    """A certificate inside of a report of docs/reports."""
+    """A certificate from inside a report of docs/reports."""
     blocks = (block for part in json.loads((REPORTS / report).read_text())["sections"] for block in part["blocks"])
     return next(block["document"] for block in blocks if block["kind"] == "certificate" and block["name"] == name)
 
 
 def kept(report: str, name: str) -> Proof:
-    """What a report of docs/reports has a certificate of, to as many digits as the second reader needs."""
+    """A certificate of a report of docs/reports, with as many digits as the independent checker needs."""
 
     def proof() -> Any:
         given = inside(report, name)
@@ -104,13 +104,13 @@ def kept(report: str, name: str) -> Proof:
         period = len(given["components"])
         table = tables.polar(given["scene"]["polar"])
         problem = Problem(table, (0,) * period, BifurcationKind.FLIP, "lam", None, Closure(1))
-        return certify(problem, start, DIGITS if period > LONGER else int(2.5 * period))
+        return proof_near(problem, start, DIGITS if period > LONGER else int(2.5 * period))
 
     return proof
 
 
 def touching(report: str, name: str) -> Proof:
-    """The tangency that a report of docs/reports has a certificate of, worked through anew."""
+    """The tangency of a report of docs/reports, proved again."""
     return lambda: checked(inside(report, name))
 
 
@@ -120,21 +120,20 @@ def family(radius: str, parameter: str, span: str) -> Table:
 
 
 def region(scene: Scene, start: tuple[float, float], lam: tuple[str, str], grid: tuple[int, int, int]) -> Proof:
-    """The cells of a grid to which a phase point leads, for all contractions of a range, one after the other or not."""
+    """The trapping region of cells to which a phase point leads, for a range of contractions."""
 
     def proof() -> Any:
         ends, (theta, phi) = (Fraction(lam[0]), Fraction(lam[1])), (np.array([x]) for x in start)
         found = grown(PinballImages(scene, ends), grid, Boxes(np.array([0]), (theta, theta), (phi, phi)))
         if found is None:
             return None
-        chart, column, row = np.nonzero(found[1])
-        return Region(scene, ends, *grid, Cells(chart, column, row, np.ones(chart.size, dtype=np.int64)))
+        return Region(scene, ends, *grid, found.cells)
 
     return proof
 
 
 def crisis_between(low: str, high: str) -> Proof:
-    """The boundary crisis of the egg between two contractions, by cells; the orbit that leaves is sought in float64."""
+    """The boundary crisis of the egg between two contractions; the orbit that leaves is found in float64."""
     ends, triangle = (Fraction(low), Fraction(high)), CONTACTS["boundary"].unstable
     return lambda: bracket(Scene(tables.egg(3), alpha=EGG), triangle, 1, ends, (1024, 512, 1))
 
@@ -181,17 +180,15 @@ CERTIFICATES: Mapping[str, Proof] = MappingProxyType(
 
 
 def text(name: str) -> str:
-    """A certificate as it stands in its file."""
+    """A certificate as the text of its file."""
     proof = CERTIFICATES[name]()
-    if isinstance(proof, Region | BoundaryCrisis) and all(proof.checks.values()):
-        return json.dumps(proof.to_dict()) + "\n"
-    if proof is None or not proof.certified:
+    if proof is None or not proof.proved:
         raise ArithmeticError(f"{name}: not proved")
-    return json.dumps(document(proof), indent=1) + "\n"
+    return json.dumps(proof.document(), indent=1 if proof.evidence else None) + "\n"
 
 
 def main() -> None:
-    """Writes the files that are asked for, or all."""
+    """Writes the named files, or all."""
     asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     asked.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(CERTIFICATES)}")
     asked.add_argument("--into", type=Path, default=HERE, help="the folder for the files")

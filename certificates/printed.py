@@ -1,8 +1,8 @@
-"""Is there a certificate for each number that is printed as certified? `python certificates/printed.py [--prove]`.
+"""Checks that each number printed as certified has a certificate: `python certificates/printed.py [--prove] [REPORT]`.
 
-Read are README.md, the pages of docs, the reports kept in docs/reports with the certificates inside them, and, where
-`pinball verify` has left one, report/report.json. A number has a certificate when one of the right place in the list
-below, or of the same page, holds it within the digits that are printed. `--prove` has the second reader prove those
+It reads README.md, the pages of docs, the reports in docs/reports with the certificates inside them, and REPORT (by
+default report/report.json, which `pinball verify` writes). A number has a certificate when one at the right place in
+the list below, or of the same page, agrees with its printed digits. With `--prove` the independent checker proves those
 inside of reports; `make check-all` proves the files of this folder as well. Exit status 1 where something is missing.
 """
 
@@ -31,26 +31,26 @@ FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enou
 
 
 def value(given: dict[str, Any]) -> Fraction:
-    """What a certificate is of: its free unknown, of `phi-star` that of the proved line, otherwise the last bounce."""
+    """The value of a certificate: its free unknown; for `phi-star` that of the proved line; else the last bounce."""
     if given["name"] == "phi-star":
         return Fraction(re.search(r"= (-?[\d.]+)", check.checked(given))[1])
     return check.exact(given["centre"][-1])
 
 
 def holds(given: dict[str, Any], printed: str) -> bool:
-    """Do the printed digits differ from the certificate's value by one of the last of them at most?"""
+    """True if the printed digits differ from the certificate's value by at most one in the last digit."""
     last = Fraction(10) ** Decimal(printed).as_tuple().exponent
     return abs(value(given) - Fraction(printed)) <= last
 
 
 def committed() -> dict[str, dict[str, Any]]:
-    """The certificates of this folder that are of a number."""
+    """The certificates of this folder that prove a number."""
     found = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(HERE.glob("*.json"))}
     return {name: given for name, given in found.items() if "centre" in given}
 
 
 def kept_reports() -> Iterator[tuple[str, list[dict[str, Any]], list[str]]]:
-    """Each report of docs/reports: its name, the certificates inside it, and numbers it calls proved or certified."""
+    """Each report of docs/reports: name, certificates inside it, and the numbers it calls proved or certified."""
     for path in sorted((ROOT / "docs" / "reports").glob("*.json")):
         report = json.loads(path.read_text(encoding="utf-8"))
         blocks = [b for part in report["sections"] for b in part["blocks"]]
@@ -68,7 +68,7 @@ def kept_reports() -> Iterator[tuple[str, list[dict[str, Any]], list[str]]]:
 
 
 def is_certified(row: Any, column: str, cell: dict[str, Any]) -> bool:
-    """Is a cell of a report a proved number with an error, and of a kind that has certificates?
+    """True if a cell of a report is a proved number with an error, of a kind that has certificates.
 
     A perimeter is an integral; multipliers and exponents follow from a cycle that is enclosed when the report is made.
     """
@@ -76,14 +76,14 @@ def is_certified(row: Any, column: str, cell: dict[str, Any]) -> bool:
 
 
 def of_pages() -> Iterator[tuple[str, str]]:
-    """Page and number of each line that ends in `(certified)`."""
+    """The page and number of each line that ends in `(certified)`."""
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
         for match in re.finditer(r"= (-?[\d.]+) \+- \S+ +\(certified", path.read_text(encoding="utf-8")):
             yield str(path.relative_to(ROOT)), match[1]
 
 
 def of_trust() -> Iterator[tuple[str, str]]:
-    """File and number of each row of docs/trust.md that has both, in the order in which it has them."""
+    """The file and number of each row of docs/trust.md that has both, in order."""
     for row in (line.split("|") for line in (ROOT / "docs" / "trust.md").read_text(encoding="utf-8").splitlines()):
         if len(row) == 8 and (numbers := re.findall(r"-?0\.\d{5}", row[2])):
             names = [name.removesuffix(".json") for name in re.findall(SECOND, row[4])]
@@ -92,7 +92,7 @@ def of_trust() -> Iterator[tuple[str, str]]:
 
 
 def of_claims(path: Path) -> Iterator[tuple[str, str, str]]:
-    """Claim, file and number, or what is missing instead of a file, of a report of the paper."""
+    """For each certified number of a report: claim, file and number; the file is empty where none is listed."""
     for claim in json.loads(path.read_text(encoding="utf-8"))["claims"]:
         name, said = claim["id"], " ".join(str(claim.get(key)) for key in ("method", "derived", "erratum"))
         if claim["value"] is None and "certified" not in said:
@@ -103,8 +103,9 @@ def of_claims(path: Path) -> Iterator[tuple[str, str, str]]:
             yield name, file, claim["value"].rstrip("0")
 
 
-def main() -> int:
-    """One line for each number without a certificate, and the counts."""
+def main(args: list[str]) -> int:
+    """Prints one line for each number without a certificate, and the counts."""
+    report = next((Path(arg) for arg in args if arg != "--prove"), REPORT)
     files, missing, count = committed(), [], 0
     found = [(page, number, [*files.values()]) for page, number in of_pages()]
     found += [("docs/trust.md", number, [files[name]] if name in files else []) for name, number in of_trust()]
@@ -113,9 +114,9 @@ def main() -> int:
         ready = [given for given, n in zip(inside, counts, strict=True) if n <= FOLLOWED or n > check.SHORT]
         here = [*ready, *files.values()]
         found += [(f"docs/reports/{page}.json", number, here) for number in told]
-        for given in ready if "--prove" in sys.argv else ():
+        for given in ready if "--prove" in args else ():
             sys.stdout.write(f"{page}: {check.checked(given).splitlines()[0]}\n")
-    for claim, file, number in of_claims(REPORT) if REPORT.exists() else ():
+    for claim, file, number in of_claims(report) if report.exists() else ():
         found.append((claim, number, [files[file]] if file in files else []))
     for place, number, given in found:
         count += 1
@@ -127,4 +128,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

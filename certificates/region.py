@@ -1,6 +1,6 @@
 """Trapping regions, for `check.py`: cells of phase space that the map takes into their interior, image by image.
 
-Why each step proves it: docs/certificate_format.md.
+The proof is explained in docs/certificate_format.md.
 """
 
 from bisect import bisect
@@ -10,17 +10,16 @@ from math import cos, sin
 from check import I, Jet, Unproved, Wrong, need, pi, read_scene, value
 from curves import covered, piece_of
 
-ENTRIES = {"schema", "name", "kind", "scene", "lam", "columns", "rows", "parts", "runs"}
 BITS, HALVINGS, POINTS = 64, 4, 512  # of numbers; of a cell; of the boundary, at which guesses begin
+CELLS = 60_000  # of a region
 TURN = 6.283185307179586  # of guesses alone
 
 
 def trapping(given):
-    """What is proved of a document: for each lam of its range the map takes its cells into their interior.
+    """Proves for each lam of a range that the map takes a document's cells into their interior; returns the line.
 
-    First what is cheap to ask; then cell by cell, each halved both ways where its image is not seen to lie inside."""
-    need(set(given) == ENTRIES, f"the entries must be {', '.join(sorted(ENTRIES))}", Wrong)
-    need(given["schema"] == 1, "this reader knows trapping regions of schema 1", Wrong)
+    After quick tests, each cell is halved in both directions where its image is not proved to lie inside.
+    """
     cells, count = blocks(given)
     table, words, low, high = placed(given)
     true = f"trapping region of {words}: {count} box{'es'[: 2 * (count > 1)]} on a grid of "
@@ -34,15 +33,13 @@ def trapping(given):
 
 
 def blocks(given):
-    """The cells of a document, column by row, and how many blocks it tells them in; none twice or beyond the grid."""
+    """The cells of a document, column by row, and the number of its blocks; no cell twice or beyond the grid."""
     columns, rows, found, count = given["columns"], given["rows"], set(), 0
-    sides = all(type(n) is int and 2 <= n <= 8192 for n in (columns, rows))
-    need(sides and type(given["parts"]) is int and 1 <= given["parts"] <= 16, "a count is out of range", Wrong)
-    for run in given["runs"]:
-        need(len(run) == 5 and all(type(n) is int for n in run), "runs is no list of five whole numbers each", Wrong)
-        chart, size, column, row, high = run
-        within = size > 0 and high > 0 and 0 <= column <= columns - size and 0 <= row <= rows - size * high
+    need(all(2 <= n <= 8192 for n in (columns, rows)), "a count is out of range", Wrong)
+    for chart, size, column, row, high in given["runs"]:
+        within = size > 0 and high > 0 and column <= columns - size and row <= rows - size * high
         need(chart == 0 and within, "a run is beyond the grid", Wrong)
+        need(len(found) + size * size * high <= CELLS, f"this reader takes up to {CELLS} cells", Wrong)
         block = {(column + i, row + j) for i in range(size) for j in range(size * high)}
         need(not block & found, "a cell stands twice in runs", Wrong)
         found, count = found | block, count + high
@@ -51,10 +48,9 @@ def blocks(given):
 
 
 def placed(given):
-    """The table, one closed curve under the paper's law; what is said of it in words; the ends of lam."""
+    """The table, one closed curve under the paper's law; its title in words; and the ends of lam."""
     scene, ends = given["scene"], given["lam"]
-    need(isinstance(scene, dict) and "law" not in scene, "scene: of laws this reader knows -lam*eta alone", Wrong)
-    need(isinstance(ends, list) and len(ends) == 2, "lam must be a list of two numbers", Wrong)
+    need("law" not in scene, "scene: of laws this reader knows -lam*eta alone", Wrong)
     need(all(str(Fraction(x)) == x for x in ends), "lam: an end is no fraction in lowest terms", Wrong)
     need(0 <= Fraction(ends[0]) <= Fraction(ends[1]) < 1 and ends[1] != "0", "lam is out of range", Wrong)
     low, high = (I.of(Fraction(x), BITS) for x in ends)
@@ -65,9 +61,10 @@ def placed(given):
 
 
 def convex(table):
-    """Proves that a curve which runs once round a point, seen at growing angles, turns to one side everywhere.
+    """Proves that a curve which runs once around a point, at growing polar angles, turns to one side everywhere.
 
-    So a line that leaves inwards meets it at just one other point, ahead, and is inside on the way there."""
+    So a line that leaves inwards meets it at exactly one other point, and is inside on the way there.
+    """
 
     def settled(a, b):
         turn = bend(table, piece_of((-pi(table.p), pi(table.p)), a, b, table.p))
@@ -78,7 +75,7 @@ def convex(table):
 
 
 def bend(table, theta):
-    """How fast the tangent turns with the parameter."""
+    """The rate at which the tangent turns, by the parameter."""
     p = table.p
     tx, ty = table.at(0, Jet.of(theta, 1, 0), table.letters, p)[2:]
     (x, y), (fast_x, *_), (fast_y, *_) = (I.of(value(t), p) for t in (tx, ty)), tx.gradient(p), ty.gradient(p)
@@ -86,9 +83,10 @@ def bend(table, theta):
 
 
 class Inside:
-    """Images of rectangles of a grid, and whether the cells cover them, borders included.
+    """Images of rectangles of a grid, and a test whether the cells cover them, borders included.
 
-    Column `i` is `-pi + 2*pi*[i, i + 1]/columns`; row `j` is as much of the strip in which all particles are."""
+    Column `i` is `-pi + 2*pi*[i, i + 1]/columns`; rows divide the strip that holds all particles in the same way.
+    """
 
     def __init__(self, table, lam, high, grid, cells):
         self.table, self.lam, self.cells, self.p = table, lam, cells, table.p
@@ -110,14 +108,15 @@ class Inside:
                 self.cell(x, y, size / 2, more - 1)
 
     def image(self, column, row, size):
-        """Where a square lands, and the angles at which it is left then, for every lam."""
+        """The landings of a square, and the exit angles there, for every lam."""
         landing, psi = self.landing(column, row, size)
         return landing, psi * self.lam
 
     def landing(self, column, row, size):
-        """Where a square lands, and minus the angles at which it arrives: by the mean-value theorem.
+        """The landings of a square, and minus the angles of arrival, by the mean-value theorem.
 
-        The angle of arrival is `-(phi + tau(landing) - tau(theta) - pi)`, where the tangent has the angle `tau`."""
+        The angle of arrival is `-(phi + tau(landing) - tau(theta) - pi)`, where the tangent has the angle `tau`.
+        """
         part = lambda k, n: I.of(k / n * 2 - 1, self.p).hull(I.of((k + size) / n * 2 - 1, self.p))  # noqa: E731
         theta, phi = pi(self.p) * part(column, self.columns), self.top * part(row, self.rows)
         there = I.of(Fraction(self.guess(theta.real(), phi.real())), self.p)
@@ -137,11 +136,11 @@ class Inside:
         return landing, psi.wide((turn * a - bend(self.table, theta)) * u).wide((turn * b + 1) * v)
 
     def covered(self, theta, phi):
-        """Do the cells hold a rectangle and all that is next to it?"""
+        """True if the cells contain a rectangle and all cells next to it."""
         return all(cell in self.cells for cell in self.met(theta, phi))
 
     def met(self, theta, phi):
-        """The cells that a rectangle meets or is next to. No particle leaves the strip."""
+        """The cells that a rectangle meets or is next to; no particle leaves the strip."""
         u = (theta / pi(self.p) + 1) * self.columns / 2
         v = (phi / self.top + 1) * self.rows / 2
         (a, b), (c, d) = (((x.lo - 1) >> x.p, (x.hi + 1) >> x.p) for x in (u, v))
@@ -151,7 +150,7 @@ class Inside:
         return [(i % self.columns, j) for i in across for j in range(c, d + 1)]
 
     def guess(self, theta, psi):
-        """A landing in floating point: counterclockwise from the start the line has points to its right, then left."""
+        """A landing in floats: counterclockwise from the start, points before it are right of the line."""
         x, y, tx, ty = (z.real() for z in self.table.at(0, I.of(Fraction(theta), self.p), self.table.letters, self.p))
         ux, uy, first = tx * sin(psi) - ty * cos(psi), ty * sin(psi) + tx * cos(psi), int(theta % TURN * POINTS / TURN)
         ahead = [self.points[(first + k) % POINTS] for k in range(1, POINTS)]

@@ -1,7 +1,4 @@
-"""Tangencies, for `check.py`, which says what a contact of two manifolds is read from: nothing else is imported.
-
-Why this proves that the manifolds touch: docs/certificate_format.md.
-"""
+"""Tangencies of two manifolds, for `check.py`, its only import; the proof is in docs/certificate_format.md."""
 
 from fractions import Fraction
 
@@ -9,7 +6,7 @@ from check import I, Jet, Table, Wrong, algebra, evaluate, exact, function, impl
 
 
 def composed(f, letters):
-    """A polynomial of three letters with jets in their place."""
+    """A polynomial of three letters with jets in place of the letters."""
     total = 0
     for e, at in algebra(f.degree)[1].items():
         term = f.c[at]
@@ -20,15 +17,16 @@ def composed(f, letters):
 
 
 class Back(Table):
-    """A table whose particles run back in time: what they arrive at is an exit, and they leave as one had come in."""
+    """A table with time reversed: particles arrive at the reversed exit angle and leave at the angle of incidence."""
 
     def __init__(self, table):
         self.__dict__ = table.__dict__
 
     def leaves(self, psi, names):
-        """The angle of incidence, with its sign for a particle that leaves, from which the law makes `-psi`.
+        """The angle of incidence, with the sign of a particle that leaves, which the law maps to `-psi`.
 
-        Among all the angles between it and 0 it is the only one, so that it is the same however often one asks."""
+        It is unique among the angles between it and 0, so it is the same at every call.
+        """
         if self.law is None:
             return psi * names["1/lam"]
 
@@ -42,11 +40,13 @@ class Back(Table):
 
 
 class Manifold:
-    """The unstable manifold of a saddle, for each lam of a box; or, with time running back, the stable one.
+    """The unstable manifold of a saddle, for each lam of a box; or, with time reversed, the stable one.
 
     It is a graph y = w(x, lam), abs(x) <= reach, in the frame of a file, which moves with lam. The file has bounds of
-    w, w_x, w_lam, w_xx/2 and w_x_lam. A round maps such graphs (0 is one) over abs(x) <= inner to such graphs, and any
-    two closer. So one is mapped to itself, and along it a round expands: it is the manifold of a saddle on it."""
+    w, w_x, w_lam, w_xx/2 and w_x_lam. A round maps such graphs (0 is one) over abs(x) <= inner to such graphs, and
+    contracts their distance. So one is mapped to itself, and a round expands along it: it is the manifold of a saddle
+    on it.
+    """
 
     def __init__(self, table, given, lam, back):
         p, self.lam, self.own, self.other = table.p, lam, int(back), int(not back)
@@ -79,11 +79,11 @@ class Manifold:
         return y * self.across + x + theta, x * self.along + y + psi, self.table.letters | names
 
     def centred(self, lam):
-        """The middle of the frame."""
+        """The origin of the frame at `lam`: place and angle, which move linearly with `lam`."""
         return [(lam - self.lam.mid()) * move + zero for zero, move in zip(self.zero, self.drift)]
 
     def framed(self, theta, psi, lam):
-        """The coordinates of a state."""
+        """The coordinates of a state in the frame."""
         (a, b), one = (x - zero for x, zero in zip((theta, psi), self.centred(lam))), 1 / (1 - self.along * self.across)
         return (a - b * self.across) * one, (b - a * self.along) * one
 
@@ -96,10 +96,11 @@ class Manifold:
 
 
 def touching(given, table, lam, title):
-    """Exactly one contact of two manifolds with lam in a box, and places near those of a file: these, and its name.
+    """Proves exactly one contact of two manifolds with lam in a box and places near those of a file; returns its name.
 
-    The particle that came and the one that goes are at one place, at angles that obey the law; tangents are parallel.
-    Where the derivative of these equations is regular, the contact is quadratic and passes with non-zero speed."""
+    The arriving and the departing particle are at one place, at angles that obey the law, with parallel tangents. Where
+    the derivative of these equations is regular, the contact is quadratic and passes with non-zero speed.
+    """
     true = f"tangency of two manifolds: {title}"
     need(given["name"] == true, f"the name must be {true!a}", Wrong)
     whole = table.closed == [True] and not table.marks

@@ -17,7 +17,7 @@ nb_execution_mode = "off"  # they are kept with what they show; the tests execut
 html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = "Pinball billiards"
-html_static_path = ["static"]
+html_static_path = ["static", "../verification/paper/report/math.woff2"]  # the font of the reports' formulas
 html_css_files = ["page.css"]
 exclude_patterns = ["_build", "jupyter_execute"]  # what an earlier build has left is no page
 myst_enable_extensions = ["deflist", "dollarmath"]
@@ -91,13 +91,55 @@ NAMED = {  # what the theme leaves without a level, name or heading, in a role o
 }
 
 
+TABLE, HEAD, ROW, CELL = (
+    re.compile(pattern, re.DOTALL)
+    for pattern in (
+        r'<table class="docutils (.*?)</table>',
+        r'<th class="head[^"]*">(.*?)</th>',
+        r"<tr .*?</tr>",
+        r"<td>(.*?)</td>",
+    )
+)
+LONG_WORD = re.compile(r'(?<=<span class="pre">)[^<&]{25,}')  # a path, which may break at its parts
+FOLDED, LONGEST = range(3, 6), 24  # columns: fewer fit a phone, more are numbers, which scroll; and rows
+
+
+def foldable(found):
+    """A table whose cells say what column they are in, so that a narrow screen can set them below each other."""
+    table = LONG_WORD.sub(lambda word: re.sub(r"(?<=[/._])", "<wbr>", word[0]), found[0])
+    heads = [plain_text(head) for head in HEAD.findall(table)]
+    if len(heads) > FOLDED[-1] or table.count("<tr ") > LONGEST:
+        return table
+    if len(heads) < FOLDED[0]:
+        return table.replace('class="docutils', 'class="wrapped docutils', 1)
+    labelled = ROW.sub(lambda row: label_cells(row[0], heads), table)
+    return labelled.replace('class="docutils', 'class="folded docutils', 1)
+
+
+def label_cells(row, heads):
+    """A row of a table, each cell with the head of its column; empty cells are marked."""
+    labels = iter(heads)
+
+    def labelled(cell):
+        empty = "" if plain_text(cell[1]) else ' class="empty"'
+        return f'<td data-label="{next(labels)}"{empty}>{cell[1]}</td>'
+
+    return CELL.sub(labelled, row)
+
+
+def plain_text(html):
+    """What a piece of HTML says, as the value of an attribute."""
+    return re.sub(r"<[^>]*>", "", html).strip().replace('"', "&quot;")
+
+
 def accessible(app, exception):
-    """Puts into the theme's pages what assistive technology asks for; the reports beside them have it."""
+    """Puts into the theme's pages what assistive technology and phones ask for; the reports beside them have it."""
     for path in Path(app.outdir).rglob("*.html"):
         page = path.read_text(encoding="utf-8")
         if "sidebar-drawer" in page:
             for bare, named in NAMED.items():
                 page = page.replace(bare, named)
+            page = TABLE.sub(foldable, page)
             path.write_text(page, encoding="utf-8")
 
 

@@ -15,8 +15,9 @@ from matplotlib.patches import Rectangle
 from numeric import PinballMap
 from symbolic import Scene
 from verification.plots.sheet import AXES, BLACK, DARK, MIDDLE, figure, styled
-from verification.proofs.global_dynamics import Boxes, PinballImages
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractors
+from verification.rigorous.boxes import Boxes
 
 PICTURE = Path(__file__).with_name("figures") / "no_two_attractors.png"
 LAM, GRID, HALF = Fraction(3, 25), (1024, 8192), 0.006
@@ -28,7 +29,7 @@ def proof() -> NoTwoAttractors:
     """What docs/global.md proves."""
     theta, phi = (np.array([x, -x]) for x in SADDLE)
     start = Boxes(np.array([0, 0]), (theta, theta), (phi, phi))
-    return NoTwoAttractors(PinballImages(Scene("cuspless"), (LAM,) * 2), *GRID, start, (0, *SADDLE), 4, HALF, 24)
+    return NoTwoAttractors(PinballImages(Scene("cuspless"), (LAM,) * 2), *GRID, start, (0, *SADDLE), 4, HALF)
 
 
 def drawn() -> Figure:

@@ -153,7 +153,7 @@ def _stub(room: str, used: dict[str, set[str]], files: dict[str, Path]) -> str:
     if whole := sorted(used.pop(room, set()) & own):
         lines, names = [f"from . import {', '.join(whole)}"], {*whole}
     for module in sorted(used):
-        found = sorted((used[module] & defined(files[module])) - own - names, key=rank)
+        found = sorted((used[module] & defined(files[module])) - own - names, key=lambda x: (rank(x)[0], x.lower(), x))
         names.update(found)
         line = f"from .{module.removeprefix(room + '.')} import {', '.join(found)}"
         broken = [line.partition("import ")[0] + "import (", *(f"    {name}," for name in found), ")"]

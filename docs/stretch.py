@@ -72,8 +72,7 @@ def drawn() -> Figure:
     left.axhline(0, **FAINT)
     shade: dict[str, Any] = {"lw": 0, "alpha": 0.22}
     left.fill_between(fine, rate, np.log(2), color=MIDDLE, label=r"proved for $\nu_+$", **shade)
-    top = np.minimum(-rate, np.log(2 * fine))
-    left.fill_between(fine, np.log(fine) - np.log(2), top, color=DARK, label=r"proved for $\nu_-$", **shade)
+    left.fill_between(fine, np.log(fine / 2), np.log(fine), color=DARK, label=r"proved for $\nu_-$", **shade)
     for colour, name, value, error in zip((MIDDLE, DARK), "+-", values, errors, strict=True):
         look: dict[str, Any] = {"fmt": "o", "ms": 3, "mew": 0, "elinewidth": 0.7, "color": colour}
         left.errorbar(lams, value, 2 * error, label=rf"$\nu_{name}$, measured", **look)

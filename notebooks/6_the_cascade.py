@@ -56,7 +56,7 @@ print("lambda_oo =", nstr(end.limit.value, 12), "+-", nstr(end.limit.error, 2))
 print("delta     =", nstr(end.ratio.value, 8), "+-", nstr(end.ratio.error, 2))
 
 # Work grows linearly with the period, because the chord system is cyclic and tridiagonal and is never written as a
-# dense matrix; the cascade goes on to period $2^{15}$ (`benchmarks/certificates.py`).
+# dense matrix; the cascade goes on to period $2^{15}$.
 
 # ## A check that can fail
 #

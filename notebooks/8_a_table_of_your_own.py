@@ -66,10 +66,10 @@ Image(drawn("results.attractors", (map, find(map, 500, 1)), ".png"))
 from verification.arithmetic.balls import decimal
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
-from verification.named.locate import certify
+from verification.named.locate import proof_near
 
 problem = Problem(flower, (0, 0), BifurcationKind.FLIP, free="lam")
-proof = certify(problem, [0.0, 3.141592653589793, float(threshold)], 30)
+proof = proof_near(problem, [0.0, 3.141592653589793, float(threshold)], 30)
 print(decimal(proof.value, 30)[0])
 for item, answer in proof.checks.items():
     print(f"  {item:30} {answer}")
@@ -79,5 +79,5 @@ for item, answer in proof.checks.items():
 # +
 from verification.arithmetic.balls import real_ball
 
-assert proof.certified
+assert proof.proved
 assert proof.value.overlaps(real_ball(threshold, 40))

@@ -1,6 +1,33 @@
-"""What is the mathematics? Tables and scenes, exact, and what is derived from them by SymPy.
+"""What is the mathematics? Exact tables and scenes, and the formulas that SymPy derives from them.
 
-from symbolic import Law, Scene, tables
+A table argument is one of `tables`, a scene, a map, or the name of one of the paper's tables. All numbers are exact:
+text such as `"2/25"`, `"0.08"` or `"sqrt(2)"`, integers and fractions. A float is refused: it is not what it shows.
+
+Tables
+    tables              the paper's tables, a gallery, and `polar`, `parametric`, `piecewise` for one's own
+    Scene               a table with its shape, reflection law and contraction; one line of text, `load` and `save`
+    Law                 a reflection law: the exit angle as a formula in the incidence angle
+
+Derivations
+    curvature           signed curvature along the boundary
+    arc_length          arc length along the boundary, in closed form
+    perimeter           length of the boundary
+    area                enclosed area
+    derivative_matrix   d(s1, phi1)/d(s0, phi0) of one flight and one reflection
+    slap_map            the one-dimensional map at lam = 0, and its derivative
+    double_normals      cycles of period 2 along the axes of symmetry
+    monodromy           the derivative matrix of the map around a cycle
+    multipliers         its eigenvalues
+    thresholds          contractions at which a double normal doubles its period or becomes a focus
+    generate            code of a formula for NumPy, mpmath or balls, or as text
+
+Results
+    Cycle               a cycle with its bounces
+    SlapMap             result of `slap_map`
+
+>>> from symbolic import curvature
+>>> curvature("circle")
+-1
 """
 
 import os

@@ -1,4 +1,4 @@
-"""The documentation is true: its Python gives what it shows, its commands run, its pages are all reached."""
+"""The documentation is true: its Python prints what it shows, its commands run, and all pages can be reached."""
 
 import ast
 import doctest
@@ -28,7 +28,7 @@ COMMANDS = [
 
 
 def loaded(name):
-    """A script among the pages, as a module."""
+    """A script of the docs folder, loaded as a module."""
     spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -42,6 +42,7 @@ def named(page):
     return page.stem
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PYTHON, ids=named)
 def test_python_on_a_page_gives_what_the_page_shows(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -51,6 +52,7 @@ def test_python_on_a_page_gives_what_the_page_shows(page, tmp_path, monkeypatch)
     assert result.failed == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("page", "block"), COMMANDS)
 def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -71,7 +73,7 @@ def test_commands_on_a_page_run(page, block, tmp_path, monkeypatch, capsys):
     ],
 )
 def test_the_paper_that_a_page_makes_is_judged_as_the_page_says(page, table, verdicts, tmp_path, monkeypatch, capsys):
-    """Its TOML and its Python, put where it says, and the lines that it prints; with the table, where it writes one."""
+    """The page's files, written where it says, print the lines that it shows; also with a table's file of its own."""
     monkeypatch.chdir(tmp_path)
     text = (DOCS / f"{page}.md").read_text()
     blocks = {kind: re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("toml", "python", "text")}
@@ -122,8 +124,9 @@ def test_every_picture_of_the_gallery_has_its_code_and_is_small():
     assert sum(there.values()) < 2_000_000
 
 
+@pytest.mark.slow
 def test_a_picture_of_the_gallery_is_what_its_code_draws(tmp_path):
-    """One that is cheap; to the eye, since fonts and codecs differ in the last digit."""
+    """A picture that is cheap to draw, compared up to fonts and codecs, which differ in the last digit."""
     drawn = images.imread(GALLERY.made("ellipse", tmp_path)).astype(float)
     shown = images.imread(DOCS / "gallery" / "ellipse.webp").astype(float)
 
@@ -132,26 +135,28 @@ def test_a_picture_of_the_gallery_is_what_its_code_draws(tmp_path):
 
 
 def test_the_picture_of_the_rooms_is_what_the_import_contracts_say():
-    """`python docs/rooms.py` draws it anew."""
+    """If it fails, `python docs/rooms.py` draws the picture anew."""
     assert ROOMS.PICTURE.read_text() == ROOMS.picture()
 
 
 def test_the_reference_has_every_module_and_nothing_else():
-    """`python docs/rooms.py` writes it anew."""
+    """If it fails, `python docs/rooms.py` writes the reference anew."""
     assert {path: path.read_text() for path in ROOMS.REFERENCE.rglob("*.md")} == ROOMS.reference()
 
 
+@pytest.mark.slow
 def test_every_room_exports_what_other_rooms_use_of_it():
-    """`python docs/rooms.py` writes the stubs anew; a room's `__init__` reads its own when a name is asked for."""
+    """`python docs/rooms.py` writes the stubs from which a room's `__init__` loads names when they are first used."""
     stubs = ROOMS.stubs()
 
     assert {path: path.read_text() for path in stubs} == stubs
     assert [path for path in stubs if "attach_stub" not in path.with_suffix(".py").read_text()] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [name for storey in ROOMS.orders()[""] for name in ROOMS.modules(storey)])
 def test_every_public_object_of_a_module_is_in_the_reference(module):
-    """The reference shows what has a docstring, so that a public object without one would be missing."""
+    """The reference lists only objects with a docstring, so that each public object needs one."""
     body = ast.parse((ROOT / Path(*module.split("."))).with_suffix(".py").read_text()).body
     public = [node for node in body if isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name[0] != "_"]
 

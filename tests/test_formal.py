@@ -1,6 +1,6 @@
-"""The theorems in Coq: what is generated is fresh, nothing is admitted, and what is assumed is what the record says.
+"""The Coq theorems: generated files are fresh, nothing is admitted, and assumptions are those on record.
 
-`make formal` checks the proofs themselves, where Coq is.
+`make formal` checks the proofs themselves, where Coq is installed.
 """
 
 import importlib.util
@@ -34,10 +34,12 @@ def recorded():
     return {name: groups.split() for name, groups in (line.split(": ") for line in lines)}
 
 
+@pytest.mark.slow
 def test_the_generated_definitions_are_what_sympy_and_the_printed_claims_give():
     assert script("generate").text() == (FORMAL / "Generated.v").read_text()
 
 
+@pytest.mark.slow
 def test_the_boxes_are_what_newtons_method_finds():
     assert script("boxes").text() == (FORMAL / "Boxes.v").read_text()
 
@@ -55,7 +57,7 @@ def test_nothing_is_admitted_or_postulated(path):
 
 @pytest.mark.parametrize("path", PROOFS, ids=lambda path: path.stem)
 def test_hypotheses_stand_in_sections_only(path):
-    """Outside a section `Hypothesis` and `Variable` would postulate; inside they become premisses of each theorem."""
+    """Outside a section `Hypothesis` and `Variable` are axioms; inside they become premisses of each theorem."""
     depth, outside = 0, []
     for line in path.read_text().splitlines():
         depth += line.startswith("Section ") - bool(re.match(r"End \w+\.", line))

@@ -1,18 +1,21 @@
 from .maps import laws, strategies
 from .maps.enclosed import EnclosedMap
 from .maps.exact import ExactMap
-from .named.files import check
+from .measure.work.scenes import WorkPrecision, work_precision
+from .named.bifurcations import bifurcations
 from .named.locate import Located, locate
 from .named.questions import (
     BranchEvent,
     FollowedOrbit,
     PeriodicOrbit,
     PeriodicOrbits,
-    bifurcations,
     certify,
     find_cycles,
     follow,
+    morse_graph,
+    trapping_region,
 )
+from .named.theorems import check
 from .paper.report.report import verify
 from .reports.report import report
 
@@ -24,6 +27,7 @@ __all__ = [
     "Located",
     "PeriodicOrbit",
     "PeriodicOrbits",
+    "WorkPrecision",
     "bifurcations",
     "certify",
     "check",
@@ -31,7 +35,10 @@ __all__ = [
     "follow",
     "laws",
     "locate",
+    "morse_graph",
     "report",
     "strategies",
+    "trapping_region",
     "verify",
+    "work_precision",
 ]

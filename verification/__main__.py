@@ -2,6 +2,17 @@
 
 import sys
 
-from verification.app.cli import main
 
-sys.exit(main())
+def main() -> int:
+    """Runs `pinball` and returns its exit status: 130 after Ctrl-C, also while the program is being loaded."""
+    try:
+        from verification.app.cli import main as pinball
+
+        return pinball()
+    except KeyboardInterrupt:
+        sys.stderr.write("pinball: interrupted\n")
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

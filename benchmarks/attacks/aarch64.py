@@ -1,4 +1,4 @@
-"""Kernels of every kind of table compiled for AArch64 and run there, or in QEMU: the same bits as on this machine.
+"""Attack: kernels of every kind of table, compiled for AArch64, have the same bits there or in QEMU as here.
 
 Where the compiler or the emulator is missing, nothing is tried, and the sentence says what is needed.
 """
@@ -45,7 +45,7 @@ int main(void) {
 
 
 def scenes() -> dict[str, Callable[[], Any]]:
-    """A table for each way to find the next bounce."""
+    """A table for each method to find the next bounce."""
     from numeric import PinballMap
     from symbolic import tables
 
@@ -74,7 +74,7 @@ def scenes() -> dict[str, Callable[[], Any]]:
 
 
 def missing() -> str:
-    """What this machine lacks, in a sentence; empty when kernels can be run."""
+    """The compiler or emulator that this machine lacks, in a sentence; empty when kernels can be run."""
     if platform.machine().lower() in ("aarch64", "arm64"):
         return "this machine is an AArch64 itself: the suite runs its kernels"
     lacks = [name for name in (COMPILER, EMULATOR) if shutil.which(name) is None]
@@ -84,7 +84,7 @@ def missing() -> str:
 
 
 def program(text: str, folder: Path) -> Path:
-    """An executable of AArch64 with this kernel."""
+    """An executable for AArch64 with this kernel."""
     from numeric.kernels import machine
 
     llvm = machine._llvm()
@@ -99,7 +99,7 @@ def program(text: str, folder: Path) -> Path:
 
 
 def differing(map: Any, particles: int, bounces: int, exponents: bool, seed: int) -> tuple[int, int]:
-    """How many numbers both machines found for the same particles, and how many of these differ in a bit."""
+    """The number of values that both machines computed for the same particles, and of those that differ in a bit."""
     import numpy as np
 
     from numeric.kernels import machine
@@ -140,7 +140,7 @@ FEW, AT_REST = 16, 4000  # particles, and bounces after which many lie below the
 def aarch64(particles: int, bounces: int = 100, seed: int = 1) -> Outcome:
     """Orbits and exponents on every kind of table: how many numbers differ in any bit.
 
-    Many particles for some bounces, and a few until those that come to rest on a cycle are taken for zero there.
+    Many particles make some bounces; a few continue until their distances from a cycle are flushed to zero.
     """
     if lacks := missing():
         return Outcome(0, 0, lacks)

@@ -1,4 +1,4 @@
-"""Sweeps whose writes fail: killed, refused, damaged, on a disk that is full; the end has the same bytes."""
+"""Attack: sweeps whose writes are killed, refused, damaged or hit a full disk end with the same bytes."""
 
 import errno
 import os
@@ -14,11 +14,11 @@ from attacks.outcome import Outcome
 
 
 class Gone(BaseException):
-    """The process ends here: nothing of what would tidy up behind it is done."""
+    """Raised where the process would be killed: no handler for ordinary exceptions cleans up."""
 
 
 def interrupted(work: Callable[[], object], where: str, moment: int) -> bool:
-    """Does `work` and lets its write number `moment` fail; was it reached?
+    """Runs `work` with a failure at its write number `moment`; returns whether that was reached.
 
     `before`: the disk is full when the file is written. `between`: the process ends after the write and before the
     rename, so that the temporary file stays.
@@ -59,7 +59,7 @@ def _files(store: Path) -> dict[str, bytes]:
 
 
 def squares(size: int, cut: int, number: int, done: list[tuple[int, ...]]) -> Any:
-    """A sweep over a grid of numbers, with random ones beside them; the parts that are computed are added to `done`."""
+    """A sweep over a grid of numbers and random ones; the parts that are computed are added to `done`."""
     import numpy as np
 
     from numeric.sweeps.sweep import Axis, Field, Sweep
@@ -75,7 +75,7 @@ def squares(size: int, cut: int, number: int, done: list[tuple[int, ...]]) -> An
 
 
 def _parts(store: Path, whole: Path) -> set[str]:
-    """The parts of which the files of both fields have the bytes of a sweep that nothing disturbed."""
+    """The parts for which the files of both fields have the bytes of an undisturbed sweep."""
     found, right = _files(store), _files(whole)
     names = [{name for name in found if name.startswith(f"{field}/c/")} for field in ("square", "noise")]
     same = [{name[name.index("c/") :] for name in each if found[name] == right.get(name)} for each in names]
@@ -85,7 +85,7 @@ def _parts(store: Path, whole: Path) -> set[str]:
 def restarts(sweeps: int, seed: int = 1) -> Outcome:
     """Sweeps of random grids, each interrupted at random writes and damaged between its runs, until it is done.
 
-    At the end every byte is that of a sweep that nothing disturbed, and no part that was whole was computed again.
+    At the end every byte equals that of an undisturbed sweep, and no intact part was computed again.
     """
     from numeric.sweeps.run import run
 
@@ -115,9 +115,9 @@ def restarts(sweeps: int, seed: int = 1) -> Outcome:
 
 
 def disks(pages: int, seed: int = 1) -> Outcome:
-    """A sweep onto a disk of memory of one page, of two, ...: it stops with a sentence, and goes on with room.
+    """Sweeps onto disks in memory of one page, two pages, ...: each stops with a sentence, and continues with room.
 
-    At the end every byte is that of a sweep that nothing disturbed. Only root may mount such a disk.
+    At the end every byte equals that of an undisturbed sweep. Only root may mount such a disk.
     """
     from numeric.sweeps.run import UnfinishedError, run
 

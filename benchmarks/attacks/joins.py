@@ -1,4 +1,4 @@
-"""Flights of the cuspless table that pass a join within rounding: on which side they land."""
+"""Attack: flights of the cuspless table that pass a join within rounding land on the correct side."""
 
 from typing import Any, NamedTuple
 
@@ -6,7 +6,7 @@ from attacks.outcome import Outcome
 
 
 class Passed(NamedTuple):
-    """What became of flights that pass a join closely: arrays, and the distances in units of 2**-52."""
+    """The results of flights that pass a join closely: arrays, and the distances in units of 2**-52."""
 
     miss: Any
     stopped: Any
@@ -15,10 +15,9 @@ class Passed(NamedTuple):
 
 
 def past_joins(count: int, units: float, near: bool, kernels: bool, seed: int) -> Passed:
-    """Flights of the cuspless table, arc to join, that miss it by up to so many units of 2**-52; sides in 80 bits.
+    """Flights of the cuspless table from arc to join that miss it by some units of 2**-52; the side in 80 bits.
 
-    They leave from anywhere on the arc, or from `near` the join. The particle is what the doubles say: which side it
-    passes is told from the rounded state and not from where it was aimed.
+    They leave from anywhere on the arc, or from `near` the join. The side is that of the rounded state, not of the aim.
     """
     import numpy as np
 
@@ -55,9 +54,9 @@ def past_joins(count: int, units: float, near: bool, kernels: bool, seed: int) -
 
 
 def joins(flights: int, seed: int = 1, batch: int = 100_000) -> Outcome:
-    """Flights past a join by up to eight units, half from anywhere and half from beside it: none on the wrong side.
+    """Flights past a join by up to eight units, half from anywhere and half from near it: none on the wrong side.
 
-    Failed are also those that are stopped although they pass it by ten units.
+    Flights that stop although they pass it by ten units fail, too.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""Object files and images of machine code with fields written over: an image or none, never a crash."""
+"""Attack: object files and images of machine code with overwritten fields give an image or none, but never a crash."""
 
 import random
 import struct
@@ -9,7 +9,7 @@ INTERESTING = (0, 1, 2, 7, 8, 23, 24, 63, 64, 4095, 4096, 1 << 16, (1 << 31) - 1
 
 
 def altered(whole: bytes, chance: random.Random) -> bytes:
-    """The bytes with one to six fields, of one to eight bytes each, written over, and sometimes cut off."""
+    """The bytes with one to six fields of one to eight bytes overwritten, and sometimes truncated."""
     code = bytearray(whole)
     for _ in range(chance.randint(1, 6)):
         size = chance.choice((1, 2, 4, 8))
@@ -25,10 +25,10 @@ def altered(whole: bytes, chance: random.Random) -> bytes:
 
 
 def images(executions: int, seed: int = 1, batch: int = 20_000) -> Outcome:
-    """Object files of a kernel, and images made of them, with fields written over: an image or none, never a crash.
+    """Object files of a kernel, and images made of them, with overwritten fields: an image or none, never a crash.
 
-    Half of the object files keep their head and section table and are hit in the tables, where most fields are. What
-    is laid out is mapped but never called: a byte of the code itself is nobody's to check.
+    Half of the object files keep their header and section table and are hit in the tables. An image is mapped but never
+    called: bytes of the code itself cannot be checked.
     """
     from numeric import PinballMap
     from numeric.kernels import machine

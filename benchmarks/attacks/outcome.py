@@ -1,4 +1,4 @@
-"""What an attack found, and how one is run in processes that may die."""
+"""The result of an attack, and a function that runs one in child processes that may die."""
 
 import os
 import random
@@ -10,7 +10,7 @@ Attack = Callable[[random.Random], None]
 
 
 class Outcome(NamedTuple):
-    """How many attempts there were, how many of them failed, and what was found along the way."""
+    """The number of attempts, the number of failures, and notes."""
 
     tried: int
     failed: int
@@ -18,9 +18,9 @@ class Outcome(NamedTuple):
 
 
 def in_children(attack: Attack, executions: int, seed: int, batch: int) -> int:
-    """Runs an attack so many times, a batch to each forked child; how many children died or raised.
+    """Runs an attack many times, a batch in each forked child; returns how many children died or raised.
 
-    A child that is killed by a signal is a failure like one that raises: its seed is printed.
+    A child that a signal kills is a failure like one that raises: its seed is printed.
     """
     failed = 0
     for first in range(0, executions, batch):

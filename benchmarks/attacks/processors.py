@@ -1,10 +1,9 @@
-"""The whole report with fewer instructions: every byte of it is compared.
+"""Attack: the whole report is the same, byte by byte, with fewer processor instructions.
 
-`pinball verify --report` is run with all that the processor has; without AVX-512, in kernels (LLVM), NumPy, OpenBLAS
-and the C library; and with the C library's functions for processors that have no fused multiply-add, whose last bits
-are other ones. Seconds are left out of the comparison, and nothing else: values, verdicts, words, pages and pictures.
-It says `same`, or which files differ and which claims; a difference without AVX-512 is a failure, as docs/trust.md
-says that there is none.
+`pinball verify --report` runs with all instructions; without AVX-512, in kernels (LLVM), NumPy, OpenBLAS and the C
+library; and with the C library's functions for processors without fused multiply-add, whose last bits differ. Only
+seconds are left out of the comparison. It says `same`, or which files and claims differ; a difference without AVX-512
+is a failure, as docs/trust.md says that there is none.
 """
 
 import json
@@ -48,13 +47,13 @@ SECONDS = r'^ *"seconds": .*$|^- seconds: .*$|\b[\d.]+ s\b|took \d+ seconds'
 
 
 def held() -> dict[str, str]:
-    """The environment without what holds a library to fewer instructions."""
+    """The environment without variables that restrict a library to fewer instructions."""
     names = {name for _, more in PROCESSORS.values() for name in more}
     return {name: value for name, value in os.environ.items() if name not in names}
 
 
 def report(folder: Path, processor: str, environment: dict[str, str], only: str) -> dict[str, str]:
-    """The files of a report by name, without seconds; one process judges, so that it is the one that is held."""
+    """The files of a report by name, without seconds, judged in one process."""
     around = held() | environment | {"PYTHONPATH": str(ROOT), "PINBALL_CACHE": str(folder / "cache")}
     asked = ["verify", "--only", only, "--jobs", "1", "--report", str(folder / "report")]
     asked += ["--no-figures"] * (only != "*")  # the figures are as many whatever is asked
@@ -76,7 +75,7 @@ def claims(files: dict[str, str]) -> dict[str, object]:
 
 
 def compared(only: str = "*") -> dict[str, list[str]]:
-    """For each processor but the first: which files, and which claims, are other ones."""
+    """For each processor but the first: the files and the claims that differ."""
     said: dict[str, dict[str, str]] = {}
     for name, (processor, environment) in PROCESSORS.items():
         with tempfile.TemporaryDirectory() as folder:
@@ -91,7 +90,7 @@ def compared(only: str = "*") -> dict[str, list[str]]:
 
 
 def processors(only: str) -> Outcome:
-    """Claims whose reports are compared; what differs without AVX-512 failed."""
+    """Claims whose reports are compared; those that differ without AVX-512 failed."""
     if (platform.machine(), sys.platform) != ("x86_64", "linux"):
         return Outcome(0, 0, "not x86-64 on Linux: nothing is compared")
     found = compared(only)

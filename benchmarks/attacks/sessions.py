@@ -1,4 +1,4 @@
-"""Sessions of the live table: opened, left, forgotten."""
+"""Attack: sessions of the live table that are opened and left are forgotten."""
 
 import os
 import socket
@@ -39,7 +39,7 @@ live.serve(int(sys.argv[1]), False)
 
 @contextmanager
 def live_server() -> Iterator[tuple[int, "subprocess.Popen[str]"]]:
-    """The live table in a process that tells how many sessions there were and are; its environment would open it."""
+    """The live table in a process that reports its numbers of sessions."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -69,7 +69,7 @@ def answer(port: int, request: str, seconds: float = 600) -> str:
 
 
 def left(served: "tuple[int, subprocess.Popen[str]]", count: int, seconds: float = 1200) -> tuple[int, int, int]:
-    """How many of `count` visitors were answered, and how many sessions there were and are when all have left."""
+    """The number of answered visitors of `count`, and of sessions opened and remaining when all have left."""
     port, process = served
     answered = sum(" 200 " in answer(port, f"GET / HTTP/1.1\nHost: 127.0.0.1:{port}\n\n") for _ in range(count))
     assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""True statements made slightly false, and certificate files with entries altered: nothing false is certified."""
+"""Attack: true statements made slightly false are never certified."""
 
 import json
 import random
@@ -17,17 +17,16 @@ STATEMENTS = 40  # that are true, at shapes and contractions drawn at random
 def true_statements(count: int, chance: random.Random) -> list[dict[str, Any]]:
     """Certificates of the cuspless table's flip and of the egg's folds, flips and triangles.
 
-    A cycle along a double normal would be one at any contraction: none is among them.
+    Cycles along double normals, which exist at any contraction, are excluded.
     """
     from sympy import Rational
 
     from symbolic import tables
     from verification.cycles.newton import floats
     from verification.cycles.problem import Problem
-    from verification.named import files
-    from verification.named.locate import certify, locate
+    from verification.named.locate import locate, proof_near
 
-    found: list[dict[str, Any]] = [files.document(locate("lambda-c", 20).proof)]  # type: ignore[arg-type]
+    found: list[dict[str, Any]] = [locate("lambda-c", 20).proof.document()]  # type: ignore[union-attr]
     while len(found) < count:
         kind, lam = chance.randrange(3), Rational(chance.randint(5, 95), 100)
         if kind == 0:
@@ -38,20 +37,19 @@ def true_statements(count: int, chance: random.Random) -> list[dict[str, Any]]:
             lam = Rational(chance.randint(60, 95), 100)
             egg = tables.egg(3).at(alpha=Rational(chance.randint(50, 90), 1000))
             problem = Problem(egg, (0, 0, 0), lam=lam)
-            proof = certify(problem, floats(problem, [0.96, 3.05, 5.15]), 20)
-        if proof.certified:
-            found.append(json.loads(json.dumps(files.document(proof))))
+            proof = proof_near(problem, floats(problem, [0.96, 3.05, 5.15]), 20)
+        if proof.proved:
+            found.append(json.loads(json.dumps(proof.document())))
     return found
 
 
 def falsehoods(count: int, seed: int = 1) -> Outcome:
-    """True statements with a box that no longer holds the solution, at another shape, contraction or kind of event.
+    """True statements with a box that misses the solution, or another shape, contraction or kind of event.
 
-    A digit of the centre moves by 10 to 10**12 radii, the shape by 10**-6 to 10**-14 of itself: so little that
-    nothing but the proof can see it, and too much for the solution to stay in the box. Name and words are those of the
-    altered statement, so that it is the proof that has to refuse.
+    A digit of the centre moves by 10 to 10**12 radii, the shape by 10**-6 to 10**-14 of itself: so little that only the
+    proof can notice it, and too much for the solution to stay in the box. Name and statement are adapted.
     """
-    from verification.named import files
+    from verification.named.theorems import checked, theorem_class
 
     chance, failed, refused = random.Random(seed), 0, 0
     true = true_statements(max(4, min(STATEMENTS, count // 20)), chance)
@@ -78,47 +76,12 @@ def falsehoods(count: int, seed: int = 1) -> Outcome:
         else:
             given["kind"] = KINDS[1 - KINDS.index(given["kind"])]
         try:
-            given["name"], given["statement"] = files.name_of(files.claim_of(given)), files._words(given, files.SCHEMA)
-            certified = files.checked(given).certified
+            stated: Any = theorem_class(given["kind"]).from_dict(given)
+            given["name"], given["statement"] = stated.name, stated.statement_in_words
+            certified = checked(given).proved
         except ValueError:
             certified, refused = False, refused + 1
         if certified:
             failed += 1
             sys.stderr.write(f"number {number}: certified after a change of {way}: {json.dumps(given)[:2000]}\n")
     return Outcome(count, failed, f"{refused} of them were refused before the proof began")
-
-
-def fields(each: int) -> Outcome:
-    """The damage of certificates/mutants.py, so many mutants of each of its samples, read by the package.
-
-    Each is refused in one sentence, not proved, or true by what is known of the undamaged file.
-    """
-    sys.path.insert(0, str(SECOND))
-    import mutants
-
-    from verification.named import files
-
-    tried, failed, said = 0, 0, {"refused": 0, "not proved": 0, "true": 0}
-    for name in mutants.SAMPLES:
-        original = json.loads((SECOND / f"{name}.json").read_text(encoding="utf-8"))
-        first = mutants.undamaged(name)
-        for k in range(each):
-            given, tried = mutants.mutant(name, original, k), tried + 1
-            try:
-                proof = files.checked(given)
-                if not proof.certified:
-                    said["not proved"] += 1
-                    continue
-                middle = proof.value.mid().str(given["digits"] + 5, radius=False)
-                value, digits = float(Fraction(middle)), min(given["digits"], 14)
-                line = f"proved: {given['name']} = {value:.17f}, within 1e-{digits}"
-                held = given == original or mutants.is_true(given, line, original, first)
-            except ValueError as error:
-                said["refused"] += 1
-                held = "\n" not in str(error)
-            else:
-                said["true"] += held
-            if not held:
-                failed += 1
-                sys.stderr.write(f"{name}, mutant {k}: {json.dumps(given)[:2000]}\n")
-    return Outcome(tried, failed, ", ".join(f"{count} {word}" for word, count in said.items()))

@@ -3,7 +3,7 @@
 from . import elementary, functions
 from .doubled import WORDS, Double, Doubles, Sum, Two, affordable, short_of
 from .functions import CLOSED, Series
-from .intervals import Interval, Intervals, Secant, Secants, whole_turn
+from .intervals import CentredIntervals, Interval, Intervals, Secant, Secants, unit_vectors
 from .llvm import LLVMBackend, LLVMVector
 from .protocol import Backend, Fields, Frame, M, N, Pair, modulus
 from .scalars import ArrayBackend, ScalarBackend
@@ -13,6 +13,7 @@ __all__ = [
     "WORDS",
     "ArrayBackend",
     "Backend",
+    "CentredIntervals",
     "Double",
     "Doubles",
     "Fields",
@@ -35,5 +36,5 @@ __all__ = [
     "functions",
     "modulus",
     "short_of",
-    "whole_turn",
+    "unit_vectors",
 ]

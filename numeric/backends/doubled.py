@@ -1,14 +1,14 @@
 """Programs with more digits: every number is the unevaluated sum of two doubles, by error-free transformations.
 
-A sum, a product, a quotient or a root is off by a few units of `2**-104` of the numbers that go into it.
+A sum, a product, a quotient or a root has an error of a few units of `2**-104` of its operands.
 
-**The elementary functions have ten bits more than doubles, not twice as many.** That is what their readers need, and
-it is cheap: of a Taylor series about the nearest multiple of `log(2)` or `pi/2` the first terms are sums of two
-doubles, and what follows them, less than `2**-11` of the whole, is a double. What has an inverse among these takes one
-step of Newton's method from the double nearby: a logarithm by an exponential, an arc tangent by sine and cosine, roots
-by powers. Bounds are `UNIT` times the modulus of the value for exponentials and hyperbolic functions, and for a
-logarithm, an arc tangent, a sine or a cosine besides `2**-104` of the modulus of the argument, which is that of a
-double up to `2**30`; tests/numeric/backends/test_doubled.py holds them against 50 digits.
+**The elementary functions have ten bits more than doubles, not twice as many.** This is enough for flights, and it is
+cheap: the first terms of a Taylor series about the nearest multiple of `log(2)` or `pi/2` are sums of two doubles, and
+the further terms, less than `2**-11` of the whole, are a double. An inverse function takes one step of Newton's method
+from the nearest double: a logarithm by an exponential, an arc tangent by sine and cosine, roots by powers. Bounds are
+`UNIT` times the modulus of the value for exponentials and hyperbolic functions, and for a logarithm, an arc tangent, a
+sine or a cosine besides `2**-104` of the modulus of the argument, which is that of a double up to `2**30`;
+tests/numeric/backends/test_doubled.py holds them against 50 digits.
 """
 
 import math
@@ -33,7 +33,7 @@ LONG = 200  # sums of programs that run with more digits: more would take second
 
 
 def affordable(*programs: Sequence[tuple[str, *tuple[int, ...]]]) -> bool:
-    """Do programs, given by their lines, cost little enough?"""
+    """Do programs, given by their lines, cost at most `LONG` sums, so that kernels compile in seconds?"""
     return sum((WORDS | OTHERS)[word] for lines in programs for word, *_ in lines) <= LONG
 
 
@@ -73,23 +73,23 @@ Two = tuple[Double[N, M], Double[N, M]]
 
 
 def sum_and_error(x: N, y: N) -> Pair[N]:
-    """`x + y` rounded, and the rounding error, exactly, whichever is larger."""
+    """The rounded sum `x + y` and its exact rounding error, for numbers of any sizes."""
     total = x + y
     back = total - x
     return total, (x - (total - back)) + (y - back)
 
 
 def _ordered(ops: Backend[N, M], high: N, low: N) -> Double[N, M]:
-    """The sum of two doubles of which the first is the larger."""
+    """The sum of two doubles, as a `Double`; `high` must be the larger one in modulus."""
     total = high + low
     return Double(ops, total, low - (total - high))
 
 
 class Sum(Generic[N, M]):
-    """A sum of numbers and products of at most about `size`, a power of two, to `2**-85` of it.
+    """Adds up numbers and products of at most about `size`, a power of two, with an error of about `2**-85*size`.
 
-    Its leading part is kept above a large number, which rounds it to multiples of `2**-36*size`: these add up exactly,
-    and what each term has beside is added up as it is. So a product takes four operations.
+    The leading parts are added to a large number, which rounds them to multiples of `2**-36*size`, so that these sums
+    are exact; the remainders are added up in doubles. So a product takes four operations.
     """
 
     def __init__(self, ops: Backend[N, M], size: float) -> None:
@@ -97,13 +97,13 @@ class Sum(Generic[N, M]):
         self.total, self.low = self.base, ops.number(0.0)
 
     def add(self, x: Double[N, M]) -> None:
-        """A number more."""
+        """Adds a number."""
         total = self.total + x.high
         self.low = self.low + (x.high - (total - self.total)) + x.low
         self.total = total
 
     def add_product(self, x: N, y: N) -> None:
-        """A product more."""
+        """Adds a product."""
         if self.ops.same(y, self.ops.number(0.0)):
             return
         total = self.ops.fma(x, y, self.total)
@@ -116,7 +116,7 @@ class Sum(Generic[N, M]):
 
 
 def short_of(ops: Backend[N, M], u: Pair[N]) -> N:
-    """Half of what the square of a vector's length lacks of one, to its own last bits."""
+    """Half the difference of 1 and the squared length of `u`, a unit vector up to rounding, with all its digits."""
     found = Sum(ops, 1.0)
     for x in u:
         found.add_product(-x, x)
@@ -125,17 +125,17 @@ def short_of(ops: Backend[N, M], u: Pair[N]) -> N:
 
 
 class Doubles(Generic[N, M]):
-    """The number system of `Double`, over some backend."""
+    """The number system of `Double`, over the numbers of a backend."""
 
     def __init__(self, ops: Backend[N, M]) -> None:
         self.ops = ops
 
     def of(self, x: N) -> Double[N, M]:
-        """A number of the backend, exactly."""
+        """A number of the backend, converted exactly."""
         return Double(self.ops, x, self.ops.number(0.0))
 
     def known(self, x: Double[Any, Any]) -> Double[N, M]:
-        """A constant, computed before."""
+        """A constant that was computed over another backend, as one of this backend."""
         return Double(self.ops, self.ops.number(float(x.high)), self.ops.number(float(x.low)))
 
     def q(self, p: int, n: int) -> Double[N, M]:
@@ -174,7 +174,7 @@ class Doubles(Generic[N, M]):
         return Double(self.ops, self.ops.select(mask, x.high, y.high), self.ops.select(mask, x.low, y.low))
 
     def series(self, leading: Sequence[tuple[int, int]], tail: tuple[float, ...], r: Double[N, M]) -> Double[N, M]:
-        """The polynomial in `r` whose first coefficients are these rationals, and the others these doubles."""
+        """The polynomial in `r` with the coefficients `leading`, rationals, then `tail`, doubles."""
         ops = self.ops
         high, low = plane.horner(ops, tail, r.high), ops.number(0.0)
         for p, n in reversed(leading):
@@ -199,7 +199,7 @@ class Doubles(Generic[N, M]):
         return self.ops.two_to(k), r * self.series(((1, 1), (1, 2), (1, 6), (1, 24)), EXP, r)
 
     def within(self, x: Double[N, M]) -> Double[N, M]:
-        """`x`, cut off where its exponential is no double."""
+        """`x`, limited to numbers whose exponential is a double."""
         high = plane.within(self.ops, x.high)
         return Double(self.ops, high, self.ops.select(high == x.high, x.low, self.ops.number(0.0)))
 
@@ -276,7 +276,7 @@ class Doubles(Generic[N, M]):
         return _ordered(self.ops, near.high, -gap)
 
     def unit(self, u: Pair[N]) -> tuple[Double[N, M], Double[N, M]]:
-        """The unit vector along one whose length is one up to rounding."""
+        """The unit vector along `u`, whose length is one up to rounding, with twice the digits."""
         x, y = self.of(u[0]), self.of(u[1])
         short = self.of(self.ops.number(0.5) * (self.q(1, 1) - x * x - y * y).high)
         return x + x * short, y + y * short

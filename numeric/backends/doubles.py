@@ -1,7 +1,7 @@
-"""What backends of float64 have in common, arrays and LLVM vectors alike: their elementary functions and zeros.
+"""The common part of the float64 backends, arrays and LLVM vectors alike: elementary functions and zeros.
 
-All of them are those of `numeric.backends.functions`: sums, products, quotients, square roots and choices, each rounded
-once. So they have the same bits on every processor, which the functions of a mathematical library have not.
+All of these are functions of `numeric.backends.functions`: sums, products, quotients, square roots and choices, each
+rounded once. So they have the same bits on every processor, unlike those of a mathematical library.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +13,7 @@ from numeric.backends.protocol import Backend, Low, M, N, Pair, modulus
 
 
 class DoubleBackend(Backend[N, M], Protocol[N, M]):
-    """What backends of float64 have in common: their elementary functions and zeros are those of this module."""
+    """Shared by backends of float64: elementary functions and zeros by `numeric.backends.functions`."""
 
     doubles: bool = True
 
@@ -22,11 +22,11 @@ class DoubleBackend(Backend[N, M], Protocol[N, M]):
         return angle(self, y, x)
 
     def turn(self, x: N, quarters: int = 2) -> Pair[N]:
-        """`(cos x, sin x)`."""
+        """`(cos x, sin x)` for `|x| <= quarters*pi/2`."""
         return turn(self, x, quarters)
 
     def atan2(self, y: N, x: N) -> N:
-        """The angle of a point anywhere in the plane, from that of its mirror image on the right."""
+        """The angle of a point anywhere in the plane; for points on the left, from that of their mirror image."""
         turned = self.with_sign(self.pi, y) - (near := self.angle(y, modulus(x)))
         return self.select(x < self.number(0.0), turned, near)
 
@@ -69,7 +69,7 @@ class DoubleBackend(Backend[N, M], Protocol[N, M]):
         wanted: M | None = None,
         accepts: Callable[[N], M] | None = None,
     ) -> N:
-        """The only zero in `[low, high]`."""
+        """The only zero of `function` in `[low, high]`; see `Backend.zero`."""
         return bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
 
     def polynomial_zero(
@@ -83,5 +83,5 @@ class DoubleBackend(Backend[N, M], Protocol[N, M]):
         wanted: M | None = None,
         accepts: Callable[[N], M] | None = None,
     ) -> N:
-        """That of a polynomial."""
+        """The only zero of a polynomial in `[low, high]`; see `Backend.zero`."""
         return polynomial_zero(self, p, x, low, high, scale, steps, wanted, accepts)

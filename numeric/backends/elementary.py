@@ -1,9 +1,9 @@
-"""Elementary functions of arrays with the same bits on every processor: what orbits and statistics are fed by.
+"""Elementary functions of arrays with the same bits on every processor, for orbits and statistics.
 
 NumPy has several compiled forms of `arcsin`, `arctan`, `exp`, `log`, powers and others, and takes the one for the
-widest registers that the processor has; they differ in the last bit. An orbit that is chaotic makes such a bit its own
-within forty bounces. Those here are made of operations that IEEE 754 rounds, in one order, as kernels do: nothing in
-NumPy is asked for but sums, products, quotients, square roots and moves of the exponent. They err by a unit or two in
+widest registers that the processor has; they differ in the last bit. A chaotic orbit makes such a bit its own
+within forty bounces. The functions here are made of operations that IEEE 754 rounds, in one order, as kernels do: they
+use nothing of NumPy but sums, products, quotients, square roots and moves of the exponent. They err by a unit or two in
 the last place, and are defined at the ends of their ranges, where those of kernels need not be.
 """
 
@@ -39,7 +39,7 @@ def arctan(x: ArrayLike) -> Array:
 
 
 def arcsin(x: ArrayLike) -> Array:
-    """The arc sine, in radians, and no number beyond -1 and 1.
+    """The arc sine, in radians; nan beyond -1 and 1.
 
     >>> [float(angle) for angle in arcsin([-1, 0, 0.5, 1])]
     [-1.5707963267948966, 0.0, 0.5235987755982989, 1.5707963267948966]
@@ -63,7 +63,7 @@ def exp(x: ArrayLike) -> Array:
 
 
 def log(x: ArrayLike) -> Array:
-    """The natural logarithm: minus infinity at 0, no number below.
+    """The natural logarithm: minus infinity at 0, nan below.
 
     >>> [float(value) for value in log([0, 1, np.e, np.inf])]
     [-inf, 0.0, 1.0, inf]
@@ -106,5 +106,5 @@ def _doubles(x: ArrayLike) -> Array:
 
 
 def _values(x: Array) -> Array:
-    """As NumPy gives them: of a single number no array."""
+    """The values as NumPy gives them: for a single number no array."""
     return np.asarray(x)[()]

@@ -92,7 +92,7 @@ def exp_less_one(ops: Backend[N, M], x: N) -> Pair[N]:
 
 
 def within(ops: Backend[N, M], x: N) -> N:
-    """`x`, cut off where its exponential is no double."""
+    """`x`, limited to numbers whose exponential is a double."""
     return ops.maximum(-ops.maximum(-x, ops.number(-LARGEST)), ops.number(-LARGEST))
 
 
@@ -115,7 +115,7 @@ def hyperbolic(ops: Backend[N, M], x: N, word: str) -> N:
 
 
 def logarithm(ops: Backend[N, M], x: N) -> N:
-    """The natural logarithm of a normal positive number; no number elsewhere."""
+    """The natural logarithm of a normal positive number; nan elsewhere."""
     one = ops.number(1.0)
     scale, k = ops.power_of_two(x)
     m = x * scale
@@ -133,7 +133,7 @@ def logarithm(ops: Backend[N, M], x: N) -> N:
 def root(ops: Backend[N, M], x: N, n: int) -> N:
     """The positive `n`-th root of a positive number: a guess by logarithms, and Newton's step on `y**n = x`.
 
-    A number so small that what Newton's step corrects might be subnormal is first made larger by a power of two.
+    A very small number, for which the residual of Newton's step might be subnormal, is first scaled by a power of two.
     """
     positive, lift = ops.number(0.0) < x, 900 // n
     small = x < ops.number(2.0**-900)
@@ -167,7 +167,7 @@ def conjugate(z: Pair[N]) -> Pair[N]:
 
 
 def squared(z: Pair[N]) -> Pair[N]:
-    """`z*z`, with the real part as a product so that nothing cancels twice."""
+    """The square of a complex number; its real part is formed as a product, which loses no digits."""
     return (z[0] - z[1]) * (z[0] + z[1]), (z[0] + z[0]) * z[1]
 
 
@@ -189,7 +189,7 @@ def exact_cross(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> N:
 
 
 def exact_dot(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> N:
-    """`dot`, as `exact_cross`."""
+    """`dot` to two units in the last place, by `exact_cross`."""
     return exact_cross(ops, (z[0], -z[1]), (w[1], w[0]))
 
 
@@ -215,7 +215,7 @@ def unit(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
 
 
 def half(ops: Backend[N, M], c: N, s: N) -> Pair[N]:
-    """Cosine and sine of half an angle from its own, up to a common factor, with no small difference."""
+    """Cosine and sine of half an angle, up to a common factor, from its cosine and sine, without cancellation."""
     behind, one = c < ops.number(0.0), ops.number(1.0)
     return ops.select(behind, s, one + c), ops.select(behind, one - c, s)
 
@@ -227,21 +227,21 @@ def normalised(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
 
 
 class Series(NamedTuple):
-    """How an arc length is told: in closed form, or by a finite Fourier sum; first come offsets of components.
+    """The form of an arc length: closed, or a finite Fourier sum. Its numbers begin with offsets of components.
 
     A sum of sines is `sin(step*theta)` times a polynomial in `cos(step*theta)`, whose powers take half the operations
-    of Clenshaw's rule: `powers` says that their coefficients are given, where these are small enough for it.
+    of Clenshaw's rule: `powers` is true if their coefficients are given, where these are small enough for it.
     """
 
     offsets: int = 0
-    step: int = 1  # of the sum, all frequencies are multiples of it
+    step: int = 1  # the greatest common divisor of the frequencies of the sum
     terms: int = 0
     rises: int = 0  # as many as there are terms, or none on a boundary that mirrors `theta`
     powers: bool = False
 
     @property
     def size(self) -> int:
-        """How many numbers say it: offsets, the mean speed, coefficients of sines, and of rises."""
+        """How many numbers the series has: offsets, the mean speed, coefficients of sines, and of `1 - cos`."""
         return self.offsets + (1 + self.terms + self.rises if self.terms else 0)
 
 
@@ -290,10 +290,10 @@ def bracketed_zero(
 ) -> N:
     """The only zero in `[low, high]` of a function that is negative at `low` and positive at `high`.
 
-    `function` returns value and slope; `scale` is the size below which the zero's absolute error
-    counts; `newton` is the number of steps before anything is asked. A lower bound that is dear may be
-    given as a function, which is called when a lane needs it, with a cheap test `accepts` in its place.
-    Lanes outside the mask `wanted` are left where Newton took them.
+    `function` returns value and slope; `scale` is the size below which the zero's absolute error counts; `newton` is
+    the number of steps before convergence is tested. A lower bound that is expensive may be given as a function, which
+    is called when a lane needs it, with a cheap test `accepts` in its place. Lanes outside the mask `wanted` are left
+    where Newton took them.
     """
     step = x
     for _ in range(newton):
@@ -352,7 +352,7 @@ def polynomial_zero(
     wanted: M | None = None,
     accepts: Callable[[N], M] | None = None,
 ) -> N:
-    """`ops.zero` of a polynomial given by its coefficients; `steps` of Halley, then of Newton."""
+    """As `bracketed_zero` for a polynomial, constant first: `steps` are those of Halley's, then of Newton's method."""
     for _ in range(steps[0]):
         x = halley(p, x)
     return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)

@@ -1,8 +1,8 @@
 """LLVM vectors as an arithmetic: running a step on these values writes its instructions.
 
-A product that is only added to something becomes a fused multiply-add, by this file's rule and not by the compiler's
-leave: no fast-math flag is ever set, so the bits of a result depend neither on the number of lanes, nor on what else
-the kernel computes, nor on the version of LLVM.
+A product that is only added to something becomes a fused multiply-add, by the rule of this file and never by the
+compiler's choice: no fast-math flag is set. So the bits of a result depend neither on the number of lanes, nor on the
+rest of the kernel, nor on the version of LLVM.
 """
 
 import math
@@ -134,7 +134,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return f"%{stem}{self.count}"
 
     def emit(self, text: str, key: str | None = None) -> str:
-        """Write `name = text`, once per scope for equal keys."""
+        """Writes `name = text`, once in a scope for equal keys; the name."""
         key = key if key is not None else text
         for known in reversed(self.known):
             if key in known:
@@ -145,21 +145,21 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return name
 
     def line(self, word: str, *operands: LLVMVector) -> LLVMVector:
-        """An arithmetic instruction."""
+        """Writes an arithmetic instruction; its result."""
         return LLVMVector(self, self.emit(f"{word} {self.type} " + ", ".join(x.text for x in operands)))
 
     def call(self, name: str, *operands: LLVMVector) -> LLVMVector:
-        """An intrinsic function of vectors."""
+        """Writes a call of an intrinsic function of vectors; its result."""
         self.called.add(f"declare {self.type} @llvm.{name}.v{self.width}f64({', '.join([self.type] * len(operands))})")
         inside = ", ".join(f"{self.type} {x.text}" for x in operands)
         return LLVMVector(self, self.emit(f"call {self.type} @llvm.{name}.v{self.width}f64({inside})"))
 
     def compare(self, word: str, x: LLVMVector, y: LLVMVector) -> LLVMMask:
-        """A comparison; false where an operand is no number."""
+        """Writes a comparison; its result, false where an operand is nan."""
         return LLVMMask(self, self.emit(f"fcmp {word} {self.type} {x.text}, {y.text}"))
 
     def mask(self, word: str, x: str, y: str) -> LLVMMask:
-        """A logical instruction."""
+        """Writes a logical instruction; its result."""
         return LLVMMask(self, self.emit(f"{word} {self.masks} {x}, {y}"))
 
     def literal(self, x: float) -> str:
@@ -167,19 +167,19 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return f"splat (double 0x{struct.unpack('<Q', struct.pack('<d', x))[0]:016X})"
 
     def label(self, name: str) -> None:
-        """Start a basic block."""
+        """Starts a basic block with this name."""
         self.lines.append(f"{name}:")
         self.block = name
 
     def open(self) -> None:
-        """Values written from here on are known only until `close`."""
+        """Starts a scope: values written from here on are known only until `close`."""
         self.opened += 1
         self.scope = self.opened
         self.scopes.append(self.scope)
         self.known.append({})
 
     def close(self) -> None:
-        """Forget what was written since `open`."""
+        """Ends a scope: forgets the values written since `open`."""
         self.scopes.pop()
         self.known.pop()
         self.scope = self.scopes[-1]
@@ -191,7 +191,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return self.number(p / n)
 
     def number(self, x: float) -> LLVMVector:
-        """A double."""
+        """The double `x`, as a known constant."""
         return LLVMVector(self, value=float(x))
 
     def constant(self, x: LLVMVector) -> bool:
@@ -209,7 +209,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
 
     @property
     def pi_low(self) -> LLVMVector:
-        """What that double lacks."""
+        """The difference between the number pi and that double."""
         return self.number(2 * functions.HALF_PI_LOW)
 
     def sqrt(self, x: LLVMVector) -> LLVMVector:
@@ -224,11 +224,11 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return self.call("fma", x, y, z)
 
     def product(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
-        """`x*y` rounded by itself, which no sum takes up."""
+        """`x*y`, rounded by itself, not contracted with a sum to one instruction."""
         return self.line("fmul", x, y)
 
     def maximum(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
-        """The larger one; `y` where `x` is no number."""
+        """The larger of two numbers; `y` where `x` is nan."""
         return self.select(y < x, x, y)
 
     def select(self, mask: LLVMMask, x: LLVMVector, y: LLVMVector) -> LLVMVector:
@@ -239,11 +239,11 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return LLVMVector(self, self.emit(text))
 
     def look_up(self, values: Sequence[LLVMVector], index: LLVMVector) -> LLVMVector:
-        """The constant of that index, gathered from memory; the first one where there is none."""
+        """The constant at an index, gathered from memory; the first one if there is none."""
         return LLVMVector(self, memory.gathered(self, [x.value for x in values], index))  # type: ignore[misc]
 
     def look_up_row(self, rows: Sequence[Sequence[float]], index: LLVMVector) -> list[LLVMVector]:
-        """The columns of a table of constants in the row of that index; the first where there is none."""
+        """The entries of a row in a table of constants, by its index; the first row if there is none."""
         return [LLVMVector(self, column) for column in memory.columns(self, rows, index)]
 
     def negated(self, mask: LLVMMask) -> LLVMMask:
@@ -284,14 +284,14 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return self._double(self._bits("shl", shifted, "splat (i64 52)"))
 
     def _within_a_turn(self, x: LLVMVector) -> LLVMVector:
-        """`x` less whole turns: the turn has 107 bits and each subtraction is rounded once, so nothing is lost."""
+        """`x` minus whole turns: the turn has 107 bits and each subtraction is rounded once, so nothing is lost."""
         turns = self.rounded(x * self.number(0.25 / functions.HALF_PI))
         for part in (functions.HALF_PI, functions.HALF_PI_LOW):
             x = self.fma(-turns, self.number(4 * part), x)
         return x
 
     def settle(self, *values: LLVMVector) -> None:
-        """Write these values here, where what they are made of is at hand, and not where they are needed."""
+        """Writes the instructions of these values at this place, where their operands are at hand."""
         for x in values:
             assert x.text
 
@@ -307,7 +307,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     # ---- control flow
 
     def anywhere(self, mask: LLVMMask) -> str:
-        """A single bit: does the mask hold in some lane?"""
+        """A single bit: does the mask hold in any lane?"""
         packed = self.emit(f"bitcast {self.masks} {mask.text} to i{self.width}")
         return self.emit(f"icmp ne i{self.width} {packed}, 0")
 
@@ -319,7 +319,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         limit: int,
         steady: bool = False,
     ) -> list[LLVMVector]:
-        """Apply `body` to lanes for which `condition` holds, until it does for none; `steady`: leaving others alone."""
+        """Applies `body` to lanes while `condition` holds for any; a `steady` body leaves other lanes as they are."""
         head, inside, after = (self.fresh(stem)[1:] for stem in ("head", "inside", "after"))
         starts, before, names = [x.text for x in state], self.block, [self.fresh() for _ in state]
         index, following = self.fresh("pass"), self.fresh("pass")
@@ -346,7 +346,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     def when(
         self, mask: LLVMMask, values: list[LLVMVector], changed: Callable[[], list[LLVMVector]]
     ) -> list[LLVMVector]:
-        """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
+        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects lanes."""
         return self.branch(self.anywhere(mask), values, changed)
 
     def branch(self, bit: str, values: list[LLVMVector], changed: Callable[[], list[LLVMVector]]) -> list[LLVMVector]:

@@ -1,4 +1,4 @@
-"""Constants in memory: what lanes of LLVM vectors load by an index of their own, number by number or in rows."""
+"""Constants in memory, which each lane of an LLVM vector loads by its own index, number by number or in rows."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ FOUR = "<4 x double>"
 
 
 def gathered(ops: "LLVMBackend", values: Sequence[float], index: "LLVMVector") -> str:
-    """The constant of that index; the first one where there is none."""
+    """The constant at an index of each lane; the first one if there is none."""
     name, whole, places = _array(ops, values), _whole(ops, len(values), index), f"<{ops.width} x i32>"
     pointers = ops.emit(f"getelementptr double, ptr {name}, {places} {whole}")
     gather, kind = f"{ops.type} @llvm.masked.gather.v{ops.width}f64.v{ops.width}p0", f"<{ops.width} x ptr>"
@@ -20,7 +20,7 @@ def gathered(ops: "LLVMBackend", values: Sequence[float], index: "LLVMVector") -
 
 
 def columns(ops: "LLVMBackend", rows: Sequence[Sequence[float]], index: "LLVMVector") -> list[str]:
-    """The columns of a table in the row of that index; the first one where there is none.
+    """The entries, column by column, of a table's row at an index of each lane; the first row if there is none.
 
     A lane loads four neighbours at once, and eight shuffles turn the rows of four lanes into columns: less work than
     gathering number by number.
@@ -51,14 +51,14 @@ def _array(ops: "LLVMBackend", values: Sequence[float]) -> str:
 
 
 def _whole(ops: "LLVMBackend", count: int, index: "LLVMVector") -> str:
-    """The index as an integer, 0 where it is none of the first so many."""
+    """The index as an integer, 0 where it is not below `count`."""
     known = (ops.number(-0.5) < index) & (index < ops.number(count - 0.5))
     inside = ops.select(known, index, ops.number(0.0)).text
     return ops.emit(f"fptosi {ops.type} {inside} to <{ops.width} x i32>")
 
 
 def _turned(ops: "LLVMBackend", loaded: list[str]) -> list[str]:
-    """Rows of four, one for each lane, as four columns."""
+    """The rows of four loaded by each lane, as four columns."""
 
     def mixed(x: str, y: str, size: int, places: Sequence[int]) -> str:
         kind, order = f"<{size} x double>", ", ".join(f"i32 {place}" for place in places)

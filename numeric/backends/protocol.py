@@ -1,4 +1,4 @@
-"""What a flight asks of a number system: the words of programs, and selection, rounding, zeros and loops besides.
+"""The protocol of a backend: a number system with selection, rounding, zeros and loops, on which flights run.
 
 `LLVMBackend`, `ArrayBackend` and `ScalarBackend` implement `Backend[N, M]` for their numbers `N` and masks `M`.
 """
@@ -16,18 +16,18 @@ Low = Union[N, Callable[[], N]]  # noqa: UP007  (a union that begins with a vari
 
 
 def modulus(x: N) -> N:
-    """`abs(x)`, whose type the builtin forgets."""
+    """`abs(x)` with the type of `x`, which the builtin's annotation does not keep."""
     size: N = abs(x)  # type: ignore[assignment]
     return size
 
 
 def bound(low: Low[N]) -> N:
-    """The bound itself."""
+    """The value of a bound, which may be given as a function."""
     return low() if callable(low) else low
 
 
-class Words(Protocol[N]):
-    """The words of formulas besides those of every number system."""
+class FormulaWords(Protocol[N]):
+    """The functions that formulas may contain, besides those of every number system."""
 
     def exp(self, x: N, /) -> N: ...
     def log(self, x: N, /) -> N: ...
@@ -38,18 +38,18 @@ class Words(Protocol[N]):
     def root(self, x: N, n: int, /) -> N: ...
 
 
-class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
-    """A number system on which flights run; masks select, number by number."""
+class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
+    """A number system on which flights run; its masks select among numbers, particle by particle."""
 
     doubles: bool  # are its numbers doubles? Then known numbers may be kept as such; else they may have more digits
 
     @property
     def pi_low(self) -> N:
-        """What `pi` lacks."""
+        """The difference between the number pi and the value of `pi`."""
         ...
 
     def number(self, x: float, /) -> N:
-        """A double."""
+        """The double `x` as a number of this system."""
         ...
 
     def constant(self, x: N, /) -> bool:
@@ -81,7 +81,7 @@ class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
         ...
 
     def maximum(self, x: N, y: N, /) -> N:
-        """The larger one."""
+        """The larger of two numbers."""
         ...
 
     def rounded(self, x: N, /) -> N:
@@ -113,15 +113,15 @@ class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
         ...
 
     def look_up(self, values: Sequence[N], index: N, /) -> N:
-        """The value of that index, a whole number; the first one where there is none."""
+        """The value at an index, which is a whole number; the first value if the index is out of range."""
         ...
 
     def look_up_row(self, rows: Sequence[Sequence[float]], index: N, /) -> list[N]:
-        """The columns of a table of constants in the row of that index; the first where there is none."""
+        """The row at `index`, a list with one number for each column; the first row if the index is out of range."""
         ...
 
     def settle(self, *values: N) -> None:
-        """Compute these values here, and not where they are needed."""
+        """Makes a compiled backend compute these values at this place, not where they are first used."""
         ...
 
     def zero(
@@ -136,7 +136,7 @@ class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
         accepts: Callable[[N], M] | None = None,
         /,
     ) -> N:
-        """The only zero in `[low, high]`; see `numeric.backends.functions.bracketed_zero`."""
+        """The only zero of `function` in `[low, high]`; arguments as in `numeric.backends.functions.bracketed_zero`."""
         ...
 
     def polynomial_zero(
@@ -151,7 +151,7 @@ class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
         accepts: Callable[[N], M] | None = None,
         /,
     ) -> N:
-        """`zero` of a polynomial given by its coefficients, constant first."""
+        """The only zero in `[low, high]` of the polynomial with the coefficients `p`, constant first; see `zero`."""
         ...
 
     def repeat(
@@ -163,14 +163,14 @@ class Backend(NumberSystem[N], Words[N], Protocol[N, M]):
         steady: bool = False,
         /,
     ) -> list[N]:
-        """Apply `body` to the numbers for which `condition` holds, until it holds for none.
+        """Applies `body` to the numbers for which `condition` holds, until it holds for none, or `limit` times.
 
         A `steady` body leaves the others alone by itself.
         """
         ...
 
     def when(self, mask: M, values: list[N], changed: Callable[[], list[N]], /) -> list[N]:
-        """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
+        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects particles."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""NumPy arrays, and single numbers of any precision, as backends: flights run on them as they stand.
+"""NumPy arrays, and single numbers of any precision, as backends: flights run on them unchanged.
 
 The library of single numbers, mpmath or one like it, is handed in as a `Context`, never imported. Its elementary
 functions are its own, and every zero is found to its full precision.
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from numeric.backends import functions
 from numeric.backends.doubles import DoubleBackend
 from numeric.backends.functions import value_and_slope
-from numeric.backends.protocol import Backend, Low, N, Pair, Words, bound, modulus
+from numeric.backends.protocol import Backend, FormulaWords, Low, N, Pair, bound, modulus
 
 Array = NDArray[np.float64]
 Masks = NDArray[np.bool_]
@@ -31,11 +31,11 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         return self.number(p / n)
 
     def number(self, x: float) -> Array:
-        """A double, which stands for an array of any shape."""
+        """The double `x`, which stands for an array of any shape."""
         return cast(Array, x)
 
     def constant(self, x: Array) -> bool:
-        """An array has a number for each particle."""
+        """Is this one number for all particles, and no array?"""
         return not np.ndim(x)
 
     def same(self, x: Array, y: Array) -> bool:
@@ -49,7 +49,7 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
 
     @property
     def pi_low(self) -> Array:
-        """What that double lacks."""
+        """The difference between the number pi and that double."""
         return self.number(2 * functions.HALF_PI_LOW)
 
     sqrt = staticmethod(cast(Unary, np.sqrt))
@@ -86,12 +86,12 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         return x * y
 
     def look_up(self, values: Sequence[Array], index: Array) -> Array:
-        """The value of that index; the first one where there is none."""
+        """The value at an index; the first value if the index is out of range."""
         known = (index >= 0.0) & (index < len(values))
         return np.asarray(values)[np.where(known, index, 0.0).astype(np.int64)]
 
     def look_up_row(self, rows: Sequence[Sequence[float]], index: Array) -> list[Array]:
-        """The columns of a table of constants in the row of that index; the first where there is none."""
+        """The row at `index`, a list with one number for each column; the first row if the index is out of range."""
         known = (index >= 0.0) & (index < len(rows))
         found = np.asarray(rows)[np.where(known, index, 0.0).astype(np.int64)]
         return [found[..., i] for i in range(found.shape[-1])]
@@ -112,7 +112,7 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         limit: int,
         steady: bool = False,
     ) -> list[Array]:
-        """Apply `body` to the elements for which `condition` holds, until it holds for none.
+        """Applies `body` to the elements for which `condition` holds, until it holds for none, or `limit` times.
 
         A `steady` body leaves the other elements alone by itself.
         """
@@ -125,12 +125,28 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         return state
 
     def when(self, mask: Masks, values: list[Array], changed: Callable[[], list[Array]]) -> list[Array]:
-        """`changed()` if the mask holds anywhere, else `values`; selecting is the caller's affair."""
+        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects elements."""
         return changed() if np.any(mask) else values
 
 
-class Context(Words[N], Protocol[N]):
-    """What a library of numbers must have, under the names of mpmath's contexts."""
+def array_arithmetic(digits: int) -> tuple[ArrayBackend, Callable[..., Array]]:
+    """The number system of float64 arrays, and the function that runs a kernel over it; `digits` has no effect.
+
+    Arrays are broadcast against each other; a matrix has its own two axes first. Numbers have 16 digits.
+    """
+
+    def run(
+        function: Callable[..., tuple[Array, ...]], arguments: Sequence[object], shape: Sequence[int] | None
+    ) -> Array:
+        found = function(*(np.asarray(x, dtype=float) for x in arguments))
+        values = np.broadcast_arrays(*found, *(np.asarray(x, dtype=float) for x in arguments))[: len(found)]
+        return values[0] if shape is None else np.stack(values).reshape(*shape, *values[0].shape)
+
+    return ArrayBackend(), run
+
+
+class Context(FormulaWords[N], Protocol[N]):
+    """The names that a library of numbers must have, as in mpmath's contexts."""
 
     pi: N
     eps: N
@@ -158,11 +174,11 @@ class ScalarBackend(Backend[N, bool]):
         return self.context.mpf(p) / n  # type: ignore[operator,no-any-return]  # an integer of any size, exactly
 
     def number(self, x: float) -> N:
-        """A double, exactly."""
+        """The double `x`, converted exactly."""
         return self.context.mpf(x)
 
     def constant(self, x: N) -> bool:
-        """One particle, one number."""
+        """True: there is one particle, so that every number is known."""
         return True
 
     def same(self, x: N, y: N) -> bool:
@@ -176,7 +192,7 @@ class ScalarBackend(Backend[N, bool]):
 
     @property
     def pi_low(self) -> N:
-        """Nothing: `pi` is as good as every other number here."""
+        """Zero: `pi` is as good as every other number here."""
         return self.context.mpf(0)
 
     def sqrt(self, x: N) -> N:
@@ -224,11 +240,11 @@ class ScalarBackend(Backend[N, bool]):
         return self.context.exp(k * self.context.log(self.number(2.0)))
 
     def look_up(self, values: Sequence[N], index: N) -> N:
-        """The value of that index."""
+        """The entry of `values` at an index."""
         return values[int(index)]  # type: ignore[call-overload]
 
     def look_up_row(self, rows: Sequence[Sequence[float]], index: N) -> list[N]:
-        """The numbers of that row."""
+        """The numbers of the row at an index."""
         return [self.number(x) for x in rows[int(index)]]  # type: ignore[call-overload]
 
     def settle(self, *values: N) -> None:
@@ -243,7 +259,7 @@ class ScalarBackend(Backend[N, bool]):
         return self.context.atan2(y, x)
 
     def turn(self, x: N, quarters: int = 2) -> Pair[N]:
-        """`(cos x, sin x)`."""
+        """`(cos x, sin x)` for any `x`: the bound `quarters` is not needed."""
         return self.context.cos(x), self.context.sin(x)
 
     def select(self, mask: bool, x: N, y: N) -> N:
@@ -251,7 +267,7 @@ class ScalarBackend(Backend[N, bool]):
         return x if mask else y
 
     def maximum(self, x: N, y: N) -> N:
-        """The larger one."""
+        """The larger of two numbers."""
         return y if x < y else x
 
     def with_sign(self, x: N, y: N) -> N:
@@ -279,7 +295,7 @@ class ScalarBackend(Backend[N, bool]):
         return x * y
 
     def power_of_two(self, x: N) -> Pair[N]:
-        """No scaling is needed where exponents have no bound."""
+        """`(1, 0)`: no scaling is needed, as exponents have no bound."""
         return self.context.mpf(1), self.context.mpf(0)
 
     def polynomial_zero(
@@ -307,7 +323,7 @@ class ScalarBackend(Backend[N, bool]):
         wanted: bool | None = None,
         accepts: Callable[[N], bool] | None = None,
     ) -> N:
-        """Safeguarded Newton until the correction drops below the context's rounding."""
+        """The zero by safeguarded Newton steps, until the correction is below the context's rounding."""
         if wanted is not None and not wanted:
             return x
         bottom, top = bound(low), high
@@ -336,7 +352,7 @@ class ScalarBackend(Backend[N, bool]):
         limit: int,
         steady: bool = False,
     ) -> list[N]:
-        """Apply `body` while `condition` holds."""
+        """Applies `body` while `condition` holds."""
         while condition(state):
             state = body(state)
         return state

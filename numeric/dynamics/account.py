@@ -1,8 +1,7 @@
 """A survey of exponents as plain data, for each attractor, with error bars and a check by the determinant.
 
-`nu_plus + nu_minus` along an orbit follows from its angles alone: the check on what the tangent kernels multiply up.
-
-`det DT = lam*cos(phi0)/cos(eta1)` in `(s, phi)`; along an orbit cosines of successive bounces pair up, and
+The sum `nu_plus + nu_minus` along an orbit follows from its angles alone, which checks the tangent kernels. In `(s,
+phi)` the determinant is `det DT = lam*cos(phi0)/cos(eta1)`, and along an orbit cosines of successive bounces pair up:
 
     log|det D(T^n)| = n*log(lam) + sum of log(cos(lam*eta_k)/cos(eta_k)) + log(cos(phi_0)/cos(phi_n)).
 
@@ -16,7 +15,8 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.exponents import CHANGED, Group, Measured, Survey, measured_on
+from numeric.dynamics.estimator import ExponentEstimates, mean_flight, measured_on, per_time
+from numeric.dynamics.exponents import CHANGED, Group, Survey
 from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Attractor, Kind
 from numeric.dynamics.statistics import Estimate
@@ -28,11 +28,14 @@ METHOD = (
     "batch means over orbits and blocks, batches merged until their ends matter little and put right with the "
     "integrated autocorrelation time; the last level is one batch for each independent orbit"
 )
+EXPONENTS = "nu_plus", "nu_minus"
 CHECKED_PARTICLES, CHECKED_BOUNCES = 32, 500
 
 
-def account(map: PinballMap, survey: Survey) -> Document:
-    """The document of `pinball lyapunov`. At the top stands the one attractor's result; null where there are several.
+def account(map: PinballMap, survey: Survey, timed: bool = False) -> Document:
+    """The document of `pinball lyapunov`: results by group, and at the top those of the attractor if there is only one.
+
+    With `timed`, mean flights and exponents per unit of time as well.
 
     >>> from numeric.pinball.sampling import phase_starts
     >>> from numeric.dynamics.exponents import surveyed
@@ -41,7 +44,9 @@ def account(map: PinballMap, survey: Survey) -> Document:
     >>> round(document["sum"], 12), document["groups"][0]["kind"]  # log(1/4)
     (-1.38629436112, 'neutral')
     """
-    groups = [described(group, survey) for group in survey.groups]
+    groups = [described(group, survey) | (per_unit_of_time(group, survey) if timed else {}) for group in survey.groups]
+    doubts = dict.fromkeys(group.attractor.doubt for group in survey.groups if group.attractor)
+    undecided = "; ".join(filter(None, doubts)) or None
     settled = [group for group in survey.groups if group.attractor and group.attractor.kind is not Kind.STOPPED]
     families = {group.attractor.family if group.attractor else -1 for group in settled}
     one = len(settled) == 1 or (len(families) == 1 and -1 not in families)
@@ -54,15 +59,16 @@ def account(map: PinballMap, survey: Survey) -> Document:
         "transient": survey.transient,
         "ended": survey.ended,
         "method": METHOD,
-        "attractors": len(settled),
+        "attractors": None if undecided else len(settled),
+        "undecided": undecided,
         "sum_rule": sum_rule(map, survey),
         "groups": groups,
     }
 
 
-def numbers(measured: Measured | None) -> Document:
-    """Exponents and sum with standard errors, null where there is no finite number."""
-    whole = measured or Measured(None, None, None)
+def numbers(measured: ExponentEstimates | None) -> Document:
+    """A document of exponents and their sum with standard errors, null where there is no finite number."""
+    whole = measured or ExponentEstimates(None, None, None)
     found: Document = {}
     for name, value in (("nu_plus", whole.upper), ("nu_minus", whole.lower), ("sum", whole.total)):
         found[name] = None if value is None else value.mean
@@ -76,7 +82,7 @@ def is_cycle(group: Group) -> bool:
 
 
 def of_cycle(cycle: Attractor | None) -> Document:
-    """Exponents from multipliers. Along orbits they are less good: a turning vector leaves an error of order `1/n`."""
+    """Exponents from the multipliers of a cycle; along orbits a turning vector would leave an error of order `1/n`."""
     assert cycle is not None
     finite = bool(np.isfinite(cycle.nu_minus))
     return {
@@ -90,14 +96,20 @@ def of_cycle(cycle: Attractor | None) -> Document:
 
 
 def described(group: Group, survey: Survey) -> Document:
-    """One group: its kind and size, its exponents, and how far their error bars can be trusted."""
-    attractor, measured = group.attractor, group.measured
+    """A document of one group: its kind and size, its exponents, and how far their error bars can be trusted."""
+    attractor, measured, map = group.attractor, group.measured, survey.count.growth.map
     lost = group.kind.startswith("stopped") or group.kind == CHANGED
     found: Document = {
         "kind": group.kind,
         "orbits": int(group.members.size),
         **numbers(None if lost else measured),
     }
+    if attractor is not None:
+        component, theta, phi = (row[0] for row in attractor.points)
+        x, y = map.states.point(np.array([component]), np.array([theta]))
+        found["at"] = {"theta": float(theta), "phi": float(phi), "x": float(x[0]), "y": float(y[0])}
+        found["at"]["component"] = map.ir.parts[component].name
+        found["undecided"] = attractor.doubt or None
     if attractor is not None and attractor.family >= 0:
         found["family"] = attractor.family
     if attractor is not None and attractor.kind is Kind.CYCLE:
@@ -110,20 +122,44 @@ def described(group: Group, survey: Survey) -> Document:
         "batch_bounces": upper.level.batch * length,
         "batches": upper.level.count,
         "trusted": bool(trusted(measured)),
-        "interval_95": upper.interval if np.isfinite(upper.interval) else None,
+        "skewness": upper.level.skewness,
+        "skewed": upper.skewed,
+        "interval_95": list(upper.interval) if np.isfinite(upper.error) else None,
         "autocorrelation_time": measured.tau,
         "naive_stderr": measured.naive,
         "trace": trace(group, survey),
     }
 
 
-def trusted(measured: Measured) -> bool:
-    """Are all error bars of a group made of enough batches, longer than the memory?"""
+def per_unit_of_time(group: Group, survey: Survey) -> Document:
+    """The mean flight of a group with its standard error, and both exponents per unit of time at speed 1."""
+    end, attractor = survey.count.growth, group.attractor
+    if is_cycle(group) and attractor is not None:
+        x, y = end.map.states.point(attractor.points.component, attractor.points.theta)
+        length = float(np.mean(np.hypot(x - np.roll(x, 1), y - np.roll(y, 1))))
+        numbers = of_cycle(attractor)
+        rates = {f"{name}_per_time": None if (nu := numbers[name]) is None else nu / length for name in EXPONENTS}
+        errors = {f"{name}_per_time_stderr": numbers[f"{name}_stderr"] for name in EXPONENTS}
+        return {"mean_flight": length, "mean_flight_stderr": 0.0, **rates, **errors}
+    going = group.members[end.code[group.members] == 0]
+    if attractor is None or not going.size:
+        return {}
+    particles = PhasePoints(end.component[going], end.theta[going], end.phi[going])
+    flight = mean_flight(end.map.at(end.lam[going]), particles, max(survey.count.bounces, 1))
+    found: Document = {"mean_flight": flight.mean, "mean_flight_stderr": flight.error}
+    for name, value in zip(EXPONENTS, group.measured[:2], strict=True):
+        rate, error = (None, None) if value is None else per_time(value, flight)
+        found |= {f"{name}_per_time": rate, f"{name}_per_time_stderr": error}
+    return found
+
+
+def trusted(measured: ExponentEstimates) -> bool:
+    """Are all error bars of a group made of enough batches, each longer than the autocorrelation time?"""
     return all(x.trusted for x in measured[:3] if isinstance(x, Estimate))
 
 
 def trace(group: Group, survey: Survey) -> list[Document]:
-    """How estimate and error came to be: after the first block, two, four, ... and after all of them."""
+    """Estimates and errors from the first block, the first two, four, ... and from all of them."""
     blocks, count = 1, survey.count
     found = []
     while blocks < 2 * len(count.up):
@@ -149,7 +185,7 @@ def sum_rule(map: PinballMap, survey: Survey) -> Document:
 Array = NDArray[np.float64]
 
 
-class Check(NamedTuple):
+class DeterminantCheck(NamedTuple):
     """The largest difference of `log|det D(T^n)|` between kernel and angles over `particles` orbits of `bounces`."""
 
     difference: float
@@ -158,9 +194,9 @@ class Check(NamedTuple):
 
 
 def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
-    """`log|det D(T^n)|` of each orbit by the rule above; nan for a particle that stops.
+    """`log|det D(T^n)|` of each orbit from its angles, by the module's rule; nan for a particle that stops.
 
-    Without the `n*log(lam)` of the paper's law; with the slopes of any other.
+    The term `n*log(lam)` of the paper's law is left out; for any other law the logarithms of its slopes are included.
 
     >>> circle = PinballMap("circle", lam="0.5")
     >>> particles = PhasePoints(np.array([0]), np.array([0.3]), np.array([0.4]))
@@ -178,8 +214,8 @@ def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
     return np.asarray(inner + elementary.log(np.cos(orbit.phi[0]) / np.cos(orbit.phi[-1])))
 
 
-def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> Check:
-    """The rule against the kernel, on the same orbits: both come bit for bit along the same bounces.
+def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> DeterminantCheck:
+    """The module's rule compared with the kernel, along orbits whose bounces are equal bit for bit.
 
     >>> from numeric.pinball.sampling import phase_starts
     >>> table = PinballMap("cuspless", lam="0.5")
@@ -189,4 +225,4 @@ def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> Check:
     growth = Growth(map, particles.theta, particles.phi, particles.component)
     growth.advance(bounces)
     difference = np.abs(volume(map, particles, bounces) - growth.volume)[growth.code == 0]
-    return Check(float(np.max(difference, initial=0.0)), bounces, int(difference.size))
+    return DeterminantCheck(float(np.max(difference, initial=0.0)), bounces, int(difference.size))

@@ -1,10 +1,8 @@
-"""Attractors and the symmetries of their table: images joined to families, each with its stabiliser.
+"""The attractors of a map: found from many starts, distinguished, and joined to families under the table's symmetries.
 
-The attractors of a map: found from many starts, told apart, and every particle labelled with the one it reaches.
-
-A cycle is polished (`numeric.dynamics.recognition`) and then recognised by nearness; what settles on no cycle
-and spreads is chaotic when no particle leaves it for a whole round of bounces, and then falls into the sets
-that its orbits join (`numeric.dynamics.phase_points`). Whatever is still leaving at the end is unsettled.
+A cycle is polished (`numeric.dynamics.recognition`) and then recognised by nearness. Particles that reach no cycle and
+whose neighbourhoods spread are on a chaotic set when none leaves for a whole round of bounces; their orbits are then
+divided into sets (`numeric.dynamics.chaotic_sets`). Particles that still leave at the end are unsettled.
 """
 
 from collections.abc import Sequence
@@ -16,73 +14,36 @@ from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.phase_points import Array, PhasePoints, gathered, phase_points, together
+from numeric.dynamics.chaotic_sets import gathered
+from numeric.dynamics.estimator import Count, measured_on
+from numeric.dynamics.phase_points import Array, Labels, PhasePoints, phase_points
 from numeric.dynamics.recognition import (
+    NEAR,
     UNSETTLED,
     Attractor,
     Kind,
-    Labels,
     Share,
     at_clouds,
     at_cycles,
-    clouds,
+    majority,
+    on_clouds,
     recognised,
     same,
+    spacing,
     wilson,
 )
-from numeric.pinball.sampling import interior_starts
+from numeric.dynamics.symmetries import moved, name, symmetries_of
+from numeric.pinball.sampling import ALIGNED, Growth, interior_starts
 from numeric.pinball.states import STATUSES
 
-PART = 0.1  # of an image's points
-
 if TYPE_CHECKING:
-    from symbolic.tables.geometry import Symmetry
-    from symbolic.tables.law import Law
-
-
-def moved(symmetry: "Symmetry", particles: PhasePoints) -> PhasePoints:
-    """The particles' images: a reflection turns every exit angle round. Paper: section 6.4, opposite angles.
-
-    >>> from symbolic.tables.geometry import group
-    >>> from symbolic.tables import cuspless
-    >>> from numeric.dynamics.phase_points import phase_points
-    >>> image = moved(group(cuspless)[1], phase_points([1.0, 0.25], 0.5, [0, 1]))
-    >>> image.component.tolist(), image.theta.tolist(), image.phi.tolist()
-    ([0, 1], [-1.0, -0.25], [-0.5, -0.5])
-    """
-    shift = np.array([float(x) for x in symmetry.shift])[particles.component]
-    theta = symmetry.sign * particles.theta + shift
-    if len(symmetry.onto) == 1:
-        theta = np.remainder(theta + np.pi, 2 * np.pi) - np.pi
-    return PhasePoints(np.array(symmetry.onto)[particles.component], theta, symmetry.sign * particles.phi)
-
-
-def kept_by(law: "Law", symmetry: "Symmetry") -> bool:
-    """Are images of orbits under a symmetry of the table orbits? A rotation needs a law that is the same everywhere,
-    a mirror also an odd one."""
-    return is_identity(symmetry) or (not law.placed and (symmetry.sign == 1 or law.odd))
-
-
-def is_identity(symmetry: "Symmetry") -> bool:
-    """Does it leave each point of the plane where it is?"""
-    return symmetry.sign == 1 and bool(symmetry.angle == 0)
-
-
-def symmetries_of(map: PinballMap) -> "tuple[Symmetry, ...]":
-    """The symmetries of the table under which images of orbits are orbits, the identity first.
-
-    >>> [g.sign for g in symmetries_of(PinballMap("cuspless", lam="0.09"))]
-    [1, -1]
-    """
-    from numeric.lowering.lower import symmetries
-
-    return tuple(g for g in symmetries(map.table) if kept_by(map.reflection, g))
+    from numeric.lowering.program import TableSymmetry
 
 
 def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attractor]:
     """The attractors with their families and stabilisers under the table's symmetries; missing images come last."""
     group = symmetries_of(map)
-    found = [replace(a, family=-1) for a in united(map, attractors, group)]
+    found = [replace(a, family=-1) for a in attractors]
     at = families = 0
     while at < len(found):
         if found[at].family < 0:
@@ -92,37 +53,8 @@ def with_images(map: PinballMap, attractors: Sequence[Attractor]) -> list[Attrac
     return found
 
 
-def united(map: PinballMap, attractors: Sequence[Attractor], group: "Sequence[Symmetry]") -> list[Attractor]:
-    """The attractors, with chaotic ones made one when an image of a third lies on both.
-
-    Just above a crisis that merges mirror images orbits change sides so seldom that one pair is seen to be one
-    set and its image is not.
-    """
-    spread = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
-    leader, near = {i: i for i in spread}, clouds(map, attractors)
-    for i in spread:
-        for symmetry in group:
-            if is_identity(symmetry):  # each point is nearest to itself
-                continue
-            label = near(moved(symmetry, attractors[i].points))
-            counts = np.bincount(label[label >= 0], minlength=len(attractors))
-            shared = [j for j in spread if counts[j] > PART * label.size]
-            least = min((leader[j] for j in shared), default=i)
-            merged = {leader[j] for j in shared}
-            leader = {j: least if old in merged else old for j, old in leader.items()}
-    return [_one(attractors, i, leader) for i in range(len(attractors)) if leader.get(i, i) == i]
-
-
-def _one(attractors: Sequence[Attractor], at: int, leader: dict[int, int]) -> Attractor:
-    """An attractor together with those that it leads."""
-    parts = [attractors[j] for j, first in leader.items() if first == at] or [attractors[at]]
-    shares = [a.share for a in parts if a.share]
-    share = wilson(sum(x.count for x in shares), shares[0].of) if shares else None
-    return replace(parts[0], points=together(*(a.points for a in parts)), share=share)
-
-
-def _join(map: PinballMap, found: list[Attractor], at: int, family: int, group: "Sequence[Symmetry]") -> None:
-    """Numbers an attractor and its images alike, in place."""
+def _join(map: PinballMap, found: list[Attractor], at: int, family: int, group: "Sequence[TableSymmetry]") -> None:
+    """Gives an attractor and its images in `found` one family number, and the name of their symmetry group."""
     attractor = found[at]
     own = []
     for symmetry in group:
@@ -135,8 +67,8 @@ def _join(map: PinballMap, found: list[Attractor], at: int, family: int, group: 
             found[index] = replace(member, symmetry=name(own))
 
 
-def image_of(map: PinballMap, found: list[Attractor], attractor: Attractor, symmetry: "Symmetry") -> int:
-    """Where the attractor's image is in the list; an image that was not there comes last."""
+def image_of(map: PinballMap, found: list[Attractor], attractor: Attractor, symmetry: "TableSymmetry") -> int:
+    """The index of the attractor's image in the list `found`; a missing image is appended."""
     image = replace(attractor, points=moved(symmetry, attractor.points), share=None)
     index = _index(map, found, image)
     if index == len(found):
@@ -145,34 +77,24 @@ def image_of(map: PinballMap, found: list[Attractor], attractor: Attractor, symm
 
 
 def _index(map: PinballMap, found: list[Attractor], image: Attractor) -> int:
-    """Where an image is in the list; its end when it is not there."""
+    """The index of an image in the list; the list's length when it is not there."""
     if image.kind is Kind.CHAOTIC:
-        label = at_clouds(map, image.points, found)
-        owner = int(np.argmax(np.bincount(label + 1))) - 1
-        return owner if owner >= 0 else len(found)
+        owner = majority(at_clouds(map, image.points, found)[None])[0]
+        return int(owner) if owner != UNSETTLED else len(found)
     for index, attractor in enumerate(found):
         if same(map, attractor, image):
             return index
     return len(found)
 
 
-def name(own: "Sequence[Symmetry]") -> str:
-    """The group in Schoenflies' words: `Cn` for n rotations, `Dn` when there are reflections too.
-
-    >>> from symbolic.tables.geometry import group
-    >>> from symbolic.tables import egg
-    >>> name(group(egg(3).at(alpha="0.08")))
-    'D3'
-    """
-    rotations = sum(symmetry.sign > 0 for symmetry in own)
-    return f"{'D' if rotations < len(own) else 'C'}{rotations}"
-
-
 __all__ = ["UNSETTLED", "Attractor", "Classified", "Kind", "Share", "classify", "find", "wilson"]
-SAMPLE = 64  # particles looked at for new cycles
+SAMPLE = 64  # particles among which new cycles are searched for
 ROUNDS = 6
 WATCHED = 100_000  # bounces, of all particles together, in which none leaves a chaotic attractor
-MEASURED = 64  # particles whose exponents are averaged
+CHANCE = 1e-6  # probability of a difference between images, below which they are doubted
+LEAST = 5  # starts of each, for chi square
+ROUNDED = 1e-9  # smallest error of an exponent, for its rounding
+MEASURED, BLOCKS = 64, 128  # particles whose exponents are averaged, and blocks of each at most
 
 
 class Classified(NamedTuple):
@@ -203,7 +125,7 @@ def classify(
 
 @dataclass
 class _Sorting:
-    """Particles on their way to attractors; the ones in `going` have not been recognised yet."""
+    """Particles on their way to attractors; those in `going` have no label yet."""
 
     map: PinballMap
     particles: PhasePoints
@@ -211,13 +133,16 @@ class _Sorting:
     label: Labels = field(init=False)
     going: Labels = field(init=False)
     growth: Array = field(init=False)
+    dropped: set[int] = field(default_factory=set)  # indices of attractors that are the same as an earlier one
+    known: int = field(init=False)  # how many attractors there were before
 
     def __post_init__(self) -> None:
+        self.known = len(self.attractors)
         self.label = np.full(self.particles.size, UNSETTLED)
         self.going = np.arange(self.particles.size)
 
     def sorted(self, transient: int, rounds: int) -> Classified:
-        """Rounds of bounces, each twice as long, until one goes by in which no particle is recognised."""
+        """Advances particles in rounds, each twice as long, until one recognises no particle; the classification."""
         self._advance(transient)
         if self.map.law == "elastic":
             self._conserved(transient)
@@ -234,10 +159,10 @@ class _Sorting:
                 break
         if not leaving:
             self._spread(bounces)
-        return Classified(self.label, tuple(self.attractors))
+        return self._result()
 
     def _advance(self, bounces: int) -> None:
-        """Moves those that are going, and keeps how fast their neighbourhoods grow; the ones that stop are labelled."""
+        """Moves the particles in `going`, keeps the growth rates around them, and labels those that stop."""
         here = self.particles.only(self.going)
         end = self.map.exponents(here.theta, here.phi, bounces, 0, here.component)
         for rows, new in zip(self.particles, (end.component, end.theta, end.phi), strict=True):
@@ -253,7 +178,7 @@ class _Sorting:
         self.going, self.growth = self.going[which], growth[which]
 
     def _entered(self, new: Attractor) -> int:
-        """The index of an attractor, in the list if it was not there."""
+        """The index of an attractor in the list, to which a new one is appended."""
         for index, old in enumerate(self.attractors):
             if same(self.map, old, new):
                 return index
@@ -273,7 +198,7 @@ class _Sorting:
                 break
 
     def _conserved(self, bounces: int) -> None:
-        """At `lam = 1` nothing attracts: a particle spreads like a power of the time, or exponentially."""
+        """Labels as neutral, at `lam = 1`, the particles around which vectors grow no faster than a power of time."""
         regular = self.growth < calm(bounces)
         if np.any(regular):
             points = self.particles.only(self.going[regular])
@@ -281,11 +206,11 @@ class _Sorting:
             self._keep(~regular, self.growth)
 
     def _spread(self, bounces: int) -> None:
-        """Shares out the particles that spread among the chaotic attractors; new ones are made for those near none."""
+        """Labels the particles that spread with the chaotic attractors near them, and makes new ones for the others."""
         stay = self.going.size * bounces / 3
         self._keep(self.growth > calm(bounces), self.growth)
         while self.going.size:
-            near = at_clouds(self.map, self.particles.only(self.going), self.attractors)
+            near = on_clouds(self.map, self.particles.only(self.going), self.attractors)
             self.label[self.going] = near
             self._keep(near == UNSETTLED, self.growth)
             if self.going.size:
@@ -296,15 +221,35 @@ class _Sorting:
         spread = [i for i, a in enumerate(self.attractors) if a.kind is Kind.CHAOTIC]
         particles = self.particles.only(self.going)
         found = gathered(self.map, particles, [self.attractors[i].points for i in spread])
-        for points in found.sets[len(spread) :]:
-            spread.append(len(self.attractors))
-            self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
+        for place, (points, doubt) in enumerate(zip(found.sets, found.doubts, strict=True)):
+            if place == len(spread):
+                spread.append(len(self.attractors))
+                self.attractors.append(Attractor(Kind.CHAOTIC, 0, points, stay=stay))
+            old = self.attractors[spread[place]]
+            reach = NEAR if doubt else spacing(self.map, points)
+            self.attractors[spread[place]] = replace(old, points=points, reach=reach, doubt=doubt or old.doubt)
+        for place, first in enumerate(found.known):
+            self.label[self.label == spread[place]] = spread[first]
+            if first != place:
+                self.dropped.add(spread[place])
+        left = ~np.isin(np.arange(particles.size), found.looked)
+        doubtful = [i for i, doubt in zip(spread, found.doubts, strict=True) if doubt]
+        if doubtful and self.map.law == "elastic":  # it may be all that spreads
+            self.label[self.going[left]] = doubtful[0]
+            left = np.zeros_like(left)
         self.label[self.going[found.looked]] = np.array(spread)[found.member]
-        self._keep(~np.isin(np.arange(particles.size), found.looked), self.growth)
+        self._keep(left, self.growth)
+
+    def _result(self) -> Classified:
+        """The result, without new attractors that turned out to be the same as an earlier one."""
+        kept = [i for i in range(len(self.attractors)) if i not in self.dropped or i < self.known]
+        place = np.full(len(self.attractors) + 1, UNSETTLED)
+        place[kept] = np.arange(len(kept))
+        return Classified(place[self.label], tuple(self.attractors[i] for i in kept))
 
 
 def calm(bounces: int) -> float:
-    """The exponent up to which a growth over so many bounces may be no more than a power of their number.
+    """An upper bound of exponents found over so many bounces where vectors grow only like a power of their number.
 
     >>> round(calm(1000), 4)
     0.0207
@@ -323,8 +268,8 @@ def find(
 ) -> tuple[Attractor, ...]:
     """The attractors that random starts reach, the most visited first, each with the share of starts it attracts.
 
-    Starts are those of the paper's appendix. With `images` those under the table's symmetries belong to the
-    result, also those that no start has reached: their share is 0 out of `orbits`.
+    Starts are those of the paper's appendix. With `images` the attractors' images under the table's symmetries belong
+    to the result, also those that no start has reached: their share is 0 out of `orbits`.
 
     >>> found = find(PinballMap("egg", alpha="0.08", lam="0.7"), 200, seed=1, images=True)
     >>> [(a.kind.name, a.period, a.symmetry, a.family) for a in found]
@@ -339,20 +284,51 @@ def find(
     ]
     if images:
         found = [a if a.share else replace(a, share=wilson(0, orbits)) for a in with_images(map, found)]
+        found = [replace(a, doubt=a.doubt or disagreement(a, found)) for a in found]
     found.sort(key=lambda a: -a.share.count if a.share else 0)
     order = list(dict.fromkeys(a.family for a in found))
     return tuple(replace(a, family=order.index(a.family)) for a in found)
 
 
+def disagreement(one: Attractor, found: Sequence[Attractor]) -> str:
+    """Reason to doubt that a chaotic attractor and its images are distinguished correctly; empty if none.
+
+    Images have equal exponents and equal shares of the starts: chi square gives the probability of what was observed.
+
+    >>> sets = [Attractor(Kind.CHAOTIC, 0, phase_points(0.0, 0.0), share=wilson(k, 140), family=0) for k in (103, 37)]
+    >>> disagreement(sets[0], sets)
+    'images of it under the symmetries attract 103, 37 starts, which should be alike'
+    """
+    images = [a for a in found if a.family == one.family and a.share is not None]
+    if one.kind is not Kind.CHAOTIC or len(images) < 2:
+        return ""
+    from scipy.special import chdtrc
+
+    counts = np.array([a.share.count for a in images if a.share])
+    mean = np.mean(counts)
+    if mean >= LEAST and chdtrc(counts.size - 1, np.sum((counts - mean) ** 2) / mean) < CHANCE:
+        many = ", ".join(str(count) for count in counts)
+        return f"images of it under the symmetries attract {many} starts, which should be alike"
+    nu, error = (np.array(list(each)) for each in zip(*((a.nu_plus, a.errors[0]) for a in images), strict=True))
+    weight = 1 / np.maximum(error, ROUNDED) ** 2
+    away = np.sum(weight * (nu - np.sum(weight * nu) / np.sum(weight)) ** 2)
+    if chdtrc(nu.size - 1, away) < CHANCE:
+        return f"exponents of its images, from {nu.min():.6g} to {nu.max():.6g}, differ by more than their errors"
+    return ""
+
+
 def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
-    """The attractor with the exponents of a chaotic one, and their standard errors over as many particles."""
+    """The attractor; a chaotic one with exponents over `bounces` bounces and errors, from `MEASURED` particles."""
     if attractor.kind is not Kind.CHAOTIC:
         return attractor
     points = attractor.points
     some = points.only(np.linspace(0, points.size - 1, MEASURED).astype(int))
-    end = map.exponents(some.theta, some.phi, bounces, 100, some.component)
-    good = end.code == 0
-    plus, minus = end.nu_plus[good], end.nu_minus[good]
-    root = np.sqrt(max(np.sum(good), 1))
-    errors = float(np.std(plus) / root), float(np.std(minus) / root) if np.all(np.isfinite(minus)) else 0.0
-    return replace(attractor, nu_plus=float(np.mean(plus)), nu_minus=float(np.mean(minus)), errors=errors)
+    growth = Growth(map, some.theta, some.phi, some.component)
+    growth.settle(ALIGNED)
+    count = Count(growth, BLOCKS, long=bounces)
+    for _ in count.until(bounces):
+        pass
+    found = measured_on(count, np.nonzero(growth.code == 0)[0], attractor)
+    assert found.upper is not None
+    lower, error = (-np.inf, 0.0) if found.lower is None else (found.lower.mean, found.lower.error)
+    return replace(attractor, nu_plus=found.upper.mean, nu_minus=lower, errors=(found.upper.error, error))

@@ -1,18 +1,23 @@
 """Basins of attraction: the label of every start, and starts where one wants them in phase space. Paper: appendix.
 
-A plain function on arrays, so that a picture of any resolution is made piece by piece and in any order: the
+`labels` is a plain function on arrays, so that a picture of any resolution is made piece by piece in any order: the
 label of a start does not depend on the others. All coordinates are the paper's, `s` and `sin(phi)`.
 
-How closely basins are mixed: small squares of phase space, and the fates of a few starts in each.
+How closely basins are mixed is measured in small squares of phase space, from the fates (attractors reached) of a few
+starts in each. There are three numbers at each size `eps`: the share of squares with more than one fate; the basin
+entropy, the mean over all squares of `-sum p log p` over the fates; and the boundary basin entropy, the mean over
+squares with more than one fate (Daza and others 2016). A smooth boundary keeps the last one and lets the first fall
+like `eps`; basins that are intermingled at every point would keep all three as `eps` goes to 0. The basin of an
+attracting cycle is open, so for cycles the first one must vanish in the end: the measurement shows how fast.
 
-Three numbers at each size `eps`: the share of squares with more than one fate; the basin entropy, the mean over
-all squares of `-sum p log p` over the fates; and the boundary basin entropy, the mean over squares with more
-than one fate (Daza and others 2016). A smooth boundary keeps the last one and lets the first fall like
-`eps`; basins that are intermingled at every point would keep all three as `eps` goes to 0. The basin of an
-attracting cycle is open, so for cycles the first one must vanish in the end: what can be measured is how fast.
+The dimension of a basin boundary is measured by the uncertainty exponent. Two starts at a distance `eps` have different
+fates with probability `f(eps) ~ eps**a`, and the boundary has dimension `2 - a` [McDonaldGrebogiOttYorke1985]. The same
+starts serve all distances, so the error comes from resampling starts, not from a fit that takes distances for
+independent.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -20,16 +25,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.attractors import Classified, classify, image_of, moved, symmetries_of, wilson
-from numeric.dynamics.phase_points import Array, PhasePoints, phase_points
-from numeric.dynamics.recognition import UNSETTLED, Attractor, Labels, Share, at_clouds, at_cycles
-from numeric.pinball.sampling import Grid, boundary
+from numeric.dynamics.attractors import Classified, classify, image_of, wilson
+from numeric.dynamics.phase_points import Array, Labels, PhasePoints, advanced, phase_points
+from numeric.dynamics.recognition import UNSETTLED, Attractor, Kind, Share, at_clouds, at_cycles
+from numeric.dynamics.symmetries import moved, symmetries_of
+from numeric.pinball.sampling import PhaseGrid, boundary
 
 if TYPE_CHECKING:
-    from symbolic.tables.geometry import Symmetry
+    from numeric.lowering.program import TableSymmetry
 
 TRANSIENT = 1000
-APART = 1e-6  # of a cell, between the middle of one and the image of that of another
+EARLY = 64  # bounces after which particles near a cycle are looked for first
+APART = 1e-6  # of a cell: largest distance of a cell's image from a cell
 PIECE = 1 << 16  # particles at a time
 
 
@@ -72,8 +79,9 @@ def labels(
 ) -> Labels:
     """The index of the attractor that each particle reaches, of those known; -1 where it reaches none of them.
 
-    Quick: after `transient` bounces a particle within reach of a cycle is settled, and one on the cloud of a chaotic
-    attractor too. With `sure`, as long as any particle is still leaving the cloud for a cycle, all go on.
+    A particle within reach of a cycle has its label, most of them after few bounces; after `transient` bounces so has
+    one on the cloud of a chaotic attractor. With `sure`, particles on a cloud go on as long as any of them leaves it
+    for a cycle.
 
     >>> from numeric.dynamics.attractors import find
     >>> map = PinballMap("cuspless", lam="0.09")
@@ -85,7 +93,12 @@ def labels(
     found = np.full(particles.size, UNSETTLED)
     for first in range(0, particles.size, PIECE):
         part = particles.only(slice(first, first + PIECE))
-        found[first : first + PIECE] = _settled(map, part, attractors, transient, sure)
+        label = found[first : first + PIECE]
+        if transient > EARLY and all(a.kind is not Kind.NEUTRAL for a in attractors):
+            there, code = advanced(map, part, EARLY)
+            label[code == 0] = at_cycles(map, there.only(code == 0), attractors)
+        if (going := np.nonzero(label == UNSETTLED)[0]).size:
+            label[going] = _settled(map, part.only(going), attractors, transient, sure)
     return found
 
 
@@ -107,11 +120,11 @@ def _settled(
     return found
 
 
-def classify_cells(map: PinballMap, grid: Grid, transient: int = TRANSIENT) -> Classified:
+def classify_cells(map: PinballMap, grid: PhaseGrid, transient: int = TRANSIENT) -> Classified:
     """The attractor that the particle in each cell of a `phase_grid` reaches, and the attractors.
 
-    Of cells that are images of each other under the table's symmetries one is followed: at the image of a start is
-    the image of its orbit, which ends on the image of its attractor.
+    Of cells that are images of each other under the table's symmetries only one is followed; the others get the images
+    of its attractor.
 
     >>> from numeric.pinball.sampling import phase_grid
     >>> map = PinballMap("egg", alpha="0.08", lam="0.7")
@@ -133,8 +146,8 @@ def classify_cells(map: PinballMap, grid: Grid, transient: int = TRANSIENT) -> C
     return Classified(label, tuple(found[i] for i in order))
 
 
-def image_cells(map: PinballMap, grid: Grid, symmetry: "Symmetry") -> Labels | None:
-    """The cell onto which a symmetry takes each; None where it takes the middles of cells elsewhere.
+def image_cells(map: PinballMap, grid: PhaseGrid, symmetry: "TableSymmetry") -> Labels | None:
+    """The index of the cell to which a symmetry takes each cell; None where it does not take middles to middles.
 
     >>> from numeric.pinball.sampling import phase_grid
     >>> map = PinballMap("cuspless")
@@ -172,7 +185,7 @@ EACH = 25  # starts in a square
 
 
 class Mixing(NamedTuple):
-    """What squares of size `eps` hold; entropies in nats with standard errors, nan where no square is mixed."""
+    """How basins mix in squares of size `eps`: entropies in nats with standard errors; nan where no square is mixed."""
 
     eps: float
     mixed: Share
@@ -191,7 +204,7 @@ def intermingling(
     window: Window | None = None,
     transient: int = TRANSIENT,
 ) -> list[Mixing]:
-    """The mixing at each size, in squares placed at random.
+    """How the basins mix at each size of squares: a `Mixing` for each, from squares placed at random.
 
     >>> from numeric.dynamics.attractors import find
     >>> map = PinballMap("ellipse", a=2, lam="0.5")  # one attractor only
@@ -226,3 +239,112 @@ def _of(eps: float, entropy: Array) -> Mixing:
         return Mixing(eps, wilson(0, entropy.size), 0.0, error, float("nan"), float("nan"))
     inner = float(np.std(mixed) / np.sqrt(mixed.size))
     return Mixing(eps, wilson(mixed.size, entropy.size), float(np.mean(entropy)), error, float(np.mean(mixed)), inner)
+
+
+DISTANCES = tuple(10.0 ** (-k / 2) for k in range(4, 17))  # 1e-2 to 1e-8 in s and sin(phi)
+FEWEST_STARTS = 10  # differing pairs at each of two distances, without which there is no fit
+RESAMPLED = 400
+NEWTON = 12  # steps, which double the digits
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """How many pairs have different fates at each distance; the power law fitted to it from `smallest` to `largest`.
+
+    `curvature` is the change of the local exponent per decade with its error: 0 for a power law.
+    """
+
+    distances: Array
+    different: NDArray[np.int64]
+    pairs: int
+    exponent: float
+    error: float
+    curvature: tuple[float, float]
+    largest: float
+    smallest: float
+
+    @property
+    def dimension(self) -> float:
+        """Dimension of the boundary between basins."""
+        return 2 - self.exponent
+
+
+def uncertainty(
+    map: PinballMap,
+    attractors: Sequence[Attractor],
+    count: int,
+    seed: int,
+    window: Window | None = None,
+    distances: Sequence[float] = DISTANCES,
+    transient: int = TRANSIENT,
+    sure: bool = True,
+) -> Uncertainty:
+    """The uncertainty exponent of the boundary between all basins in a window.
+
+    A smooth boundary has the exponent 1:
+
+    >>> from numeric.dynamics.attractors import find
+    >>> map = PinballMap("egg", alpha="0.08", lam="0.2")
+    >>> found = uncertainty(map, find(map, 100, 1), 4000, 1, distances=(0.03, 0.01, 0.003))
+    >>> abs(found.exponent - 1) < 3 * found.error < 0.4
+    True
+    """
+    rng = np.random.default_rng(seed)
+    where = whole(map) if window is None else window
+    s, height = random_points(where, count, rng)
+    turn = rng.uniform(0, 2 * np.pi, count)
+    centre = labels(map, starts_at(map, s, height), attractors, transient, sure)
+    rows = []
+    for eps in distances:
+        near = starts_at(map, s + eps * np.cos(turn), height + eps * np.sin(turn))
+        label = labels(map, near, attractors, transient, sure)
+        rows.append((label != centre) & (label != UNSETTLED) & (centre != UNSETTLED))
+    return fitted(np.array(distances), np.array(rows), rng)
+
+
+def fitted(distances: Array, different: NDArray[np.bool_], rng: np.random.Generator) -> Uncertainty:
+    """The power law through the shares of differing pairs; distances along the rows.
+
+    >>> rng = np.random.default_rng(0)
+    >>> eps = np.array([0.1, 0.01, 0.001])
+    >>> found = fitted(eps, rng.uniform(size=20_000) < eps[:, None] ** 0.5, rng)
+    >>> abs(found.exponent - 0.5) < 3 * found.error < 0.1
+    True
+    """
+    counts, size = different.sum(axis=1), different.shape[1]
+    used = counts >= FEWEST_STARTS
+    if np.sum(used) < 2:
+        nothing = float("nan")
+        return Uncertainty(distances, counts, size, nothing, nothing, (nothing, nothing), nothing, nothing)
+    draws = np.array([different[:, rng.integers(0, size, size)].sum(axis=1) for _ in range(RESAMPLED)])
+    (slope, bend), *drawn = power_laws(elementary.log(distances), np.vstack([counts, draws]), size)
+    errors, ends = np.nanstd(np.array(drawn), axis=0), distances[used]
+    return Uncertainty(
+        distances, counts, size, slope, float(errors[0]), (bend, float(errors[1])), float(max(ends)), float(min(ends))
+    )
+
+
+def power_laws(x: Array, counts: NDArray[np.int64], of: int) -> list[tuple[float, float]]:
+    """Slope of `log f` against `x = log eps`, and its change per decade, for each row of counts; `f = counts/of`.
+
+    The most likely power law for binomial counts, by Newton's method, which gives small counts their proper weight.
+    A fit of logarithms of counts without the small ones makes the slope too small by a third of its error.
+    """
+    slopes = _most_likely(x, counts, of, 1)[:, 0]
+    decade, curved = 2 * elementary.log(10), x.size > 2
+    bends = decade * _most_likely(x, counts, of, 2)[:, 0] if curved else np.full(len(counts), np.nan)
+    return [(float(slope), float(bend)) for slope, bend in zip(slopes, bends, strict=True)]
+
+
+def _most_likely(x: Array, counts: NDArray[np.int64], of: int, degree: int) -> Array:
+    """Coefficients, highest first, of the polynomial `log(counts/of)` in `x`, by reweighted least squares."""
+    powers = np.vander(x - np.mean(x), degree + 1)  # the highest coefficient is the same about any point
+    share = np.maximum(counts, 0.5) / of
+    for _ in range(NEWTON):
+        weight = of * share / (1 - share)
+        wanted = weight * (elementary.log(share) + (counts / of - share) / share)
+        normal = np.einsum("ri,ij,ik->rjk", weight, powers, powers)
+        right = np.einsum("ri,ij->rj", wanted, powers)
+        found: Array = np.einsum("rjk,rk->rj", np.linalg.pinv(normal, hermitian=True), right)
+        share = np.clip(elementary.exp(found @ powers.T), 1e-300, 1 - 1 / (2 * of))
+    return found

@@ -1,116 +1,36 @@
 """Lyapunov exponents of many orbits, counted block by block, until their error is small enough.
 
-Particles first run until they are where they end: those that a cycle attracts within its reach. Then growth is
-counted in blocks. Particles are sorted by the attractor they reach, before the count and once more after it; nothing
-is averaged across attractors. A run can be interrupted: what was counted stays. The paper (appendix A.2) counts with
-two vectors, after [DellagoPoschHoover1996]; here one vector and the determinant do.
+Particles first run until each one that a cycle attracts is near that cycle. Then growth is counted in blocks. Particles
+are grouped by the attractor they reach, before the count and once more after it; nothing is averaged across
+attractors. When a run is interrupted, the blocks counted so far are kept.
 
-The angle between the two directions of an orbit: the one its past expands, the one its future contracts.
-
-Dominated splitting [PujalsSambarino2009] keeps the two apart: on a compact set their angle has a positive lower
-bound. Where orbits come near a tangency of a stable with an unstable manifold the angle has no such bound, and the
-share of points with an angle below `x` falls like `x`. Paper: section 1.
+`angles` measures the angle between the two directions of an orbit: the one that its past expands and the one that its
+future contracts. Where there is a dominated splitting [PujalsSambarino2009] on a compact set this angle has a positive
+lower bound; where orbits come near a tangency of a stable with an unstable manifold the angle has no such bound, and
+the share of points with an angle below `x` falls like `x`. Paper: section 1.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.attractors import Attractor, Classified, classify
-from numeric.dynamics.phase_points import Array, PhasePoints, advanced
+from numeric.dynamics.attractors import Attractor, Classified, classify, with_images
+from numeric.dynamics.estimator import Count, ExponentEstimates, arrived, measured_on, skipped
+from numeric.dynamics.phase_points import Array, Labels, PhasePoints, advanced
 from numeric.dynamics.recognition import Kind, at_cycles
-from numeric.dynamics.statistics import Estimate, estimate
-from numeric.pinball.sampling import Growth, Starts, interior_starts
+from numeric.pinball.sampling import ALIGNED, Growth, Starts, interior_starts
 
-Labels = NDArray[np.int64]
-MOST = 1024  # blocks kept to an orbit
-KEPT = 1 << 22  # numbers kept of each exponent
-ALIGNED = 256  # bounces after which a tangent vector has turned to the direction of growth
-PATIENCE = 8  # doublings of the wait for particles that are on their way
+PATIENCE = 8  # doublings of the wait for particles that have not reached their cycle yet
 SINGLE, WATCHED = 1024, 32  # bounces and particles that are watched one by one, for the naive error
-HEARD = 50_000_000  # bounces of all particles at a time
 CHANGED = "reached another attractor while it was counted"
 
 
 def nothing(_: float) -> None:
-    """Says nothing."""
-
-
-class Measured(NamedTuple):
-    """Both exponents per bounce and their sum, each with its error; `lower` and `total` are None at `lam = 0`.
-
-    `naive` is what the error of `upper` would be if single bounces were independent.
-    """
-
-    upper: Estimate | None
-    lower: Estimate | None
-    total: Estimate | None
-    naive: float | None = None
-
-    @property
-    def tau(self) -> float | None:
-        """The integrated autocorrelation time of the growth of single bounces, by batch means; 1/2 for none."""
-        return None if not self.naive or self.upper is None else (self.upper.error / self.naive) ** 2 / 2
-
-
-class Count:
-    """What orbits grew by: blocks along the first axis, particles along the second, per bounce.
-
-    Blocks begin with a single bounce; at `most` of them two become one. So there is an estimate at every moment, and
-    a run of any length fits in memory. Of a run that will be `long` bounces, blocks have at once the length that they
-    would come to, as far as an interruption is still heard.
-    """
-
-    def __init__(self, growth: Growth, most: int = MOST, long: int = 0) -> None:
-        self.growth = growth
-        self.most = max(2, min(most, KEPT // growth.theta.size // 2 * 2))
-        heard = max(1, HEARD // growth.theta.size)
-        self.length, self.blocks = 1 << min((long // self.most).bit_length(), heard.bit_length() - 1), 0
-        self._rows = np.empty((2, self.most, growth.theta.size))
-
-    @property
-    def up(self) -> Array:
-        """Growth of the tangent vectors."""
-        return self._rows[0, : self.blocks]
-
-    @property
-    def volume(self) -> Array:
-        """Growth of areas, without the factors `lam`."""
-        return self._rows[1, : self.blocks]
-
-    @property
-    def bounces(self) -> int:
-        """Counted so far, for each particle."""
-        return self.length * self.blocks
-
-    def until(self, bounces: int) -> Iterator[int]:
-        """Counts on to as many bounces as whole blocks make, and yields their number after each block."""
-        while self.bounces + self.length <= bounces:
-            stretch, volume = self.growth.stretch, self.growth.volume
-            self.growth.advance(self.length)
-            self._rows[0, self.blocks] = (self.growth.stretch - stretch) / self.length
-            self._rows[1, self.blocks] = (self.growth.volume - volume) / self.length
-            self.blocks += 1
-            if self.blocks == self.most:
-                self._rows[:, : self.most // 2] = (self._rows[:, ::2] + self._rows[:, 1::2]) / 2
-                self.blocks, self.length = self.most // 2, 2 * self.length
-            yield self.bounces
-
-    def measured(self, members: Labels, blocks: int | None = None) -> Measured:
-        """The exponents over some of the particles, from all blocks or from the first few."""
-        plus = self.up[:blocks, members]
-        total = self.volume[:blocks, members] + self.growth.contraction[members]
-        if np.any(np.isneginf(total)):
-            return Measured(estimate(plus), None, None)
-        minus = total - plus
-        if np.mean(plus) < np.mean(minus):
-            plus, minus = minus, plus
-        return Measured(estimate(plus), estimate(minus), estimate(total))
+    """A progress callback that does nothing."""
 
 
 class Group(NamedTuple):
@@ -119,12 +39,12 @@ class Group(NamedTuple):
     kind: str
     attractor: Attractor | None
     members: Labels
-    measured: Measured
+    measured: ExponentEstimates
 
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """The groups, largest first, with the count they come from and why it ended."""
+    """The groups of particles, largest first, the count on which they rest, the bounces before it and why it ended."""
 
     groups: tuple[Group, ...]
     count: Count
@@ -133,13 +53,13 @@ class Survey:
 
     @property
     def error(self) -> float:
-        """The largest standard error of an exponent off cycles, whose multipliers give theirs."""
+        """The largest standard error of an exponent, without cycles, whose exponents come from their multipliers."""
         sampled = [g for g in self.groups if g.attractor is None or g.attractor.kind is not Kind.CYCLE]
         return worst(tuple(group.measured for group in sampled))
 
 
-def worst(measured: tuple[Measured, ...]) -> float:
-    """The largest error of an exponent; 0 when there is none to speak of."""
+def worst(measured: tuple[ExponentEstimates, ...]) -> float:
+    """The largest error of an exponent; 0 when there is none."""
     errors = [x.error for m in measured for x in (m.upper, m.lower) if x is not None]
     return float(np.nanmax([0.0, *errors])) if errors else 0.0
 
@@ -156,7 +76,7 @@ def surveyed(
     """The exponents along orbits from `starts`, by attractor. Paper: appendix; figures in sections 4.1 and 5.3.
 
     With `until` the count goes on, twice as long each time, until every error is at most that, or until `budget`
-    bounces, of all particles together, are spent. `say` hears the part of the work that is done.
+    bounces, of all particles together, are spent. `say` is called with the fraction of the work that is done.
 
     >>> from numeric.pinball.sampling import interior_starts
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
@@ -169,7 +89,7 @@ def surveyed(
     classified = classify(map, growth.theta, growth.phi, growth.component)
     label, waited = _settled(map, growth, classified, max(transient, ALIGNED))
     classified, waited = classified._replace(label=label), waited + max(transient - ALIGNED, 0)
-    growth.advance(min(transient, ALIGNED))
+    growth.settle(ALIGNED)
     count = Count(growth, long=bounces)
     goal = max(bounces, budget // growth.theta.size) if until is not None else bounces
     ended, target = "bounces", bounces
@@ -192,28 +112,23 @@ def surveyed(
         ended = "interrupted"
         if not count.bounces:
             raise
-    return Survey(_groups(map, count, classified), count, waited + min(transient, ALIGNED), ended)
+    return Survey(_groups(map, count, classified), count, waited + ALIGNED, ended)
 
 
-def arrived(map: PinballMap, starts: Starts) -> Growth:
-    """Particles on their way from their starts; at `lam = 0` from their first landing: the slap map forgets phi."""
-    if map.law == "slap":
-        landed = map.step(starts.theta, starts.phi, starts.component)
-        return Growth(map, landed.theta, 0.0 * landed.phi, landed.component)
-    return Growth(map, starts.theta, starts.phi, starts.component)
-
-
-def skipped(growth: Growth, bounces: int) -> None:
-    """Moves particles on uncounted, a second's work at a time, so that an interruption is heard."""
-    piece = max(1, HEARD // growth.theta.size)
-    for done in range(0, bounces, piece):
-        growth.skip(min(piece, bounces - done))
+def with_families(map: PinballMap, survey: Survey) -> Survey:
+    """The survey, with one family number for attractors that are symmetry images of each other."""
+    found = [group.attractor for group in survey.groups if group.attractor is not None]
+    if len(found) < 2:
+        return survey
+    joined = iter(with_images(map, found))
+    groups = [one if one.attractor is None else one._replace(attractor=next(joined)) for one in survey.groups]
+    return replace(survey, groups=tuple(groups))
 
 
 def _settled(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> tuple[Labels, int]:
-    """The cycle within whose reach each particle is, else what it was classified as, and how long was waited for that.
+    """Each particle's label, the index of the cycle that it has come near or else of its class; and the bounces made.
 
-    After a long chaotic transient rounding decides which of several cycles a particle reaches; where it is counts.
+    After a long chaotic transient rounding decides which of several cycles a particle reaches: where it is now counts.
     """
     waited = 0
     cyclic = np.isin(classified.label, [i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE])
@@ -236,7 +151,7 @@ def _sorted(label: Labels) -> list[tuple[int, Labels]]:
 
 
 def _groups(map: PinballMap, count: Count, classified: Classified) -> tuple[Group, ...]:
-    """The particles sorted once more: one that is on a cycle now, and was not to reach it, changed on the way."""
+    """The groups of particles after the count; those on a cycle that is not their label's form a group of their own."""
     caught = _caught(map, count.growth, classified)
     cycle = np.array([a.kind is Kind.CYCLE for a in classified.attractors] + [False])
     changed = (caught != classified.label) & (cycle[caught] | cycle[classified.label]) & (count.growth.code == 0)
@@ -249,27 +164,6 @@ def _groups(map: PinballMap, count: Count, classified: Classified) -> tuple[Grou
             found = _remembering(map, count, members, found)
         groups.append(Group(_kind(index, attractor), attractor, members, found))
     return tuple(sorted(groups, key=lambda group: -group.members.size))
-
-
-def measured_on(count: Count, members: Labels, attractor: Attractor | None, blocks: int | None = None) -> Measured:
-    """The exponents over the particles of an attractor, from all blocks or from the first few.
-
-    Where vectors grow like a power of the time, `log(n)/n` is left of an exponent that is 0: the value is in its error.
-
-    >>> from numeric.pinball.sampling import interior_starts
-    >>> circle = PinballMap("circle", lam=1)
-    >>> upper = surveyed(circle, interior_starts(circle, 4, seed=1), 256, 100).groups[0].measured.upper
-    >>> 0 < upper.mean <= upper.error
-    True
-    """
-    found = count.measured(members, blocks)
-    if attractor is None or attractor.kind is not Kind.NEUTRAL or found.upper is None:
-        return found
-    left = abs(found.upper.mean)
-    upper, lower = replace(found.upper, error=max(found.upper.error, left)), found.lower
-    if lower is not None and found.total is not None:  # the sum less the upper one
-        lower = replace(lower, error=max(lower.error, left + np.nan_to_num(found.total.error)))
-    return found._replace(upper=upper, lower=lower)
 
 
 def _attractor(classified: Classified, index: int) -> Attractor | None:
@@ -287,11 +181,11 @@ def _kind(index: int, attractor: Attractor | None) -> str:
     return attractor.kind.name.lower()
 
 
-def _remembering(map: PinballMap, count: Count, members: Labels, found: Measured) -> Measured:
-    """With the naive error, from the growth of single bounces of a few particles."""
+def _remembering(map: PinballMap, count: Count, members: Labels, found: ExponentEstimates) -> ExponentEstimates:
+    """`found` with its naive error (for independent bounces), from the growth of single bounces of a few particles."""
     few, end = members[:WATCHED], count.growth
     watched = Growth(map.at(end.lam[few]), end.theta[few], end.phi[few], end.component[few])
-    watched.advance(ALIGNED)
+    watched.settle(ALIGNED)
     track = np.empty((SINGLE + 1, few.size))
     track[0] = watched.stretch
     for bounce in range(1, SINGLE + 1):
@@ -308,7 +202,7 @@ SETTLING = 60  # bounces in which a vector turns to its direction
 
 
 def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int = 1000) -> Array:
-    """The angle in `(s, phi)`, in radians from 0 to pi/2, at `bounces` points of every particle's orbit.
+    """The angles, up to pi/2, between the expanding and contracting directions in `(s, phi)` along every orbit.
 
     >>> from numeric.dynamics.phase_points import phase_points
     >>> measured = angles(PinballMap("cuspless", lam="0.5"), phase_points([0.5, 0.7], 0.1), 50)
@@ -327,13 +221,13 @@ def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int
 
 
 def _adjugate(slope: Array) -> Array:
-    """The inverse matrices up to a factor, which turns no direction. LAPACK's last bit depends on the processor."""
+    """The inverse matrices up to a factor; without LAPACK, whose last bit depends on the processor."""
     (a, b), (c, d) = np.moveaxis(slope, (-2, -1), (0, 1))
     return np.moveaxis(np.array([[d, -b], [-c, a]]), (0, 1), (-2, -1))
 
 
 def _carried(slopes: Array, vector: Array) -> Array:
-    """The unit vector before each step, of each particle; matrices by step and particle."""
+    """A vector carried along each orbit by the matrices `slopes` and normalised: at the start and after each step."""
     here = np.broadcast_to(vector, (slopes[0].shape[0], 2))
     rows = [here]
     for slope in slopes:

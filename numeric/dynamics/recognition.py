@@ -1,30 +1,29 @@
-"""What a particle ends on: an attractor, by its kind, its points and what was measured of it.
+"""Attractors: their kinds and data, the polishing of cycles, and the recognition of the one that a particle is on.
 
-A cycle in float64, polished from points near it: multiple shooting, its multipliers, its least period.
-
-All bounces are unknowns at once, so errors do not multiply along the cycle, and one of period 256 next
-to the accumulation of period doublings is told from one of 128. For digits and proofs there is the
-chord system (`verification.cycles`, `verification.proofs`).
-
-Recognising attractors: the cycle that a particle is at, the cloud it lies in, the new cycle it is on.
+A cycle is polished in float64 by multiple shooting: all bounces are unknowns at once, so that errors do not multiply
+along the cycle, and one of period 256 next to the accumulation of period doublings is distinguished from one of 128.
+For digits and proofs there is the chord system (`verification.cycles`).
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import copysign, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from numeric import PinballMap, Status
+from numeric import Orbit, PinballMap, Status
 from numeric.backends import elementary
-from numeric.dynamics.phase_points import Array, PhasePoints, advanced, embedded, phase_points, together
+from numeric.dynamics.phase_points import Array, Labels, PhasePoints, advanced, embedded, phase_points, together
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 
 class Kind(Enum):
-    """What a particle ends on."""
+    """The kinds of sets on which a particle can end."""
 
     CYCLE = "an attracting cycle"
     CHAOTIC = "a chaotic set: an attractor when lam < 1"
@@ -34,7 +33,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Share:
-    """A part of the starts: how many, and the interval that holds the true share with 95 per cent confidence."""
+    """A share of the starts: how many they are, and the 95 per cent interval of the true share."""
 
     count: int
     of: int
@@ -44,13 +43,14 @@ class Share:
 
 @dataclass(frozen=True, eq=False)
 class Attractor:
-    """An attractor: its points (a cycle's in order, a cloud of others), and what was measured of it.
+    """An attractor: its points (in order on a cycle, a cloud on any other), and what was measured of it.
 
-    `nu_plus` and `nu_minus` are per bounce, with standard errors (0 for a cycle, whose multipliers they come
-    from). `reach` is the distance in `(x, y, sin(phi))` within which particles are taken to be caught: sampled,
-    not proved. `stay` bounds the mean number of bounces before a particle leaves a chaotic attractor from below,
-    with 95 per cent confidence: none of the particles seen left. `family` numbers attractors that are symmetry
-    images of each other alike; `symmetry` is the attractor's own group, such as `D1`.
+    `nu_plus` and `nu_minus` are per bounce, with standard errors (0 for a cycle, whose multipliers they come from).
+    `reach` is the distance in `(x, y, sin(phi))` within which particles are taken to be caught, or to be on a chaotic
+    set: sampled, not proved. `stay` is a lower bound, with 95 per cent confidence, of the mean number of bounces before
+    a particle leaves a chaotic attractor: no observed particle left. `family` is one number for attractors that are
+    symmetry images of each other; `symmetry` is the attractor's own group, such as `D1`. `doubt` says why what is
+    listed as one chaotic set may be several; it is empty where it is one.
     """
 
     kind: Kind
@@ -66,10 +66,11 @@ class Attractor:
     share: Share | None = None
     family: int = -1
     symmetry: str = ""
+    doubt: str = ""
 
 
 def wilson(count: int, of: int, z: float = 1.96) -> Share:
-    """The share with Wilson's interval [Wilson1927], which never leaves 0 to 1 and is not empty at either.
+    """The share with Wilson's interval [Wilson1927], which lies in [0, 1] and has positive length even at 0 and 1.
 
     >>> share = wilson(0, 100)
     >>> share.low, round(share.high, 4)
@@ -82,7 +83,7 @@ def wilson(count: int, of: int, z: float = 1.96) -> Share:
 
 STEPS = 30
 ROUNDING = 1e-11  # of Newton's last correction
-SAME = 1e-7  # between points of one cycle and their images: a shorter cycle, run through several times
+SAME = 1e-7  # a cycle whose points return earlier within this distance has a shorter period
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +118,11 @@ def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
     for _ in range(STEPS):
         image = map.step(here.theta, here.phi, here.component)
         after = here.turned(1)
-        if np.any(image.code) or np.any(image.component != after.component):
+        if np.any(image.code):
             return None
-        miss = np.stack([gap(map, image.theta, after.theta), image.phi - after.phi], axis=1)
+        miss = np.stack([beyond(map, image, after), image.phi - after.phi], axis=1)
+        if not np.all(np.isfinite(miss)):
+            return None
         try:
             step = round_the_cycle(by_parameter(map, here, after), miss)
         except np.linalg.LinAlgError:
@@ -135,10 +138,10 @@ def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
 
 
 def round_the_cycle(slopes: Array, right: Array) -> Array:
-    """The `d` with `slopes[i] @ d[i] - d[i + 1] = right[i]`, where the last is followed by the first.
+    """The vectors `d` with `slopes[i] @ d[i] - d[i + 1] = right[i]`, where the last is followed by the first.
 
-    A ring that is folded flat has its neighbours within two places, so the system is a band: the work grows like the
-    period. `LinAlgError` where it is singular.
+    Unknowns are ordered from both ends of the ring, so that the matrix is a band and the work grows like the period.
+    `LinAlgError` where it is singular.
 
     >>> round_the_cycle(np.array([[[3.0, 0.0], [0.0, 0.5]]] * 2), np.array([[1.0, 1.0], [5.0, 1.0]])).tolist()
     [[1.0, -2.0], [2.0, -2.0]]
@@ -181,7 +184,7 @@ def multipliers(map: PinballMap, cycle: PhasePoints) -> tuple[complex, complex]:
 
 
 def eigenvalues(slopes: Array) -> tuple[complex, complex]:
-    """Those of the product of the matrices, the larger one first, from its trace and the determinants' product.
+    """The eigenvalues of the product of the matrices, the larger first, from its trace and the determinants' product.
 
     >>> [mu.real for mu in eigenvalues(np.array([[[2.0, 0.0], [0.0, 1.0]], [[4.0, 0.0], [0.0, 0.5]]]))]
     [8.0, 0.5]
@@ -203,7 +206,7 @@ def eigenvalues(slopes: Array) -> tuple[complex, complex]:
 
 
 def determinants(slopes: Array) -> Array:
-    """Of matrices with two rows: LAPACK's last bit depends on the processor."""
+    """Determinants of 2 by 2 matrices, without LAPACK, whose last bit depends on the processor."""
     return np.asarray(slopes[..., 0, 0] * slopes[..., 1, 1] - slopes[..., 0, 1] * slopes[..., 1, 0])
 
 
@@ -216,34 +219,56 @@ def by_parameter(map: PinballMap, here: PhasePoints, after: PhasePoints) -> Arra
 
 
 def gap(map: PinballMap, left: Array, right: Array) -> Array:
-    """The difference of parameters; the short way round on a table of one closed component."""
+    """The difference of parameters, `left - right`; the short way round on a table of one closed component."""
     if len(map.states.ends) > 1:
         return left - right
     return np.asarray(np.remainder(left - right + np.pi, 2 * np.pi) - np.pi)
 
 
+def beyond(map: PinballMap, image: Orbit, after: PhasePoints) -> Array:
+    """How far images lie beyond the phase points `after`, in the parameter; nan where a corner lies between.
+
+    Across a smooth join the difference is taken along the tangent; it is exact where it is 0.
+    """
+    found, other = gap(map, image.theta, after.theta), image.component != after.component
+    if np.any(other):
+        part, theta = after.component[other], after.theta[other]
+        way = np.array(map.states.tangent(part, theta))
+        between = np.array([image.x[other], image.y[other]]) - map.states.point(part, theta)
+        near = np.hypot(*between) < LOOSE * map.states.size
+        along = np.sum(way * between, axis=0) / map.states.speed(part, theta)
+        corner = np.array(map.family.boundary.corners)[part, (along > 0).astype(int)]
+        found[other] = np.where(near & ~corner, along, np.nan)
+    return found
+
+
 def _moved(map: PinballMap, here: PhasePoints, step: Array) -> PhasePoints | None:
     theta, phi = here.theta - step[:, 0], here.phi - step[:, 1]
-    ends = np.array(map.states.ends)[here.component]
-    if len(map.states.ends) > 1 and np.any((theta <= ends[:, 0]) | (theta >= ends[:, 1])):
-        return None
+    if len(map.states.ends) > 1:
+        low, high = np.array(map.states.ends)[here.component].T
+        first, last = np.array(map.family.boundary.corners)[here.component].T
+        if np.any((first & (theta <= low)) | (last & (theta >= high))):
+            return None
+        theta = np.clip(theta, low, high)  # at most to a smooth join, on which a cycle may lie
+    else:
+        theta = theta - 2 * np.pi * np.rint(theta / (2 * np.pi))
     if np.any(np.abs(phi) >= np.pi / 2):
         return None
-    return phase_points(theta - 2 * np.pi * np.rint(theta / (2 * np.pi)), phi, here.component)
+    return phase_points(theta, phi, here.component)
 
 
 UNSETTLED = -1
-LONGEST = 256  # period that is looked for
-RETURN, LOOSE = 1e-9, 1e-2  # of a particle to where it was: it is on a cycle; it may be near one
+LONGEST = 256  # longest period that is searched for
+RETURN, LOOSE = 1e-9, 1e-2  # distance of a particle from where it was: it is on a cycle; it may be near one
 REACHES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # radii tried for a cycle's neighbourhood
 SAME_POINT = 1e-6  # between cycles
-UNIT = 1e-7  # how near 1 a multiplier is that counts as 1
-NEAR = 0.1  # of a cloud
-Labels = NDArray[np.int64]
+UNIT = 1e-7  # distance from 1 of a multiplier that counts as 1
+NEAR = 0.1  # largest distance from a cloud of a particle that is on it
+VOTES = 16  # bounces that decide on which cloud a particle is
 
 
 def same(map: PinballMap, old: Attractor, new: Attractor) -> bool:
-    """Are two the same cycle, the same neutral family, the same way to stop?"""
+    """Are two attractors the same cycle, the same neutral family, or the same way to stop?"""
     if (old.kind, old.period, old.status) != (new.kind, new.period, new.status):
         return False
     if old.kind is not Kind.CYCLE:
@@ -253,12 +278,12 @@ def same(map: PinballMap, old: Attractor, new: Attractor) -> bool:
 
 
 def at_cycles(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor]) -> Labels:
-    """The cycle within whose reach each particle is, or the neutral family to which it belongs; -1 for none."""
+    """The index of the cycle within whose reach each particle is, or of the neutral family it is in; -1 for none."""
     found = np.full(particles.size, UNSETTLED)
     cycles = [i for i, a in enumerate(attractors) if a.kind is Kind.CYCLE]
     if cycles:
         owner = np.repeat(cycles, [attractors[i].period for i in cycles])
-        tree = cKDTree(embedded(map, together(*(attractors[i].points for i in cycles))))
+        tree = tree_of(embedded(map, together(*(attractors[i].points for i in cycles))))
         reach = np.array([attractors[i].reach for i in owner])
         distance, nearest = tree.query(embedded(map, particles), distance_upper_bound=2 * REACHES[0])
         near = distance < np.append(reach, 0.0)[nearest]
@@ -273,32 +298,67 @@ def at_cycles(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attr
     return found
 
 
+def tree_of(points: Array) -> "cKDTree":
+    """The points sorted for the search of nearest ones."""
+    from scipy.spatial import cKDTree  # a third of a second that other questions do without
+
+    return cKDTree(points)
+
+
 def at_clouds(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor]) -> Labels:
-    """The chaotic attractor nearest to each particle; -1 when it is not near any."""
+    """The index of the chaotic attractor nearest to each particle; -1 when it is not near any."""
     return clouds(map, attractors)(particles)
 
 
 def clouds(map: PinballMap, attractors: Sequence[Attractor]) -> Callable[[PhasePoints], Labels]:
-    """`at_clouds` of whatever particles, with the points of the attractors sorted once."""
+    """`at_clouds` as a function of the particles, for repeated use: the attractors' points are sorted once."""
     chaotic = [i for i, a in enumerate(attractors) if a.kind is Kind.CHAOTIC]
     if not chaotic:
         return lambda particles: np.full(particles.size, UNSETTLED)
     owner = np.repeat(chaotic, [attractors[i].points.size for i in chaotic])
-    tree = cKDTree(embedded(map, together(*(attractors[i].points for i in chaotic))))
+    tree = tree_of(embedded(map, together(*(attractors[i].points for i in chaotic))))
+    reach = np.array([attractors[i].reach or NEAR for i in owner])
 
     def nearest_to(particles: PhasePoints) -> Labels:
         distance, nearest = tree.query(embedded(map, particles), distance_upper_bound=NEAR)  # none: one past the last
-        return np.where(distance < NEAR, np.append(owner, UNSETTLED)[nearest], UNSETTLED)
+        return np.where(distance < np.append(reach, 0.0)[nearest], np.append(owner, UNSETTLED)[nearest], UNSETTLED)
 
     return nearest_to
 
 
+def spacing(map: PinballMap, points: PhasePoints) -> float:
+    """The distance within which nearly every further point of the same cloud has a neighbour in it."""
+    place = embedded(map, points)
+    distance = tree_of(place[::2]).query(place[1::2])[0]
+    return float(min(max(2 * np.quantile(distance, 0.999), SAME_POINT), NEAR))
+
+
+def on_clouds(map: PinballMap, particles: PhasePoints, attractors: Sequence[Attractor]) -> Labels:
+    """The index of the chaotic attractor near most of the next `VOTES` points of each particle's orbit; -1 for none."""
+    if not any(a.kind is Kind.CHAOTIC for a in attractors):
+        return np.full(particles.size, UNSETTLED)
+    orbit = map.orbit(particles.theta, particles.phi, VOTES - 1, particles.component)
+    near = at_clouds(map, phase_points(orbit.theta, orbit.phi, orbit.component), attractors)
+    return majority(near.reshape(VOTES, particles.size).T)
+
+
+def majority(votes: Labels) -> Labels:
+    """The label that more than half of the entries of each row have; -1 where there is none.
+
+    >>> majority(np.array([[0, 1, 1], [0, 1, 2], [-1, -1, 0]])).tolist()
+    [1, -1, -1]
+    """
+    middle = np.sort(votes, axis=1)[:, votes.shape[1] // 2]
+    return np.where(2 * np.sum(votes == middle[:, None], axis=1) > votes.shape[1], middle, UNSETTLED)
+
+
 def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_]) -> list[Attractor]:
-    """The cycles on which some particles are, or near which one of the `calm` ones is: they still draw nearer."""
+    """The attracting or neutral cycles on which some particles are, or which some in the mask `calm` approach."""
     if particles.size == 0:
         return []
     orbit = map.orbit(particles.theta, particles.phi, LONGEST, particles.component)
-    track = np.stack([orbit.x, orbit.y, np.sin(orbit.phi)], axis=-1)
+    flat = phase_points(*(np.ravel(rows) for rows in (orbit.theta, orbit.phi, orbit.component)))
+    track = embedded(map, flat).reshape(*orbit.theta.shape, 3)
     gaps = np.linalg.norm(track[1:] - track[:1], axis=-1)
     found: list[Attractor] = []
     for i in range(particles.size):
@@ -313,7 +373,7 @@ def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_])
 
 
 def _period(gaps: Array, loose: float) -> int:
-    """The bounces after which a particle is back, or else comes nearest within `loose`; 0 for never."""
+    """The number of bounces until a particle returns (within `RETURN`), or comes nearest, if within `loose`; else 0."""
     back = np.nonzero(gaps < RETURN)[0]
     if back.size:
         return int(back[0]) + 1
@@ -328,7 +388,10 @@ def _at(map: PinballMap, attractor: Attractor, point: Array) -> bool:
 def _attractor(map: PinballMap, points: PhasePoints, miss: float) -> Attractor | None:
     """The attracting or neutral cycle that runs near the points, which return with a gap of `miss`."""
     if miss < RETURN and abs(abs(multipliers(map, points)[0]) - 1) < UNIT:
-        return Attractor(Kind.NEUTRAL, points.size, points, multipliers(map, points), 0.0)
+        larger, smaller = multipliers(map, points)
+        with np.errstate(divide="ignore"):
+            lower = float(elementary.log(abs(smaller)) / points.size)
+        return Attractor(Kind.NEUTRAL, points.size, points, (larger, smaller), 0.0, lower)
     cycle = polished(map, points)
     if cycle is None or abs(cycle.multipliers[0]) >= 1 - UNIT:
         return None
@@ -337,14 +400,14 @@ def _attractor(map: PinballMap, points: PhasePoints, miss: float) -> Attractor |
 
 
 def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
-    """The largest radius tried such that particles that far from the cycle all come ten times nearer: sampled.
+    """The largest tried radius from which sampled particles all come ten times nearer to the cycle, or the least one.
 
     >>> from numeric.dynamics.phase_points import phase_points
     >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points([1.5, -1.6], 0.0))
     >>> reach(PinballMap("ellipse", a=2, lam="0.5"), cycle)
     0.01
     """
-    rng, tree = np.random.default_rng(seed), cKDTree(embedded(map, cycle.points))
+    rng, tree = np.random.default_rng(seed), tree_of(embedded(map, cycle.points))
     many = together(*[cycle.points] * (1 + 63 // cycle.period))
     speed = map.states.speed(many.component, many.theta)
     size = max(abs(cycle.multipliers[0]), 1e-3)
@@ -352,7 +415,7 @@ def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
     ends = np.array(map.states.ends)[many.component]
     for radius in REACHES:
         angle = rng.uniform(0, 2 * np.pi, many.size)
-        theta = many.theta + radius * np.cos(angle) / speed
+        theta = many.theta + radius * map.states.size * np.cos(angle) / speed
         if len(map.states.ends) > 1:
             theta = np.clip(theta, ends[:, 0], ends[:, 1])
         phi = np.clip(many.phi + radius * np.sin(angle), -1.57, 1.57)

@@ -1,4 +1,4 @@
-"""The cardioid: one cubic for the far end of a flight, its interval known from one sign.
+"""The cardioid: the far end of a flight is a zero of a cubic, in an interval that one sign determines.
 
 State: `sigma = exp(i*theta/2)` and `exp(i*phi)`; the tangent is `i*sigma**3`, so no frame needs a
 root. With `k = sin(theta0/2 - phi)` the particle passes the cusp at the distance `2*cos(theta0/2)**2*|k|`.
@@ -20,13 +20,13 @@ from numeric.flights.family import ELASTIC, NEAR, SLAP, Array, Boundary, Family,
 
 
 class Cardioid(Family):
-    """Paper: section 4."""
+    """The flight on the cardioid. Paper: section 4."""
 
     name = "cardioid"
     path = "cubic for the far end, its interval known from one sign"
     cusped = True
     pairs = 0, 2
-    tells = True
+    can_record = True
     position: tuple[str, ...] = ("p", "q")  # cos and sin of theta/2
     direction = ("cos_phi", "sin_phi")
     steps = 4, 1
@@ -63,13 +63,13 @@ class Cardioid(Family):
     def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
         return ops.number(1.0), ops.number(-0.75) / position[0]
 
-    def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
+    def exit_fields(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         return [ops.cos(phi), ops.sin(phi)]
 
     def exit(self, ops: Backend[N, M], frame: Frame[N], leaving: Fields[N]) -> N:
         return ops.atan2(leaving[1], leaving[0])
 
-    def heading(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
+    def unit_direction(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
         return frame.direction(ops, phi)
 
     def arclength(self, ops: Backend[N, M], component: int, theta: N) -> N:
@@ -82,7 +82,7 @@ class Cardioid(Family):
         return np.asarray(2 * elementary.arcsin(np.clip(s / 4, -1, 1)))
 
     def cubic(self, ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> tuple[list[N], N, N, Pair[N]]:
-        """The flight equation in `S`, mirrored so that `k >= 0`; then `sin(theta0/2)` so mirrored, `k`, and `-v`."""
+        """Coefficients of the flight equation for `S`, mirrored for `k >= 0`; mirrored `sin(theta0/2)`; `k`; `-v`."""
         p, q = sigma
         k = plane.exact_cross(ops, (q, p), (exit[1], exit[0]))
         back = plane.times(plane.squared(sigma), (plane.dot(sigma, exit), k))
@@ -140,10 +140,10 @@ class Cardioid(Family):
     def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         return drift * below  # arc length is the parameter of tangent vectors
 
-    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+    def normal_exit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(1.0), ops.number(0.0)]
 
-    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
+    def exit_normal_speed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         return exit[0]
 
     def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
@@ -154,7 +154,7 @@ class Cardioid(Family):
     ) -> N:
         return plane.dot((start[0] - end[0], start[1] - end[1]), landing.vectors["back"])
 
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         return ops.number(-0.75), landing.position[0]
 
     def point(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:

@@ -6,10 +6,10 @@ from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing
 
 
 class Circle(Family):
-    """Paper: section 3.1."""
+    """The flight on the unit circle, in closed form. Paper: section 3.1."""
 
     name, path = "circle", "closed form in angles"
-    stops, tells, narrow = False, True, 32
+    stops, can_record, narrow = False, True, 32
     renormalise_every = 128  # a bounce grows no vector more than eightfold
     position = ("theta",)
     direction = ("phi",)
@@ -31,13 +31,13 @@ class Circle(Family):
     def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
         return ops.number(1.0), ops.number(-1.0)
 
-    def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
+    def exit_fields(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
         return [phi]
 
     def exit(self, ops: Backend[N, M], frame: Frame[N], leaving: Fields[N]) -> N:
         return leaving[0]
 
-    def heading(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
+    def unit_direction(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
         return frame.direction(ops, phi)
 
     def distance(self, ops: Backend[N, M], fields: Fields[N], others: Fields[N]) -> N:
@@ -66,16 +66,16 @@ class Circle(Family):
     def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
         return drift
 
-    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+    def normal_exit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         return [ops.number(0.0)]
 
-    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
+    def exit_normal_speed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         return ops.number(1.0)
 
     def length(
         self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
     ) -> N:
-        return ops.number(2.0)  # times cos(phi), which `departure` and `along` leave out as well
+        return ops.number(2.0)  # times cos(phi), which `exit_normal_speed` and `along` leave out as well
 
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         return ops.number(-1.0), ops.number(1.0)

@@ -1,7 +1,7 @@
 """An ellipse that is given by its radius about a focus, however long: no digit is lost at its far end or at its tips.
 
 A conic about the origin, `1/r = p + Q.n` with `n = (cos(theta), sin(theta))`, is an ellipse of which the origin is a
-focus. Its flight is the ellipse's, in the eccentric parameter `E`; people are told the polar angle. With `e = |Q|/p`
+focus. Its flight is the ellipse's, in the eccentric parameter `E`; users see the polar angle. With `e = |Q|/p`
 and angles from the direction of `Q`, `tan(theta/2) = sqrt((1 + e)/(1 - e))*tan(E/2)`.
 
 At its tips the boundary turns by `1/sqrt(1 - e*e)` times as much as the parameter, 22 times at `e = 0.999`; so the
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from numeric.backends import functions as plane
 from numeric.backends.doubled import Doubles
-from numeric.backends.protocol import Backend, Fields, M, N, Pair
+from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Array, Boundary, Frame, Landing
 from numeric.flights.harmonic import Ellipse
 
@@ -35,7 +35,7 @@ class Focus(NamedTuple, Generic[N]):
 
 
 class Conic(Ellipse):
-    """An ellipse by its radius about a focus: no difference of its radius, which loses digits at the far tip."""
+    """An ellipse by its radius about a focus, without differences of the radius, which lose digits at the far tip."""
 
     name, path = "conic", "closed form in unit numbers of the eccentric parameter"
 
@@ -45,7 +45,7 @@ class Conic(Ellipse):
 
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)
-        self.tells = not boundary.shape  # `place` would make constants of the numbers of one shape
+        self.can_record = not boundary.shape  # `place` would make constants of the numbers of one shape
         ratio = self.focus(boundary.ops).ratio
         self.refines = bool(boundary.shape) or ratio + 1 / ratio > 2 * ROUND
 
@@ -53,7 +53,7 @@ class Conic(Ellipse):
         return None
 
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
-        """As `Ellipse.fly`, with twice the digits where the ellipse is long."""
+        """`Ellipse.fly`, with twice the digits where the ellipse is long."""
         landing = super().fly(ops, shape, law, position, exit)
         if not self.refines or not ops.doubles:
             return landing
@@ -74,11 +74,20 @@ class Conic(Ellipse):
         return found
 
     def focus(self, ops: Backend[N, M]) -> Focus[N]:
-        """The conic's numbers."""
+        """The numbers of the conic at the boundary's shape."""
         x, y, p, size, left = self.boundary.ir.program("focus")(
             ops, *(ops.number(float(a)) for a in self.boundary.shape)
         )
         return Focus((x, y), p, size, left / (p + size), (p + size) / ops.sqrt(left))
+
+    def point(self, ops: Backend[N, M], *values: N) -> list[N]:
+        """Boundary point relative to the focus, which keeps its digits at the near tip."""
+        c, s, *shape = values
+        x, y, p, size, left = self.boundary.ir.program("focus")(ops, *shape)
+        one, half = ops.number(1.0), p / left  # the longer half axis
+        ahead = one / (p + size) - half * (s * s / (one + modulus(c)))
+        along = ops.select(ops.number(0.0) < c, ahead, half * c - size / left)
+        return [*plane.times((x, y), (along, s / ops.sqrt(left)))]
 
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         focus = self.focus(ops)
@@ -96,7 +105,7 @@ class Conic(Ellipse):
         return ops.number(0.0), ops.atan2(n[1], n[0])
 
     def _seen(self, theta: Array) -> tuple[Array, Array, Pair[Array]]:
-        """`1/r`, and size and direction of `p*n + Q`, which points out of the table along its normal."""
+        """`1/r` at polar angles, and length and direction of the normal `p*n + Q` (letters: module docstring)."""
         ops, focus = self.boundary.ops, self.focus(self.boundary.ops)
         u = np.cos(theta), np.sin(theta)
         c, s = plane.dot(focus.ahead, u), plane.exact_cross(ops, focus.ahead, u)

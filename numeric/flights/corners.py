@@ -1,4 +1,4 @@
-"""Sides and arcs in a row: their numbers and coordinates, which follows which, and what a flight may pass there."""
+"""Chains of sides and arcs: their numbers, coordinates and order, and the corners that a flight may pass."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
@@ -20,14 +20,13 @@ LINE, CIRCLE, ELLIPSE = "line", "circle", "ellipse"
 FOCAL = "focal"  # an arc of an ellipse by its radius about a focus
 MANY = 24  # pieces of a convex curve, from which on it pays to find one by halving, with numbers from memory
 STEEP = 8.0
-TURNS = 1e-12  # sine of the largest angle by which a corner of a convex curve may bend the wrong way, by rounding
 
 
 Axes = list[Two[N, M]]  # `C`, `A` and `B` of a piece with twice the digits, `C + p*A + q*B` being its points
 
 
-class Piece(NamedTuple, Generic[N]):
-    """The numbers of a piece in some arithmetic."""
+class PieceNumbers(NamedTuple, Generic[N]):
+    """The numbers that describe a piece of the boundary, in the arithmetic of some backend."""
 
     kind: str
     origin: Pair[N]
@@ -40,14 +39,14 @@ class Piece(NamedTuple, Generic[N]):
     half: Pair[N]  # sine and cosine of half the angle of an arc
 
 
-def piece_of(kind: str, x: Fields[N]) -> Piece[N]:
-    """From the fourteen numbers of a piece's program."""
+def piece_of(kind: str, x: Fields[N]) -> PieceNumbers[N]:
+    """The piece made from the fourteen numbers of its program."""
     pairs = [(x[i], x[i + 1]) for i in (0, 2, 4, 6, 10, 12)]
-    return Piece(kind, pairs[0], pairs[1], pairs[2], pairs[3], x[8], x[9], pairs[4], pairs[5])
+    return PieceNumbers(kind, pairs[0], pairs[1], pairs[2], pairs[3], x[8], x[9], pairs[4], pairs[5])
 
 
-def span(piece: Piece[N]) -> Pair[N]:
-    """Bounds of the sum of moduli that a point of a piece is added up from: at `p = 0`, and more for a unit of `p`."""
+def span(piece: PieceNumbers[N]) -> Pair[N]:
+    """`(base, slope)`: `base + slope*|p|` bounds the sum of the moduli of the terms of a piece's point at `p`."""
     x, y, ax, ay, bx, by = (modulus(z) for pair in (piece.origin, piece.A, piece.B) for z in pair)
     if piece.kind == FOCAL:
         return ax + ay + ax + ay + bx + by, x - x
@@ -61,7 +60,7 @@ def from_focus(ops: Backend[N, M], gap: N, u: Pair[N]) -> N:
 
 
 def chosen(ops: Backend[N, M], component: N, values: list[N]) -> N:
-    """The value of the particle's piece; neighbours that are equal cost nothing."""
+    """The value for the particle's piece, from `values`, one for each piece; equal neighbours need no choice."""
     if len(values) > MANY and all(map(ops.constant, values)):
         return values[0] if all(ops.same(value, values[0]) for value in values) else ops.look_up(values, component)
     found = values[0]
@@ -72,25 +71,9 @@ def chosen(ops: Backend[N, M], component: N, values: list[N]) -> N:
 
 
 def chosen_mask(ops: Backend[N, M], component: N, values: list[bool]) -> M:
-    """Where the particle's piece is one of those marked."""
+    """The mask of particles for whose piece `values`, one for each piece, is True."""
     marked: M = ops.number(0.5) < chosen(ops, component, [ops.number(float(value)) for value in values])
     return marked
-
-
-def following(boundary: Boundary, pieces: list[Piece[float]]) -> list[int]:
-    """The piece that begins where each one ends: the next one, or the first of a closed curve."""
-    found, first, count = [], 0, len(pieces)
-    size = max(abs(x) for piece in pieces for x in piece.start) + 1.0
-    for j in range(count):
-        x, y, *_ = boundary.curve(np.array([j]), np.array([boundary.ends[j][1]]))[:, 0]
-        after = (j + 1) % count
-        back = np.hypot(x - pieces[first].start[0], y - pieces[first].start[1]) <= 1e-9 * size
-        if back and (j > first or pieces[j].kind != LINE):
-            found.append(first)
-            first = j + 1
-        else:
-            found.append(after)
-    return found
 
 
 def loops(after: list[int]) -> list[list[int]]:
@@ -103,36 +86,31 @@ def loops(after: list[int]) -> list[list[int]]:
     return found
 
 
-def convex(boundary: Boundary, pieces: list[Piece[float]], loop: list[int], after: list[int]) -> bool:
+def convex(boundary: Boundary, pieces: list[PieceNumbers[float]], loop: list[int]) -> bool:
     """Does every arc of the curve focus, and every corner bend inwards?"""
     if any(pieces[j].kind != LINE and not pieces[j].D > 0 for j in loop):
         return False
     turning = 0.0
     for j in loop:
-        arriving, leaving = _direction(boundary, j, 1), _direction(boundary, after[j], 0)
-        sine = float(plane.cross(arriving, leaving))
-        if sine < -TURNS or (abs(sine) <= TURNS and plane.dot(arriving, leaving) < 0):
+        if not inwards(boundary, j):
             return False
-        turning += float(elementary.arctan2(sine, plane.dot(arriving, leaving)))
+        arriving, leaving = _direction(boundary, j, 1), _direction(boundary, boundary.following[j], 0)
+        turning += float(elementary.arctan2(plane.cross(arriving, leaving), plane.dot(arriving, leaving)))
         low, high = boundary.ends[j]
         turning += high - low if pieces[j].kind == CIRCLE else _turned(boundary, j, pieces[j])
     return abs(turning - 2 * np.pi) < 1e-6
 
 
-def passable(boundary: Boundary, pieces: list[Piece[float]], j: int, after: list[int]) -> bool:
-    """May a flight pass the first corner of a piece? Not where the curve bends inwards, or is smooth and focuses.
+def inwards(boundary: Boundary, j: int) -> bool:
+    """Does the boundary turn into the table where a component ends, or go on smoothly?
 
-    A cusp counts as one that may be passed: its tangents do not say to which side it points.
+    Not at a cusp, whose tangents do not show to which side it points. A corner that the ranges of the parameters
+    leave open is decided by its numbers.
     """
-    before = after.index(j)
-    if before == j:
-        return False  # a closed arc
-    arriving, leaving = _direction(boundary, before, 1), _direction(boundary, j, 0)
-    sine = float(plane.cross(arriving, leaving))
-    if abs(sine) > TURNS:
-        return sine < 0
-    focuses = all(pieces[i].kind == LINE or bool(pieces[i].D > 0) for i in (before, j))
-    return bool(plane.dot(arriving, leaving) < 0 or not focuses)
+    after, contact, bend = boundary.ir.joins[j]
+    if contact != "CORNER":
+        return contact != "CUSP"
+    return bend > 0 or (bend == 0 and bool(plane.cross(_direction(boundary, j, 1), _direction(boundary, after, 0)) > 0))
 
 
 def _direction(boundary: Boundary, j: int, end: int) -> Pair[float]:
@@ -142,7 +120,7 @@ def _direction(boundary: Boundary, j: int, end: int) -> Pair[float]:
     return dx / size, dy / size
 
 
-def _turned(boundary: Boundary, j: int, piece: Piece[float]) -> float:
+def _turned(boundary: Boundary, j: int, piece: PieceNumbers[float]) -> float:
     """The angle by which the tangent of a piece turns."""
     low, high = boundary.ends[j]
     theta = np.linspace(low, high, 257)
@@ -156,9 +134,9 @@ def _turned(boundary: Boundary, j: int, piece: Piece[float]) -> float:
 
 
 class Coordinates(Family):
-    """Between people's coordinates and the fields of tables of sides and arcs.
+    """Conversion between users' coordinates and the state, on tables of sides and arcs.
 
-    On an arc about a focus `theta` is the polar angle, and the field the eccentric parameter.
+    On an arc about a focus `theta` is the polar angle, and the state has the eccentric parameter.
     """
 
     kinds: list[str]
@@ -166,7 +144,7 @@ class Coordinates(Family):
     programs: list[Program]
 
     @abstractmethod
-    def pieces(self, ops: Backend[N, M], shape: Fields[N]) -> list[Piece[N]]:
+    def pieces(self, ops: Backend[N, M], shape: Fields[N]) -> list[PieceNumbers[N]]:
         """All pieces in the arithmetic of `ops`."""
 
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
@@ -180,14 +158,14 @@ class Coordinates(Family):
         return [component, ops.select(line, theta, u[0]), ops.select(line, minus, u[1])]
 
     def _foci(self, ops: Backend[N, M]) -> Iterator[tuple[int, Pair[N], N]]:
-        """Of every arc about a focus the direction of `A`, and the ratio of the tangents of half the angles."""
+        """For every arc about a focus: its index, the direction of `A`, and the ratio `sqrt((1 + e)/(1 - e))`."""
         for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
             if kind == FOCAL:
                 *_, x, y, ratio = program(ops, *(ops.number(float(a)) for a in self.boundary.shape))
                 yield j, (x, y), ratio
 
     def _there(self, ops: Backend[N, M], component: N, j: int, new: Pair[N], old: Pair[N]) -> Pair[N]:
-        """`new` on piece `j`, and `old` elsewhere."""
+        """`new` for particles on piece `j`, and `old` for all others."""
         here = modulus(component - ops.number(float(j))) < ops.number(0.25)
         return ops.select(here, new[0], old[0]), ops.select(here, new[1], old[1])
 
@@ -237,7 +215,7 @@ class Coordinates(Family):
         return [exact_axes(made(words), kind, words) for made, kind in zip(self.programs, self.kinds, strict=True)]
 
     def exact_axes_at(self, ops: Backend[N, M], shape: Fields[N], component: N) -> Axes[N, M]:
-        """Those of the particle's piece."""
+        """The axes of the particle's piece, with twice the digits."""
         words = Doubles(ops)
         if self.boundary.shape:
             letters = [words.of(x) for x in shape]
@@ -253,15 +231,15 @@ class Coordinates(Family):
 
         return [(one(k, 0), one(k, 1)) for k in range(3)]
 
-    def _axes(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
-        """`A` and `B` of the particle's piece."""
+    def _axes(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N) -> list[Pair[N]]:
+        """The vectors `A` and `B` of the particle's piece, whose points are `C + p*A + q*B`."""
         return [
             self._pair(ops, component, [piece.A for piece in pieces]),
             self._pair(ops, component, [piece.B for piece in pieces]),
         ]
 
-    def _turning(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> N:
-        """`A x B` of the particle's piece."""
+    def _turning(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N) -> N:
+        """The cross product `A x B` of these vectors of the particle's piece."""
         return chosen(ops, component, [piece.D for piece in pieces])
 
     def tangent(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
@@ -272,14 +250,14 @@ class Coordinates(Family):
 
     @cached_property
     def steep(self) -> float:
-        """The square of `|d|/(v x d)` from which on a landing is refined: before, doubles do on few straight sides."""
+        """The least `(|d|/(v x d))**2`, `v` the direction and `d` the tangent, of refined landings; 0 for all."""
         if self.boundary.shape or any(kind != LINE for kind in self.kinds):
             return 0.0
         corners = [[float(x.high) for x in axes[0] + axes[1]] for axes in self.exactly]
         longest = max(sum(map(abs, numbers)) / np.hypot(numbers[2], numbers[3]) for numbers in corners)
         return STEEP * STEEP if longest <= STEEP else 0.0
 
-    def refined(self, flight: "Flight[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
+    def refined(self, flight: "Ray[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
         """`p` and `q` of a landing after its last step, and the velocity there before they are rounded."""
         ops, (_, p, q, along, _) = flight.ops, best
         if not self.steep:
@@ -292,7 +270,7 @@ class Coordinates(Family):
 
         return list(ops.when(ops.negated(far), old, moved))
 
-    def _moved(self, flight: "Flight[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
+    def _moved(self, flight: "Ray[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
         ops, (_, p, q, along, where) = flight.ops, best
         start, end = (self.exact_axes_at(ops, shape, at) for at in (flight.component, where))
         short = (nought := ops.number(0.0)), nought
@@ -312,8 +290,8 @@ class Coordinates(Family):
         return [p - turned[1], ops.select(lines[1], q, q + turned[0]), d[0] - change[0], d[1] - change[1]]
 
 
-class Flight(NamedTuple, Generic[N, M]):
-    """The line along which a particle leaves: its piece, point and direction, and `d x v` there."""
+class Ray(NamedTuple, Generic[N, M]):
+    """The line along which a particle leaves: piece, point `z0`, direction `v`, and `rate = d x v`, `d` the tangent."""
 
     ops: Backend[N, M]
     component: N
@@ -326,7 +304,7 @@ class Flight(NamedTuple, Generic[N, M]):
 
 
 def exact_axes(piece: Sequence[Double[N, M]], kind: str, words: Doubles[N, M]) -> Axes[N, M]:
-    """From the numbers of a piece's program; of an arc about a focus `C` is the centre."""
+    """The axes from the numbers of a piece's program; for an arc about a focus `C` is the centre."""
     centre, A, B = ((piece[i], piece[i + 1]) for i in (0, 2, 4))
     if kind == FOCAL:
         e = words.q(1, 1) - piece[9]
@@ -335,12 +313,12 @@ def exact_axes(piece: Sequence[Double[N, M]], kind: str, words: Doubles[N, M]) -
 
 
 def last_step(
-    flight: Flight[N, M], start: Axes[N, M], end: Axes[N, M], landing: Sequence[N], short: Pair[N], size: float
+    flight: Ray[N, M], start: Axes[N, M], end: Axes[N, M], landing: Sequence[N], short: Pair[N], size: float
 ) -> N:
-    """One more step of Newton's method, whose residual has twice the digits, from a landing at `p`, `q` and `v x d`.
+    """One more step of Newton's method, whose residual has twice the digits, from a landing `(p, q, v x d)`.
 
-    `short` is what the two vectors `(p, q)` lack of their length. A flight along the normal is that before it is
-    rounded.
+    `start` and `end` are the axes of the two pieces, `short` is the difference to 1 of the lengths of the two vectors
+    `(p, q)`, and `size` that of the terms. A flight along the normal uses the normal before it is rounded.
     """
     ops, (p, q, along), sums = flight.ops, landing, []
     ends = (end, (p, q), short[1]), (start, (-flight.p, -flight.q), short[0])
@@ -367,7 +345,7 @@ def last_step(
     return -(value + rest) / along
 
 
-def passing(flight: Flight[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:
+def passing(flight: Ray[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:
     """Does a flight of length `t` come to a corner on its way, as near as its rounding?"""
     ops, (x, y) = flight.ops, corner
     slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
@@ -379,8 +357,8 @@ def passing(flight: Flight[N, M], corner: Pair[N], side: N, start: N, t: N) -> M
 def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
     """The piece of a closed curve whose first corner lies to the right of a line from `component`, and its last not.
 
-    `side` of a corner, that of the piece which begins there, is negative to the right. Also those of the first corner
-    after the departure and of the last, and of the two corners of the piece.
+    `side(k)`, of the first corner of piece `k`, is negative to the right. Returns the sides of the first corner after
+    the departure and of the last, the piece, and the sides of its two corners.
     """
     one, many = ops.number(1.0), ops.number(float(count))
 

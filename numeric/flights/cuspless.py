@@ -1,14 +1,13 @@
-"""The cardioid cut off by the wall `x = -1/4`: cubic from the arc, straight onto the wall, quartic from it.
+"""The cardioid cut off by the wall `x = -1/4`. A flight solves a cubic from arc to arc and a quartic from the wall.
 
-The table is convex, so a line leaves it at one further point, and where the line passes the two
-joins says on which component. State: the component (0 arc, 1 wall), `sigma = exp(i*theta/2)` on the
-arc or `(y, .)` on the wall, and `exp(i*phi)`. Paper: section 5 and the appendix, where it is the cut-off.
+The table is convex, so a line leaves it at one further point; the sides on which it passes the two joins show on which
+component. State: the component (0 arc, 1 wall), `sigma = exp(i*theta/2)` on the arc or `(y, .)` on the wall, and
+`exp(i*phi)`. Paper: section 5 and the appendix, where it is the cut-off.
 
-Flights along the wall of the cuspless table, from next to one join to the wall or past the other.
-
-A rounding of the direction moves such a landing by the inverse of the angle, or of its square. So the angle is formed
-from the state with twice the digits, and distances from the wall from exact squares: the arc lies `(2*p**2 - 1/2)**2`
-from it, at the height `4*p**3*q`, where `p, q` is `sigma`, whose length is one up to rounding only.
+Flights along the wall, from near one join to the wall or past the other join, need more digits. A rounding of the
+direction moves their landing by the inverse of the angle, or of its square. So the angle is formed from the state with
+twice the digits, and distances from the wall from exact squares: the arc lies `(2*p**2 - 1/2)**2` from it, at the
+height `4*p**3*q`, where `p, q` is `sigma`, whose length is one up to rounding only.
 """
 
 import numpy as np
@@ -26,7 +25,7 @@ TINY = 2.0**-30  # landings from the wall are found relatively, down to this dis
 
 
 class Cuspless(Cardioid):
-    """Paper: section 5."""
+    """The flight on the cuspless cardioid. Paper: section 5."""
 
     name = "cuspless"
     path = "the cardioid's cubic, the wall, and a quartic from the wall"
@@ -152,9 +151,9 @@ class Cuspless(Cardioid):
         )
 
         def told() -> list[N]:
-            """JOIN where the line passes aside of one by less than rounding moves it, a share of the way to there.
+            """The code of `JOIN` where the line passes a join nearer than rounding moves the line; else 0.
 
-            Off the join the arc bends away from a line along it. From the wall all land on the arc, at the join or not.
+            Elsewhere the arc bends away from a line along it. A flight from the wall lands on the arc in any case.
             """
             way = modulus(root3 * p - ops.times_sign(q, ops.select(to_wall, height, tangent)))
             least = (
@@ -171,7 +170,7 @@ class Cuspless(Cardioid):
         landed = [wall, ops.select(to_wall, height, landing[0]), ops.select(to_wall, nought, landing[1])]
         return Landing(landed, sine, cosine, code, {"back": back})
 
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         wall = ops.number(0.5) < landing.position[0]
         return ops.select(wall, ops.number(0.0), ops.number(-0.75)), ops.select(
             wall, ops.number(1.0), landing.position[1]
@@ -201,7 +200,7 @@ def sharp_back(ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> N:
 
 
 def above_the_wall(ops: Backend[N, M], sigma: Pair[N]) -> Pair[N]:
-    """The root of an arc point's distance from the wall, and its height, of `sigma` made a unit number."""
+    """The square root of an arc point's distance from the wall, and its height, for `sigma` normalised."""
     p, q = sigma
     (pp, low), (qq, lower) = plane.product_and_error(ops, p, p), plane.product_and_error(ops, q, q)
     steep, one, two = pp < qq, ops.number(1.0), ops.number(2.0)
@@ -215,9 +214,9 @@ def above_the_wall(ops: Backend[N, M], sigma: Pair[N]) -> Pair[N]:
 def sharpened(
     ops: Backend[N, M], sigma: Pair[N], exit: Pair[N], by: N, landing: Pair[N], along: N
 ) -> tuple[N, N, Pair[N]]:
-    """Back's real part, the height on the wall, and the landing on the arc after one step of Newton's method.
+    """The real part of minus the direction, the height on the wall, and the landing after a Newton step.
 
-    `by` is the other part of back; `along` the cosine of the incidence on the arc.
+    `by` is the imaginary part of minus the direction; `along` is the cosine of the incidence on the arc.
     """
     bx = sharp_back(ops, sigma, exit)
     gap, height = above_the_wall(ops, sigma)

@@ -1,7 +1,7 @@
-"""What a family of tables is: which tables it serves, fields of state, a flight, a reflection, and the tangent map.
+"""Families of tables: each has its own state of a particle (the *fields*), flight, reflection and tangent map.
 
-A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. What it must define is
-abstract there; the others have a general answer, from the table's `Boundary`.
+A new family is a module with a subclass of `Family` and a line in `numeric.flights.registry`. The methods that it must
+define are abstract there; the others have general ones, from the table's `Boundary`.
 
 Everything here runs on any arithmetic of `numeric.backends`. A *law* is `slap` (lam = 0, the exit
 is the normal and is not stored), `elastic` (lam = 1) or `pinball`; a kernel is traced for one law.
@@ -17,6 +17,7 @@ The determinant is `lam*N0/N1` of the next departure and this landing.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -57,10 +58,12 @@ class Status(Enum):
 
 Array = NDArray[np.float64]
 FINE = 4096  # points on which a boundary is examined
+STOPS = "CORNER", "CUSP"  # contacts of two components at which there is no next bounce
+FAR = 2.0**100  # farther than anything on a table
 
 
 class Boundary:
-    """The components of a table at one shape. What a flight is chosen by, and what every flight may fall back on."""
+    """The components of a table at one shape: they decide its flight method, and general methods compute on them."""
 
     def __init__(self, ir: TableIR, shape: list[float]) -> None:
         self.ir, self.shape, self.ops = ir, shape, ArrayBackend()
@@ -68,29 +71,51 @@ class Boundary:
         self.ends = [(float(x), float(y)) for x, y in (part.ends(self.ops, *self.numbers) for part in ir.parts)]
 
     @property
+    def following(self) -> list[int]:
+        """For each component, the index of the component that begins where it ends."""
+        return [after for after, *_ in self.ir.joins]
+
+    @property
+    def corners(self) -> list[tuple[bool, bool]]:
+        """Is the start of each component a corner or a cusp, and is its end?"""
+        ends = [contact in STOPS for _, contact, _ in self.ir.joins]
+        starts = dict(zip(self.following, ends, strict=True))
+        return [(starts[j], end) for j, end in enumerate(ends)]
+
+    @property
+    def corner_parameters(self) -> list[tuple[float, float]]:
+        """The ends of each component's parameter, or far away where the boundary goes on smoothly."""
+        known = zip(self.ends, self.corners, strict=True)
+        return [(low if first else -FAR, high if last else FAR) for (low, high), (first, last) in known]
+
+    @property
     def closed(self) -> bool:
-        """One component that runs round the table by a whole turn of its parameter."""
+        """Is there one component only, which runs round the table by a whole turn of its parameter?"""
         return len(self.ends) == 1 and abs(self.ends[0][1] - self.ends[0][0] - 2 * np.pi) < 1e-12
 
     @cached_property
     def convex(self) -> bool:
-        """No curvature of the wrong sign on a fine grid of a closed curve, up to rounding."""
+        """Has a closed curve no curvature of the wrong sign on a fine grid, up to rounding?"""
         curvature = self.bending(np.zeros(FINE, dtype=np.int64), np.linspace(-np.pi, np.pi, FINE))[1]
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
+    def curve_on(self, index: int, theta: Array, count: int = 6) -> Array:
+        """`curve` on one component."""
+        values = self.ir.parts[index].first(count)(self.ops, theta, *self.numbers)
+        return np.array(np.broadcast_arrays(theta, *values)[1:], dtype=float)
+
     def curve(self, component: NDArray[np.int64], theta: Array, count: int = 6) -> Array:
-        """Rows `x, y`, first and second derivatives with respect to `theta`, so many of them."""
+        """Rows `x, y`, first and second derivatives by `theta`: the first `count` of these six."""
         rows = np.empty((count, *theta.shape))
-        for index, part in enumerate(self.ir.parts):
-            if not np.any(here := component == index):
-                continue
+        for index in np.unique(component):  # of hundreds of parts most calls ask for one
+            here, part = component == index, self.ir.parts[index]
             place = ... if np.all(here) else here  # a view in place of copies
             for i, values in enumerate(part.first(count)(self.ops, theta[place], *self.numbers)):
                 rows[i, place] = values
         return rows
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
-        """Point and unit tangent."""
+        """Points and unit tangents."""
         x, y, dx, dy = self.curve(component, theta, 4)
         speed = np.hypot(dx, dy)
         return Frame(x, y, dx / speed, dy / speed)
@@ -112,7 +137,7 @@ NEAR = 2.0**-50  # on the paper's tables a landing closer than this to a join or
 
 
 def law_of(lam_low: float, lam_high: float) -> str:
-    """The law that serves every contraction between the two."""
+    """The word for the law that serves all contractions between `lam_low` and `lam_high`: slap, elastic or pinball."""
     return SLAP if lam_low == lam_high == 0 else ELASTIC if lam_low == lam_high == 1 else PINBALL
 
 
@@ -121,7 +146,7 @@ class Landing(Generic[N]):
     """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
 
     `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an outcome that stops the
-    particle (0 none, else `Status`), or is None. `vectors` and `numbers` are what the family's own methods need again.
+    particle (0 none, else `Status`), or is None. `vectors` and `numbers` hold what the family's own methods need again.
     """
 
     position: list[N]
@@ -133,25 +158,27 @@ class Landing(Generic[N]):
 
 
 class Family(ABC):
-    """A subclass names its fields and defines the abstract methods; the others have an answer here."""
+    """A method for finding the next bounce; a subclass names its fields and defines the abstract methods."""
 
-    name = ""  # a label for files and tables; nobody decides by it
+    name = ""  # a label for files and tables; no code depends on it
     path = ""  # how flights are computed, in words
     cusped: ClassVar[bool] = False  # a boundary point without a normal, at cos(theta/2) = 0
     pairs: ClassVar[tuple[int, ...]] = ()  # where the pairs of fields begin that have length one
     stops = True  # some landings are outcomes that stop the particle
-    tells = False  # kernels tell orbits in people's coordinates, by `framed` and `curving`
+    can_record = False  # kernels record orbits in users' coordinates, by `framed` and `curving`
     renormalise_every = 8  # bounces between looks at the size of a tangent vector: none grows it by more than 2**100
     width = 32  # lanes: four registers of AVX-512 for every value, enough to hide latency and no more
-    narrow = 16  # where there are half as many registers, half as long: more would be kept in memory all the time
-    order = ""  # of instructions there: for this kind of processor, where that proved faster than for the one at hand
+    narrow = 16  # for processors with half as many registers, which would keep more in memory
+    order = ""  # for those: the processor for which LLVM orders instructions, where that proved faster
+    standing: Sequence[tuple[int, float, float]] = ()  # stretches of a component's parameter on which the point stays
+    unit = 1.0  # a law's unit of length, in that of this table
     position: tuple[str, ...] = ()
     direction: tuple[str, ...] = ()
     boundary: Boundary
     formula: LawIR | None = None  # of the law that is called FORMULA
 
     def __init__(self, boundary: Boundary | None = None) -> None:
-        if boundary is not None:  # a flight alone gets along without
+        if boundary is not None:  # a flight alone needs none
             self.boundary = boundary
 
     @classmethod
@@ -161,7 +188,7 @@ class Family(ABC):
 
     @property
     def identity(self) -> str:
-        """What kernels depend on besides the table's programs and this package's text."""
+        """Text of all that kernels depend on besides the table's programs and this package's sources."""
         return ""
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
@@ -183,34 +210,34 @@ class Family(ABC):
 
     @abstractmethod
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
-        """The position fields of a boundary point."""
+        """The position of a boundary point, as the numbers (fields) that the family's flights use."""
 
     @abstractmethod
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
-        """Component, as a number, and parameter of position fields."""
+        """The component, as a number, and the parameter `theta` of a position in the family's fields."""
 
     def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N] | None:
-        """The frame at position fields, on any number system; for a family whose kernels tell orbits."""
+        """The frame at a position in the family's fields, in any number system; for kernels that record orbits."""
         return None
 
     def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
-        """As `bending`, at position fields; beside `framed`."""
+        """`bending` at a position in the family's fields; a family defines it together with `framed`."""
         raise NotImplementedError(self.name)
 
-    def aim(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
-        """The exit fields of the exit angle `phi`."""
+    def exit_fields(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
+        """The direction of a particle that leaves at the exit angle `phi`, in the family's fields."""
         return [*frame.direction(ops, phi)]
 
     def exit(self, ops: Backend[N, M], frame: Frame[N], leaving: Fields[N]) -> N:
-        """The exit angle of exit fields, in radians."""
+        """The exit angle, in radians, of a direction in the family's fields."""
         return frame.angle(ops, *leaving)
 
-    def heading(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
-        """The unit direction of the flight that begins: the one that is kept as a field, if one is."""
+    def unit_direction(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
+        """The unit direction of a departing flight: the exit fields, if they hold it."""
         return leaving[0], leaving[1]
 
     def distance(self, ops: Backend[N, M], fields: Fields[N], others: Fields[N]) -> N:
-        """How far two states of the same component are apart, in the numbers that are kept as fields."""
+        """The distance of two states on one component, in the family's fields."""
         total = sum(((x - y) * (x - y) for x, y in zip(fields[1:], others[1:], strict=True)), start=ops.number(0.0))
         return ops.sqrt(total + (fields[0] - others[0]) * (fields[0] - others[0]))
 
@@ -219,7 +246,7 @@ class Family(ABC):
         return None
 
     def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
-        """As `arclength`, with its offset, at position fields; beside `framed`."""
+        """Arc length, with its offset, at a position in the family's fields; defined together with `framed`."""
         raise NotImplementedError(self.name)
 
     def elliptic(self) -> float | None:
@@ -238,7 +265,7 @@ class Family(ABC):
 
     @abstractmethod
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
-        """The exit fields after the reflection."""
+        """The direction after the reflection, in the family's fields."""
 
     def incidence(self, ops: Backend[N, M], landing: Landing[N]) -> N:
         """Minus the incidence angle, in radians."""
@@ -260,16 +287,16 @@ class Family(ABC):
         return slope, drift if formula.placed else []
 
     def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
-        """`drift` for a tangent vector's own parameter in the place of `theta`, times `below` of `bend`."""
+        """`below` times the derivative `drift` by `theta`, converted to the parameter of the tangent vector."""
         return drift * below
 
     def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
-        """The same in the place of arc length."""
+        """`below` times a derivative `drift` by arc length, converted to the parameter of the tangent vector."""
         d = landing.vectors["d"]
         return drift * below * ops.sqrt(plane.dot(d, d))
 
     def arc(self, ops: Backend[N, M], position: Fields[N], component: N, theta: N, law: LawIR) -> N:
-        """Arc length from the table's origin, for a law that speaks of it."""
+        """Arc length from the table's origin, for a law that depends on it."""
         if law.lengths:  # a circle that its formula does not show, as that of any radius
             return law.length(ops, 0, theta)
         how, numbers = law.series or (plane.CLOSED, ())
@@ -287,29 +314,29 @@ class Family(ABC):
         return [theta, self.arc(ops, landing.position, component, theta, law)] if law.measured else [theta]
 
     @abstractmethod
-    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
-        """The exit fields of a particle that leaves along the normal."""
+    def normal_exit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+        """The direction, in the family's fields, of a particle that leaves along the normal."""
 
     @abstractmethod
-    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
-        """`N0 = speed*cos(phi0)`."""
+    def exit_normal_speed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
+        """`N0 = speed*cos(phi0)` of a particle that leaves; `speed` is the length of the boundary's derivative."""
 
     def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
-        """What `length` needs of either end of a flight, kept from one bounce to the next: often nothing."""
+        """Values at one end of a flight that `length` needs, kept for the next bounce; for many families none."""
         return []
 
     def length(
         self, ops: Backend[N, M], shape: Fields[N], n0: N, start: Fields[N], end: Fields[N], landing: Landing[N]
     ) -> N:
-        """The length `t` of a flight, from `N0` and what was `kept` at its ends."""
+        """The length of a flight, from its `exit_normal_speed` `n0` and the values of `kept` at `start` and `end`."""
         return plane.dot((end[0] - start[0], end[1] - start[1]), landing.vectors["v"])
 
     @abstractmethod
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
-        """`K*speed` at the landing as a quotient, negative where the boundary focuses; `below` is positive."""
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+        """`(above, below)`: `above/below` is curvature times speed at a landing, negative if focusing; `below > 0`."""
 
     def fields(self, law: str) -> tuple[str, ...]:
-        """The names of a particle's state."""
+        """The names of the fields of a particle's state under this law."""
         return self.position if law == SLAP else self.position + self.direction
 
     def bounce(
@@ -322,13 +349,13 @@ class Family(ABC):
     def flown(
         self, ops: Backend[N, M], law: str, shape: Fields[N], lam: N, state: Fields[N]
     ) -> tuple[Landing[N], list[N]]:
-        """As `bounce`: the landing, and the exit fields after it."""
+        """The landing of one flight, and the direction after its reflection in the family's fields."""
         landing = self.fly(ops, shape, law, *self._split(ops, shape, law, state))
         return landing, [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
 
     def rate(self, ops: Backend[N, M], shape: Fields[N], law: str, state: Fields[N]) -> N:
-        """`N0` of a particle that is about to leave."""
-        return self.departure(ops, shape, *self._split(ops, shape, law, state, whole=True))
+        """`exit_normal_speed` of a particle that is about to leave."""
+        return self.exit_normal_speed(ops, shape, *self._split(ops, shape, law, state, whole=True))
 
     def bounce_with_tangent(
         self,
@@ -340,7 +367,7 @@ class Family(ABC):
         tangent: Fields[N],
         kept: Fields[N],
     ) -> tuple[list[N], N | None, list[N], list[N]]:
-        """As `bounce`, with the rows `numeric.kernels.machine.TANGENT`, and what is kept for the next flight.
+        """`bounce`, with the rows `numeric.kernels.machine.TANGENT`, and what is kept for the next flight.
 
         The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`,
         with the slope of a law that is no uniform contraction.
@@ -350,10 +377,12 @@ class Family(ABC):
         q, omega, growth, up, down, volume, n0 = tangent
         end = self.kept(ops, shape, landing.position)
         moved = self.length(ops, shape, n0, kept, end, landing) * omega + q
-        above, below = self.bend(ops, shape, landing)
+        above, below = self.scaled_curvature(ops, shape, landing)
         fall = landing.along * below
         slope, drift = self.slopes(ops, law, lam, landing)
         turned = (ops.number(1.0) + slope) * above * moved + slope * omega * fall
+        if self.unit != 1 and drift[1:]:
+            drift = [drift[0], drift[1] * ops.number(self.unit)]
         for taken, change in zip((self.drifting, self.drifting_by_length), drift, strict=False):
             turned = turned + taken(ops, landing, below, change) * moved
         down = down * fall
@@ -365,9 +394,9 @@ class Family(ABC):
         return landing.position + leaving, landing.code, [moved * rise, turned, growth, counted, down, volume, n0], end
 
     def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
-        """`departure` at a landing, whose frame is known already."""
-        exit = leaving or self.slapped_with_unit(ops, shape, landing.position)
-        return self.departure(ops, shape, landing.position, exit)
+        """`exit_normal_speed` at a landing, where the frame is already computed."""
+        exit = leaving or self.normal_exit_of_unit_length(ops, shape, landing.position)
+        return self.exit_normal_speed(ops, shape, landing.position, exit)
 
     def _split(
         self, ops: Backend[N, M], shape: Fields[N], law: str, state: Fields[N], whole: bool = False
@@ -376,15 +405,17 @@ class Family(ABC):
         position = list(state[:count])
         if law != SLAP:
             return position, list(state[count:])
-        return position, self.slapped_with_unit(ops, shape, position) if whole else self.slapped(ops, shape, position)
+        return position, self.normal_exit_of_unit_length(ops, shape, position) if whole else self.normal_exit(
+            ops, shape, position
+        )
 
-    def slapped_with_unit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
-        """As `slapped`, of length one; a flight alone may get along with any length."""
-        return self.slapped(ops, shape, position)
+    def normal_exit_of_unit_length(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+        """The same as `normal_exit`, with length one; a flight alone may use a normal of any length."""
+        return self.normal_exit(ops, shape, position)
 
 
 def grazing(ops: Backend[N, M], across: N, along: N) -> M:
-    """The mask of landings that are tangent, or no landings at all."""
+    """The mask of flights that end tangent to the boundary, or meet nothing."""
     return ops.negated(ops.number(GRAZE) * modulus(across) < along)
 
 

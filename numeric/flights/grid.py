@@ -1,14 +1,14 @@
-"""Which pieces a flight may meet, on tables of many: those in the cells of a grid on its way, and no others.
+"""On tables of many pieces a flight is tested only against those in the cells of a grid that it passes.
 
 From a cell without pieces a flight goes on at once to the end of the largest empty square of cells that begins there;
 which one that is depends on the signs of its direction, so every cell has four. As squares grow with the distance from
 the boundary, their number on a flight grows like the logarithm of the number of cells in a row.
 
-**No piece is left out that could be hit first.** Rounding moves a point of a flight by some units of `2**-52` of the
-numbers that points are added up from. A piece is listed in every cell that it comes as near to as `2*slack`, where
-`slack` is `WIDER = 2**-40` of these numbers, four thousand times as much; a flight leaves a square where it is ahead of
-its edge by half a slack, so that it comes on in spite of rounding. What a flight has met up to the length at which it
-left the last cell is therefore on the lists that it has read, and the nearest of them is the first hit.
+**No piece is left out that could be hit first.** A point of a flight is a sum; rounding moves it by some units of
+`2**-52` of its terms. A piece is listed in every cell to which it comes as near as `2*slack`, where `slack` is
+`WIDER = 2**-40` of these terms, four thousand times as much. A flight leaves a square half a slack before its edge, so
+that it moves on in spite of rounding. All pieces met up to the length at which a flight left the last cell are
+therefore on the lists that it has read, and the nearest of them is the first hit.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,16 +24,16 @@ WIDER = 2.0**-40
 OVER = 2.0**101  # beyond all lengths
 PIECE = 2.5  # cells for each piece: fewer have longer lists, more take longer to cross
 FEWEST, MOST = 4, 128  # cells in a row
-SAME = 1e-9  # two corners closer than this, against the size of the table, are one
 Array = NDArray[np.float64]
 
 
-class Grid(NamedTuple):
-    """Cells in rows, a ring of which lies round the table, and lists of pieces.
+class PieceGrid(NamedTuple):
+    """A grid of cells in rows, its outermost ring outside the table, and for each cell a list of pieces.
 
-    `squares` has four rows for each cell, for directions that are positive or negative in `x` and in `y`: the edges
-    that a flight comes to in `x` and in `y`, and the first line of the cell's list in `items`, `-1` for none, `-2`
-    beyond the table. A line has what the flight needs of a piece, and its number `j`, or `-1 - j` on a list's last.
+    `squares` has four rows for each cell, by the signs of a direction in `x` and `y`: the coordinates of the edges
+    where a flight leaves the empty square, and the first line of the cell's list in `items`, `-1` for none, `-2`
+    outside. A line of `items` has what a flight needs of a piece, and its number `j`, or `-1 - j` on the last line of a
+    list.
     """
 
     low: tuple[float, float]
@@ -44,10 +44,10 @@ class Grid(NamedTuple):
     items: list[list[float]]
 
 
-def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]], size: float) -> Grid:
-    """The grid over a table for pieces that lie in some boxes each; rows of left, right, low, high are boxes.
+def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]], size: float) -> PieceGrid:
+    """The grid over a table, for pieces given by `boxes` that cover each; rows of boxes are left, right, low, high.
 
-    `lines` says of each piece what its line has, its number last; `size` is a bound of the numbers that points are
+    `lines` has for each piece the numbers of its line, its own number last; `size` bounds the numbers that points are
     added up from.
     """
     slack = WIDER * size
@@ -78,11 +78,11 @@ def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]],
     links[0], links[-1], links[:, 0], links[:, -1] = (-2.0,) * 4
     squares = [_square_rows(links, way, low, cell) for way in range(4)]
     known = (float(low[0]), float(low[1])), (float(cell[0]), float(cell[1]))
-    return Grid(*known, (count, rows), slack / 2, [row for way in squares for row in way], items)
+    return PieceGrid(*known, (count, rows), slack / 2, [row for way in squares for row in way], items)
 
 
 def _square_rows(link: Array, way: int, low: Array, cell: Array) -> list[list[float]]:
-    """For the directions of one quadrant: to the left where `way` is odd, downwards from 2 on."""
+    """The rows of `PieceGrid.squares` for one quadrant of directions: leftwards if `way` is odd, downwards from 2."""
     flip = (slice(None, None, -1 if way & 2 else 1), slice(None, None, -1 if way & 1 else 1))
     empty = (link == -1.0)[flip]
     side = np.zeros(link.shape)
@@ -102,13 +102,13 @@ def _square_rows(link: Array, way: int, low: Array, cell: Array) -> list[list[fl
 
 def met(
     ops: Backend[N, M],
-    grid: Grid,
+    grid: PieceGrid,
     z0: Pair[N],
     v: Pair[N],
     best: list[N],
     tried: Callable[[M, list[N], list[N]], list[N]],
 ) -> list[N]:
-    """`best`, whose first is the length of the flight, after all lines of `items` have been `tried` that may matter."""
+    """The landing `best`, its length first, after `tried` was called for all lines of `items` that matter."""
     nought, one, half = ops.number(0.0), ops.number(1.0), ops.number(0.5)
     left, down = (ops.with_sign(one, side) < nought for side in v)  # of -0.0 too
     cells = float(grid.shape[0] * grid.shape[1])
@@ -124,7 +124,7 @@ def met(
     wide = ops.number(float(grid.shape[0]))
 
     def on(state: list[N]) -> list[N]:
-        """Through the square in which the flight is: the length up to its edge, and the list of its first cell."""
+        """A step through the square where the flight is: the length up to its edge, and the list of its first cell."""
         t, _ = state
         i, j = (ops.rounded(step[axis] * t + start[axis]) for axis in (0, 1))
         x, y, link, _ = ops.look_up_row(grid.squares, j * wide + i + way)
@@ -165,10 +165,11 @@ def boxed(boundary: Boundary, pieces: Sequence[tuple[int, float, float]], rows: 
     A piece lies in the hull of its four control points, and they in the box.
     """
     size = max(abs(x) for row in rows for x in (row[0], row[4]))
-    corners = joined(boundary, pieces, size)
+    corners = joined(boundary, pieces)
     found: list[Box] = []
-    for (index, low, high), ends in zip(pieces, corners, strict=True):
-        one, two = (boundary.curve(np.array([index]), np.array([theta]))[:, 0] for theta in (low, high))
+    where, lows, highs = (np.array(row) for row in zip(*pieces, strict=True))
+    starts, stops = (boundary.curve(where, theta, 4).T for theta in (lows, highs))
+    for (index, low, high), ends, one, two in zip(pieces, corners, starts, stops, strict=True):
         third = (high - low) / 3
         hull = np.array([one[:2], one[:2] + third * one[2:4], two[:2] - third * two[2:4], two[:2]])
         chord = hull[3] - hull[0]
@@ -184,42 +185,36 @@ def boxed(boundary: Boundary, pieces: Sequence[tuple[int, float, float]], rows: 
     return found
 
 
-def joined(
-    boundary: Boundary, pieces: Sequence[tuple[int, float, float]], size: float
-) -> list[tuple[tuple[float, ...], ...]]:
+def joined(boundary: Boundary, pieces: Sequence[tuple[int, float, float]]) -> list[tuple[tuple[float, ...], ...]]:
     """The two corners of every piece, each with the components that end and begin there, or -1.
 
     Where one piece ends and the next begins is one corner, with the same numbers for both.
     """
-    ends = [
-        [boundary.curve(np.array([index]), np.array([theta]))[:2, 0] for theta in (low, high)]
-        for index, low, high in pieces
-    ]
-    loop, after = 0, []
-    for i, (_, end) in enumerate(ends):
-        back = float(np.hypot(*(end - ends[loop][0]))) <= SAME * size
-        after.append(loop if back else (i + 1) % len(pieces))
-        loop = i + 1 if back else loop
-    before = {following: i for i, following in enumerate(after)}
-    corners = []
-    for i, (index, low, _) in enumerate(pieces):
-        last = before.get(i)
-        ended = pieces[last][0] if last is not None and pieces[last][2] >= boundary.ends[pieces[last][0]][1] else -1
-        begins = index if low <= boundary.ends[index][0] else -1
-        corners.append((*map(float, ends[i][0]), float(ended), float(begins)))
+    first: dict[int, int] = {}  # of a component its first piece
+    for i, (index, *_) in enumerate(pieces):
+        first.setdefault(index, i)
+    before = {after: index for index, after in enumerate(boundary.following)}
+    corners, after = [], []
+    where, lows, _ = (np.array(row) for row in zip(*pieces, strict=True))
+    for i, ((index, *_), point) in enumerate(zip(pieces, boundary.curve(where, lows, 2).T, strict=True)):
+        begins = first[index] == i
+        corners.append((*map(float, point), float(before[index] if begins else -1), float(index if begins else -1)))
+        goes_on = i + 1 < len(pieces) and pieces[i + 1][0] == index
+        after.append(i + 1 if goes_on else first[boundary.following[index]])
     return [(corners[i], corners[after[i]]) for i in range(len(pieces))]
 
 
 def grown(boundary: Boundary, pieces: Sequence[tuple[int, float, float]]) -> list[list[float]]:
-    """A tree of boxes round pieces in the order of the boundary, halved again and again; no box for none.
+    """A tree of boxes round pieces in the order of the boundary, halved again and again.
 
     Nodes stand in the order of a walk through it: middle, half the sides, the node to go on to where the box is not
     met, and the piece of a leaf, else -1. Two columns are empty.
     """
     boxes = []
-    for index, low, high in pieces:
-        theta = np.linspace(low, high, 17)
-        x, y, _, _, ax, ay = boundary.curve(np.full(theta.shape, index), theta)
+    where, lows, highs = (np.array(row) for row in zip(*pieces, strict=True))
+    places = np.linspace(lows, highs, 17, axis=1)
+    along = boundary.curve(np.broadcast_to(where[:, None], places.shape), places)
+    for (_, low, high), (x, y, _, _, ax, ay) in zip(pieces, along.swapaxes(0, 1), strict=True):
         bulge = (high - low) ** 2 / 16**2 / 4 * max(np.max(np.abs(ax)), np.max(np.abs(ay)))
         boxes.append((x.min() - bulge, x.max() + bulge, y.min() - bulge, y.max() + bulge))
     slack = WIDER * max(abs(side) for box in boxes for side in box)

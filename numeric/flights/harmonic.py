@@ -16,12 +16,12 @@ MOST_KNOWN = 256  # tables of which it is remembered whether they are convex
 
 
 class Harmonic(Family):
-    """What the ellipse and the others have in common: the reflection and the tangent map."""
+    """The base of the ellipse's and similar families: their reflection and their tangent map."""
 
     position = ("ux", "uy")
     direction = ("vx", "vy")
     pairs = 0, 2
-    tells = True
+    can_record = True
     order = "generic"
 
     def point(self, ops: Backend[N, M], *values: N) -> list[N]:
@@ -29,11 +29,11 @@ class Harmonic(Family):
         return self.boundary.ir.program("point")(ops, *values)
 
     def velocity(self, ops: Backend[N, M], *values: N) -> list[N]:
-        """Its derivative by `theta`."""
+        """Derivative of the boundary point by `theta`."""
         return self.boundary.ir.program("velocity")(ops, *values)
 
     def acceleration(self, ops: Backend[N, M], *values: N) -> list[N]:
-        """And the second one."""
+        """Second derivative of the boundary point by `theta`."""
         return self.boundary.ir.program("acceleration")(ops, *values)
 
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
@@ -54,7 +54,7 @@ class Harmonic(Family):
         return rate, plane.cross((a[0], a[1]), (d[0], d[1])) / (square * rate)
 
     def unit_of_theta(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
-        """`exp(i*theta)` at position fields."""
+        """`exp(i*theta)` at a position in the family's fields."""
         return position[0], position[1]
 
     def along(self, ops: Backend[N, M], position: Fields[N], theta: N, how: plane.Series, numbers: Fields[N]) -> N:
@@ -85,7 +85,7 @@ class Harmonic(Family):
     def landed(
         self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N], d: Pair[N] | None = None
     ) -> Landing[N]:
-        """The landing at `u` of a particle that flies along `v`; the velocity there, where it is known better."""
+        """The landing at `u` of a particle that flies along `v`; `d` is the velocity there, if known to more digits."""
         dx, dy = d or self.velocity(ops, *u, *shape)
         across = plane.exact_dot(ops, (dx, dy), v)
         along = -plane.exact_cross(ops, (dx, dy), v)
@@ -97,13 +97,13 @@ class Harmonic(Family):
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         return reflected(self, ops, law, lam, landing)
 
-    def slapped_with_unit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+    def normal_exit_of_unit_length(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.velocity(ops, *position, *shape)
         return list(plane.normalised(ops, (-dy, dx)))
 
-    slapped = slapped_with_unit
+    normal_exit = normal_exit_of_unit_length
 
-    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
+    def exit_normal_speed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         dx, dy = self.velocity(ops, *position, *shape)
         return plane.cross((dx, dy), (exit[0], exit[1]))
 
@@ -116,14 +116,14 @@ class Harmonic(Family):
             return ops.sqrt(plane.dot(d, d))
         return plane.cross(d, (leaving[0], leaving[1]))
 
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         d = landing.vectors["d"]
         ax, ay = self.acceleration(ops, *landing.position, *shape)
         return plane.cross((ax, ay), d), plane.dot(d, d)
 
 
 class Ellipse(Harmonic):
-    """One harmonic: the middle of the chord lies along `support`, so nothing is to be solved."""
+    """One harmonic: the middle of the chord lies along `support`, so that no equation is solved."""
 
     name, path = "ellipse", "closed form in unit numbers"
     narrow = 32  # few values are alive at a time
@@ -160,18 +160,18 @@ class Ellipse(Harmonic):
     ) -> N:
         return ops.number(-2.0) * self.turning(ops, shape) * (n0 * landing.numbers["inverse"])
 
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         d = landing.vectors["d"]
         return self.turning(ops, shape), plane.dot(d, d)
 
     def turning(self, ops: Backend[N, M], shape: Fields[N]) -> N:
-        """Acceleration times velocity, minus the determinant of the map from the circle: the same everywhere."""
+        """Acceleration cross velocity, minus the determinant of the linear map from the circle: a constant."""
         start = ops.number(1.0), ops.number(0.0)
         ax, ay = self.acceleration(ops, *start, *shape)
         dx, dy = self.velocity(ops, *start, *shape)
         return plane.cross((ax, ay), (dx, dy))
 
-    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+    def normal_exit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.velocity(ops, *position, *shape)
         return [-dy, dx]
 

@@ -3,7 +3,7 @@
 The closed forms are those of `numeric.flights.pieces`, and so is every decision: only pieces in the cells that a flight
 comes through are tried, and of those that it meets the nearest is taken. What is left out could not have been taken, so
 a landing is the same to the last bit as that of the walk through all pieces. A short convex curve round the table, such
-as the walls round many discs, is met first: which of its pieces it is costs nothing to say.
+as the walls round many discs, is tested first, because its piece is found at once.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,22 +20,22 @@ from numeric.flights.corners import (
     FOCAL,
     LINE,
     MANY,
-    Flight,
-    Piece,
+    PieceNumbers,
+    Ray,
     chosen_mask,
     passing,
     span,
 )
-from numeric.flights.family import SLAP, Boundary, Landing
-from numeric.flights.general import UNSURE
-from numeric.flights.pieces import FAR, Pieces
+from numeric.flights.family import FAR, SLAP, Boundary, Landing
+from numeric.flights.general import OVERLAP, UNSURE
+from numeric.flights.pieces import Pieces
 
 SOME = 32  # pieces, from which on it pays to find the first hit by a grid
 PARTS = 64  # boxes round a piece
 
 
 class Many(Pieces):
-    """As `Pieces`, where most pieces are never looked at."""
+    """`Pieces` with a grid, by which a flight tests few of them."""
 
     path = "closed form on sides and arcs from a grid, first hit"
     width = 8
@@ -79,7 +79,7 @@ class Many(Pieces):
         z0, d0 = self.point(ops, pieces, position), self.tangent(ops, shape, position)
         from numeric.flights.grid import met
 
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
+        flight = Ray(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
         far = ops.number(FAR) + nought * component
         best = [far, component]
         if self.outer:
@@ -97,7 +97,7 @@ class Many(Pieces):
         ends = self._sides(flight, self._row(ops, where)[6:])
         return self._landed(flight, shape, pieces, [t, *best, where], [*ends, *passed])
 
-    def _where(self, flight: Flight[N, M], kind: str, where: N, best: list[N]) -> list[N]:
+    def _where(self, flight: Ray[N, M], kind: str, where: N, best: list[N]) -> list[N]:
         """`p`, `q` and `v x d` of the landing, where it is on a piece of this kind; else `best`."""
         ops, marked = flight.ops, [known == kind for known in self.kinds]
         if all(marked):
@@ -110,12 +110,12 @@ class Many(Pieces):
 
         return list(ops.when(here, best, found))
 
-    def _sides(self, flight: Flight[N, M], corners: Sequence[Pair[N]]) -> list[N]:
-        """On which side of the line some corners lie."""
+    def _sides(self, flight: Ray[N, M], corners: Sequence[Pair[N]]) -> list[N]:
+        """The sides of the line on which some corners lie."""
         return [plane.cross(flight.v, (x - flight.z0[0], y - flight.z0[1])) for x, y in corners]
 
-    def _tried(self, flight: Flight[N, M], reached: M, line: list[N], best: list[N]) -> list[N]:
-        """The nearest of `best` and of the arrival on a piece; and the nearest corner that is passed."""
+    def _tried(self, flight: Ray[N, M], reached: M, line: list[N], best: list[N]) -> list[N]:
+        """The nearer of the landing `best` and that on the piece of a grid's line; and the nearest corner passed."""
         ops, nought, (x0, y0, x1, y1, j), (t, where, *passed) = flight.ops, flight.ops.number(0.0), line, best
         first, last = self._sides(flight, ((x0, y0), (x1, y1)))
         if passed:
@@ -132,12 +132,12 @@ class Many(Pieces):
             t, where = ops.when(here, [t, where], partial(tried, flight, kind, here, j, first, last, t, where))
         return [t, where, *passed]
 
-    def _side(self, flight: Flight[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
-        """The nearest landing of those on a straight side that is met and of the one that is known."""
+    def _side(self, flight: Ray[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
+        """The nearer of the landing on a straight side that is met and the landing known so far."""
         return self._nearer(flight.ops, here, self._met(flight, self._at(flight.ops, kind, j), j)[0], j, t, where)
 
-    def _arc(self, flight: Flight[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
-        """The same for an arc that may be met."""
+    def _arc(self, flight: Ray[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
+        """The nearer of the landing on an arc that may be met and the landing known so far."""
         ops, piece, nought = flight.ops, self._at(flight.ops, kind, j), flight.ops.number(0.0)
         new, p, q, _, left = self._met(flight, piece, j)
         own = modulus(flight.component - j) < ops.number(0.25)
@@ -146,43 +146,46 @@ class Many(Pieces):
             slack = ops.select(chosen_mask(ops, j, self.bulges), -self._slack(flight, [], piece), nought)
         turns = own | (slack < left)
         if not all(closed for closed, marked in zip(self.closed, self.inner[kind], strict=True) if marked):
-            inside = nought < self._inside(ops, piece, (p, q), False)
+            smooth = (chosen_mask(ops, j, [not corners[end] for corners in self.corners]) for end in (0, 1))
+            ends = [ops.select(there, ops.number(-OVERLAP), nought) for there in smooth]
+            beyond = self._beyond(ops, own, ends, plane.cross(piece.middle, (p, q)))
+            inside = beyond < self._inside(ops, piece, (p, q), False)
             if any(self.wide):
                 inside = inside | (chosen_mask(ops, j, self.wide) & (nought < plane.dot(piece.middle, (p, q))))
-            inside = own | inside | chosen_mask(ops, j, self.closed)
+            inside = inside | chosen_mask(ops, j, self.closed)
             turns = (turns & inside) | ((first <= nought) & (nought < last))
         return self._nearer(ops, here & turns, new, j, t, where)
 
     def _nearer(self, ops: Backend[N, M], meets: M, new: N, j: N, t: N, where: N) -> list[N]:
-        """A landing that is nearer than the one that is known; of two at the same length the first in order."""
+        """The nearer of a new landing and the known one; of two at the same length the first in order."""
         meets = meets & (ops.number(0.0) < new) & ((new < t) | ((new == t) & (j < where)))
         return [ops.select(meets, new, t), ops.select(meets, j, where)]
 
     def _row(self, ops: Backend[N, M], j: N) -> list[Pair[N]]:
-        """All pairs of numbers of a piece, from memory."""
+        """The numbers of a piece as pairs, looked up in memory."""
         row = ops.look_up_row(self.rows, j)
         return list(zip(row[::2], row[1::2], strict=True))
 
-    def _at(self, ops: Backend[N, M], kind: str, j: N) -> Piece[N]:
-        """The piece of that number, of a known kind."""
+    def _at(self, ops: Backend[N, M], kind: str, j: N) -> PieceNumbers[N]:
+        """The piece with number `j`, which is known to be of this kind."""
         origin, A, B, (D, radius), middle, half, start, _ = self._row(ops, j)
-        return Piece(kind, origin, A, B, start, D, radius, middle, half)
+        return PieceNumbers(kind, origin, A, B, start, D, radius, middle, half)
 
-    def _axes(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
+    def _axes(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N) -> list[Pair[N]]:
         return super()._axes(ops, pieces, component) if not ops.doubles else self._row(ops, component)[1:3]
 
-    def _turning(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> N:
+    def _turning(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N) -> N:
         return super()._turning(ops, pieces, component) if not ops.doubles else self._row(ops, component)[3][0]
 
-    def point(self, ops: Backend[N, M], pieces: list[Piece[N]], position: Fields[N]) -> Pair[N]:
+    def point(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], position: Fields[N]) -> Pair[N]:
         if not ops.doubles:
             return super().point(ops, pieces, position)
         component, p, q = position
         origin, A, B, *_ = self._row(ops, component)
         return p * A[0] + q * B[0] + origin[0], p * A[1] + q * B[1] + origin[1]
 
-    def _passed(self, flight: Flight[N, M], near: M, corner: Pair[N], j: N, side: N, passed: N) -> N:
-        """The length to the first corner of a piece, if it may be passed, and is nearer than the one that is known."""
+    def _passed(self, flight: Ray[N, M], near: M, corner: Pair[N], j: N, side: N, passed: N) -> N:
+        """The length to the first corner of a piece if it may be passed and is nearer than `passed`, else `passed`."""
         ops = flight.ops
         marked = near & chosen_mask(ops, j, [k in self.passed for k in range(len(self.known))])
         ahead = plane.dot(flight.v, (corner[0] - flight.z0[0], corner[1] - flight.z0[1]))
@@ -191,7 +194,7 @@ class Many(Pieces):
 
     # ---- rounding
 
-    def _farthest(self, ops: Backend[N, M], pieces: list[Piece[N]]) -> N:
+    def _farthest(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]]) -> N:
         return ops.number(self.size)
 
     def _near(self, ops: Backend[N, M], farthest: N, sides: Fields[N]) -> Iterator[M]:
@@ -199,11 +202,13 @@ class Many(Pieces):
         if self.passed:
             yield sides[2] < ops.number(FAR)
 
-    def _passes(self, flight: Flight[N, M], pieces: list[Piece[N]], start: N, t: N, sides: Fields[N]) -> Iterator[M]:
+    def _passes(
+        self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], start: N, t: N, sides: Fields[N]
+    ) -> Iterator[M]:
         if self.passed:
             yield sides[2] < t
 
-    def _slack_at(self, flight: Flight[N, M], pieces: list[Piece[N]], where: N) -> N:
+    def _slack_at(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], where: N) -> N:
         ops = flight.ops
         found = -ops.number(1.0)
         for kind in (CIRCLE, ELLIPSE):
@@ -214,7 +219,7 @@ class Many(Pieces):
         return found
 
 
-def boxes_of(piece: Piece[float], ends: Pair[float]) -> NDArray[np.float64]:
+def boxes_of(piece: PieceNumbers[float], ends: Pair[float]) -> NDArray[np.float64]:
     """Boxes round parts of a piece: left, right, low, high."""
     low, high = (float(end) for end in ends)
     p = np.linspace(low, high, PARTS + 1)

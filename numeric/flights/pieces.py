@@ -26,7 +26,7 @@ State: the piece, `p`, `q`, and the direction `v`.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from numeric.backends import functions as plane
@@ -39,29 +39,28 @@ from numeric.flights.corners import (
     LINE,
     MANY,
     Coordinates,
-    Flight,
-    Piece,
+    PieceNumbers,
+    Ray,
     chosen,
     chosen_mask,
     convex,
-    following,
     from_focus,
     halved,
+    inwards,
     loops,
-    passable,
     passing,
     piece_of,
     span,
 )
-from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing, reflected
-from numeric.flights.general import UNSURE, refuse_long
+from numeric.flights.family import FAR, SLAP, Boundary, Landing, Status, grazing, reflected
+from numeric.flights.general import OVERLAP, UNSURE, refuse_long
 from numeric.lowering.program import LawIR
 
-FAR = 2.0**100  # as far as nothing was met
+OWN = 2.0**-40  # beyond the end of its own arc, on which a particle lands: a sine, far above rounding
 
 
 class Pieces(Coordinates):
-    """Several curves, each of several pieces: a table of corners, of smooth joins, with holes."""
+    """Several curves, each of several pieces: a table with corners, smooth joins and holes."""
 
     name, path = "pieces", "closed form on every side and arc, first hit"
     pairs = (3,)
@@ -79,16 +78,14 @@ class Pieces(Coordinates):
         self.constants: list[list[float]] | None = None  # numbers that are looked up
         known = [piece_of(*named) for named in zip(self.kinds, self.numbers(), strict=True)]
         self.known = known
-        self.following = following(boundary, known)
-        self.closed = [
-            after == at and kind != LINE
-            for at, (after, kind) in enumerate(zip(self.following, self.kinds, strict=True))
-        ]
+        self.following = boundary.following
+        self.closed = [after == j for j, after in enumerate(self.following)]
         self.wide = [kind != LINE and bool(piece.half[1] < 0) for kind, piece in zip(self.kinds, known, strict=True)]
         self.bulges = [kind != LINE and bool(piece.D < 0) for kind, piece in zip(self.kinds, known, strict=True)]
         first = loops(self.following)[0]
-        self.outer = first if convex(boundary, known, first, self.following) else []
-        self.passed = [j for j in range(len(known)) if passable(boundary, known, j, self.following)]
+        self.outer = first if convex(boundary, known, first) else []
+        self.passed = sorted(after for j, after in enumerate(self.following) if not inwards(boundary, j))
+        self.corners = boundary.corners
         self.extent = 2.0 ** math.frexp(max(abs(x) for row in self.numbers() for x in row[:6]))[1]
         self.refines = not boundary.shape or affordable(*(program.lines for program in self.programs))
         if len(self.outer) == len(known) > MANY and not boundary.shape:
@@ -109,7 +106,7 @@ class Pieces(Coordinates):
         ops, shape = self.boundary.ops, self.boundary.numbers
         return [[float(x) for x in program(ops, *shape)] for program in self.programs]
 
-    def pieces(self, ops: Backend[N, M], shape: Fields[N]) -> list[Piece[N]]:
+    def pieces(self, ops: Backend[N, M], shape: Fields[N]) -> list[PieceNumbers[N]]:
         """All pieces in the arithmetic of `ops`."""
         found = []
         for j, (kind, program) in enumerate(zip(self.kinds, self.programs, strict=True)):
@@ -133,7 +130,7 @@ class Pieces(Coordinates):
 
     # ---- a bounce
 
-    def point(self, ops: Backend[N, M], pieces: list[Piece[N]], position: Fields[N]) -> Pair[N]:
+    def point(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], position: Fields[N]) -> Pair[N]:
         """The Cartesian point."""
         component, p, q = position
         origin, A, B = self._axes_at(ops, pieces, component)
@@ -142,13 +139,13 @@ class Pieces(Coordinates):
             p = ops.select(arc, from_focus(ops, self._gap_of(ops, component, pieces), (p, q)), p)
         return p * A[0] + q * B[0] + origin[0], p * A[1] + q * B[1] + origin[1]
 
-    def _axes_at(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N) -> list[Pair[N]]:
-        """`O`, `A` and `B` of the particle's piece."""
+    def _axes_at(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N) -> list[Pair[N]]:
+        """The vectors `O`, `A` and `B` of the particle's piece."""
         columns = [x.origin for x in pieces], [x.A for x in pieces], [x.B for x in pieces]
         return [self._pair(ops, component, column) for column in columns]
 
-    def _gap_of(self, ops: Backend[N, M], component: N, pieces: list[Piece[N]]) -> N:
-        """One minus the eccentricity, of arcs about a focus; one of others, which start from their centre."""
+    def _gap_of(self, ops: Backend[N, M], component: N, pieces: list[PieceNumbers[N]]) -> N:
+        """One minus the eccentricity of an arc about a focus; 1 for other pieces, whose `origin` is the centre."""
         return chosen(ops, component, [x.radius if x.kind == FOCAL else ops.number(1.0) for x in pieces])
 
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
@@ -156,7 +153,7 @@ class Pieces(Coordinates):
         pieces, v, nought = self.pieces(ops, shape), (exit[0], exit[1]), ops.number(0.0)
         z0 = self.point(ops, pieces, position)
         d0 = self.tangent(ops, shape, position)
-        flight = Flight(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
+        flight = Ray(ops, component, z0, v, plane.cross(d0, v), p, q, law == SLAP)
         corners = [piece.start for piece in pieces]
         best: list[N] | None = None
         if self.halving:
@@ -166,7 +163,8 @@ class Pieces(Coordinates):
                 return plane.cross(v, (x - z0[0], y - z0[1]))
 
             first, last, where, below, above = halved(ops, component, len(pieces), side)
-            where = ops.select((first < nought) & (nought <= last), where, component)
+            ahead, behind = self._ends_of_own(flight, pieces, corners, first, last)
+            where = ops.select((ahead < nought) & (nought <= behind), where, component)
             best = [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
             return self._landed(flight, shape, pieces, best, [first, last, below, above])
         sides = [plane.cross(v, (corner[0] - z0[0], corner[1] - z0[1])) for corner in corners]
@@ -180,11 +178,13 @@ class Pieces(Coordinates):
             crosses = (sides[j] <= nought) & (nought < sides[self.following[j]])
             if piece.kind != LINE:
                 own = modulus(component - here) < ops.number(0.25)
-                turns = (nought if not self.bulges[j] else -self._slack(flight, pieces, piece)) < left
+                turns = own | ((nought if not self.bulges[j] else -self._slack(flight, pieces, piece)) < left)
                 if not self.closed[j]:
-                    turns = turns & (nought < self._inside(ops, piece, (p, q), self.wide[j]))
+                    ends = [ops.number(0.0 if corner else -OVERLAP) for corner in self.corners[j]]
+                    beyond = self._beyond(ops, own, ends, plane.cross(piece.middle, (p, q)))
+                    turns = turns & (beyond < self._inside(ops, piece, (p, q), self.wide[j]))
                 same = ops.negated((nought < sides[j]) & (sides[self.following[j]] <= nought))
-                crosses = crosses | (same & (own | turns))
+                crosses = crosses | (same & turns)
             meets = crosses & (nought < t)
             if best is None:
                 best = [ops.select(meets, t, ops.number(FAR)), p, q, along, here + nought * component]
@@ -195,29 +195,104 @@ class Pieces(Coordinates):
         assert best is not None
         return self._landed(flight, shape, pieces, best, sides)
 
-    def _round(self, flight: Flight[N, M], pieces: list[Piece[N]], sides: Fields[N]) -> list[N]:
-        """Where a flight lands on the convex curve round all others."""
+    def _ends_of_own(
+        self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], corners: list[Pair[N]], first: N, last: N
+    ) -> Pair[N]:
+        """The sides of a flight on which the ends of its own piece lie, with corners looked up; see `_sides_of_own`."""
+        ops, smooth = flight.ops, [not start for start, _ in self.corners]
+        if not any(smooth):
+            return first, last
+        slack = ops.number(UNSURE) * self._size(ops, pieces, flight.component, flight.p)
+
+        def ordered() -> list[N]:
+            found, next = [], flight.component + ops.number(1.0)
+            next = ops.select(next < ops.number(len(pieces) - 0.5), next, ops.number(0.0))
+            for at, side, order in ((next, first, -1.0), (flight.component, last, 1.0)):
+                x, y = (modulus(ops.look_up([c[i] for c in corners], at) - flight.z0[i]) for i in (0, 1))
+                there = (ops.maximum(x, y) <= slack) & chosen_mask(ops, at, smooth)
+                found.append(ops.select(there, ops.number(order), side))
+            return found
+
+        ahead, behind = ops.when((modulus(first) <= slack) | (modulus(last) <= slack), [first, last], ordered)
+        return ahead, behind
+
+    def _round(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], sides: Fields[N]) -> list[N]:
+        """The landing of a flight on the convex curve round all others.
+
+        If the sides of corners do not show the piece, the line crosses one arc twice: its own, or one that a flight
+        from another curve comes to.
+        """
         ops, where = flight.ops, flight.component
-        nought = ops.number(0.0)
+        nought, sides = ops.number(0.0), self._sides_of_own(flight, pieces, sides)
         for j in self.outer:
             other = ops.number(0.25) < modulus(flight.component - ops.number(float(j)))
             meets = other & (sides[j] <= nought) & (nought < sides[self.following[j]])
             where = ops.select(meets, ops.number(float(j)), where)
+        arcs = [j for j in self.outer if self.kinds[j] != LINE]
+        if arcs and len(self.outer) < len(self.known):
+            untold = ops.number(len(self.outer) - 0.5) < where
+            where = ops.when(untold, [where], lambda: [ops.select(untold, self._twice(flight, pieces, arcs), where)])[0]
         return [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
 
-    def _spans(self, ops: Backend[N, M], pieces: list[Piece[N]]) -> list[Pair[N]]:
-        """What the points of every piece are added up from; constants, if there are no parameters."""
+    def _sides_of_own(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], sides: Fields[N]) -> list[N]:
+        """Sides on which corners of the convex curve lie; by their order at smooth joins from which a particle starts.
+
+        There the first end of its piece lies to its left, the last to its right, whatever rounding says.
+        """
+        ops, found, smooth = flight.ops, list(sides), [j for j in self.outer if not self.corners[j][0]]
+        if not smooth or len(self.outer) == 1:
+            return found
+        slack = ops.number(UNSURE) * self._size(ops, pieces, flight.component, flight.p)
+        near: M | None = None
+        for j in smooth:
+            close = modulus(sides[j]) <= slack
+            near = close if near is None else near | close
+        assert near is not None
+
+        def ordered() -> list[N]:
+            changed = list(sides)
+            for j in smooth:
+                x, y = (modulus(pieces[j].start[i] - flight.z0[i]) for i in (0, 1))
+                there = ops.maximum(x, y) <= slack
+                for at, side in ((j, 1.0), (self.following.index(j), -1.0)):
+                    own = there & (modulus(flight.component - ops.number(float(at))) < ops.number(0.25))
+                    changed[j] = ops.select(own, ops.number(side), changed[j])
+            return changed
+
+        return list(ops.when(near, found, ordered))
+
+    def _twice(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], arcs: list[int]) -> N:
+        """The arc among `arcs` of a convex curve that a line crosses twice, if it passes all corners on one side."""
+        ops, nought = flight.ops, flight.ops.number(0.0)
+        where, most = nought * flight.component + ops.number(float(arcs[0])), nought
+        for j in arcs if len(arcs) > 1 else []:
+            here = ops.number(float(j))
+            _, p, q, _, left = self._met(flight, pieces[j], here)
+            inside = ops.select(nought < left, self._inside(ops, pieces[j], (p, q), self.wide[j]), -ops.number(1.0))
+            where, most = ops.select(most < inside, here, where), ops.maximum(most, inside)
+        return where
+
+    def _beyond(self, ops: Backend[N, M], own: M, ends: Sequence[N], side: N) -> N:
+        """How far beyond the end of an arc a landing may seem to be: a little at a smooth join, more on its own arc.
+
+        So no flight passes between two arcs. A particle that left from its end may have that end on the wrong side of
+        its flight, by rounding, and then seems to come back to an arc that it does not come back to.
+        """
+        return ops.select(own, ops.number(-OWN), ops.select(side <= ops.number(0.0), *ends))
+
+    def _spans(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]]) -> list[Pair[N]]:
+        """`span` of every piece; constants, if there are no parameters."""
         if self.boundary.shape:
             return [span(piece) for piece in pieces]
         return [(ops.number(float(x)), ops.number(float(y))) for x, y in map(span, self.known)]
 
-    def _size(self, ops: Backend[N, M], pieces: list[Piece[N]], component: N, p: N) -> N:
+    def _size(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N, p: N) -> N:
         """The sum of the moduli of the numbers that a point of a piece is added up from, or a bound of it."""
         base, slope = self._pair(ops, component, self._spans(ops, pieces))
         return base + slope * modulus(p)
 
-    def _farthest(self, ops: Backend[N, M], pieces: list[Piece[N]]) -> N:
-        """A bound of this sum over the whole table."""
+    def _farthest(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]]) -> N:
+        """A bound of `_size` over the whole table."""
         largest = ops.number(0.0)
         for (base, slope), (low, high) in zip(
             self._spans(ops, pieces), (piece.middle for piece in pieces), strict=True
@@ -225,8 +300,8 @@ class Pieces(Coordinates):
             largest = ops.maximum(largest, base + slope * ops.maximum(modulus(low), modulus(high)))
         return largest
 
-    def _slack(self, flight: Flight[N, M], pieces: list[Piece[N]], piece: Piece[N]) -> N:
-        """`(v x d)**2` below which rounding hides on which side of a tangent of an arc the line passes."""
+    def _slack(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], piece: PieceNumbers[N]) -> N:
+        """The `(v x d)**2`, `d` an arc's tangent, below which rounding hides on which side of it the line passes."""
         ops, radius = flight.ops, piece.radius
         if piece.kind != CIRCLE:
             a, b = plane.cross(flight.v, piece.A), plane.cross(flight.v, piece.B)
@@ -234,17 +309,17 @@ class Pieces(Coordinates):
         size = self._size(ops, pieces, flight.component, flight.p) + span(piece)[0]
         return ops.number(2 * UNSURE) * radius * size
 
-    def _gathered(self, ops: Backend[N, M], where: N, pieces: list[Piece[N]]) -> Piece[N]:
-        """The piece of every particle; its kind is that of the outer ones, or empty where there are several."""
+    def _gathered(self, ops: Backend[N, M], where: N, pieces: list[PieceNumbers[N]]) -> PieceNumbers[N]:
+        """The piece of every particle; its kind is that of the pieces round the table, or empty if these differ."""
         several = len({self.kinds[j] for j in self.outer}) > 1
         origin, A, B = self._axes_at(ops, pieces, where)
         D, radius = self._turning(ops, pieces, where), chosen(ops, where, [piece.radius for piece in pieces])
         kind = "" if several else self.kinds[self.outer[0]]
         radius = self._gap_of(ops, where, pieces) if FOCAL in self.kinds else radius
-        return Piece(kind, origin, A, B, origin, D, radius, origin, origin)
+        return PieceNumbers(kind, origin, A, B, origin, D, radius, origin, origin)
 
-    def _met(self, flight: Flight[N, M], piece: Piece[N], where: N) -> tuple[N, N, N, N, N]:
-        """Length, `p`, `q` and `v x d` of the arrival on a piece; and what is positive if the line meets its conic."""
+    def _met(self, flight: Ray[N, M], piece: PieceNumbers[N], where: N) -> tuple[N, N, N, N, N]:
+        """Length, `p`, `q` and `v x d` of a landing on the piece, and a number, positive if the line meets it."""
         ops, v = flight.ops, flight.v
         w = flight.z0[0] - piece.origin[0], flight.z0[1] - piece.origin[1]
         a, b, m = plane.cross(v, piece.A), plane.cross(v, piece.B), plane.cross(v, w)
@@ -282,20 +357,21 @@ class Pieces(Coordinates):
         t = ops.select(own, chord, v[0] * x + v[1] * y)
         return t, p, q, along, left
 
-    def _inside(self, ops: Backend[N, M], piece: Piece[N], u: Pair[N], wide: bool) -> N:
-        """The sine of the angle from the nearer end of an arc, negative beyond it."""
+    def _inside(self, ops: Backend[N, M], piece: PieceNumbers[N], u: Pair[N], wide: bool) -> N:
+        """The sine of the angle from the nearer end of an arc to its point with coordinates `u`; negative outside."""
         c, s = plane.dot(piece.middle, u), modulus(plane.cross(piece.middle, u))
         gap = piece.half[0] * c - piece.half[1] * s
         return ops.select(ops.number(0.0) < c, ops.number(1.0), gap) if wide else gap
 
     def _landed(
-        self, flight: Flight[N, M], shape: Fields[N], pieces: list[Piece[N]], best: Fields[N], sides: Fields[N]
+        self, flight: Ray[N, M], shape: Fields[N], pieces: list[PieceNumbers[N]], best: Fields[N], sides: Fields[N]
     ) -> Landing[N]:
         ops, v, (t, p, q, along, where) = flight.ops, flight.v, best
         nought = ops.number(0.0)
         A, B = self._axes(ops, pieces, where)
         d = p * B[0] - q * A[0], p * B[1] - q * A[1]
-        code = ops.select(grazing(ops, plane.dot(d, v), along), ops.number(float(Status.GRAZING.code)), nought)
+        nowhere = grazing(ops, plane.dot(d, v), along) | ops.negated(nought < t)
+        code = ops.select(nowhere, ops.number(float(Status.GRAZING.code)), nought)
         farthest = self._farthest(ops, pieces)
         near: M | None = None
         if any(self.bulges):
@@ -306,7 +382,8 @@ class Pieces(Coordinates):
         doubt = ops.when(near, [nought + nought * t], lambda: [self._doubt(flight, pieces, best, d, sides)])[0]
         code = ops.select(ops.number(0.5) < doubt, doubt, code)
         if not self.outer:  # what passes between two pieces is at a join
-            code = ops.select(t < ops.number(FAR), code, ops.number(float(Status.JOIN.code)))
+            missed = Status.JOIN if any(map(any, self.corners)) else Status.LOST
+            code = ops.select(t < ops.number(FAR), code, ops.number(float(missed.code)))
         D = self._turning(ops, pieces, where)
         if self.refines and ops.doubles:
             p, q, *new = self.refined(flight, shape, best, d)
@@ -315,8 +392,10 @@ class Pieces(Coordinates):
         across = plane.dot(d, v)
         return Landing([where, p, q], across, along, code, {"v": v, "d": d}, {"t": t, "D": D})
 
-    def _doubt(self, flight: Flight[N, M], pieces: list[Piece[N]], best: Fields[N], d: Pair[N], sides: Fields[N]) -> N:
-        """`JOIN` or `GRAZING`, by number, where rounding hides on which side of a corner or tangent the line passes."""
+    def _doubt(
+        self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], best: Fields[N], d: Pair[N], sides: Fields[N]
+    ) -> N:
+        """The code of `JOIN` or `GRAZING` where rounding hides on which side of a corner or tangent the line passes."""
         ops, (t, p, q, along, where) = flight.ops, best
         nought, one = ops.number(0.0), ops.number(1.0)
         speed, start = plane.dot(d, d), self._size(ops, pieces, flight.component, flight.p)
@@ -336,29 +415,42 @@ class Pieces(Coordinates):
         if any(self.bulges):
             touches = (along * along <= self._slack_at(flight, pieces, where)) & ops.negated(own)
             code = ops.select(touches, ops.number(float(Status.GRAZING.code)), nought)
+        if len(self.arcs) < len(self.kinds):  # a straight side does not come back to itself
+            line = chosen_mask(ops, where, [kind == LINE for kind in self.kinds])
+            back = line & (modulus(flight.component - where) < ops.number(0.25))
+            code = ops.select(back, ops.number(float(Status.GRAZING.code)), code)
         return ops.select(sure, code, ops.number(float(Status.JOIN.code)))
 
     def _near(self, ops: Backend[N, M], farthest: N, sides: Fields[N]) -> Iterator[M]:
-        """Whether the line passes a corner so near that its side may be in doubt."""
+        """Masks: does the line pass a corner so near that its side may be in doubt?"""
         for side in sides:
             yield ops.negated(ops.number(8 * UNSURE) * farthest < modulus(side))
 
-    def _passes(self, flight: Flight[N, M], pieces: list[Piece[N]], start: N, t: N, sides: Fields[N]) -> Iterator[M]:
-        """Whether rounding hides on which side of a corner that may be passed the flight passes it."""
+    def _passes(
+        self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], start: N, t: N, sides: Fields[N]
+    ) -> Iterator[M]:
+        """Masks, one for each corner that a flight may pass: does rounding hide on which side the flight passes it?"""
         for j in self.passed:
             yield passing(flight, pieces[j].start, sides[j], start, t)
 
-    def _slack_at(self, flight: Flight[N, M], pieces: list[Piece[N]], where: N) -> N:
+    def _slack_at(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], where: N) -> N:
         """`_slack` of the dispersing arc on which a flight ends; negative on other pieces."""
         none, known = -flight.ops.number(1.0), zip(pieces, self.bulges, strict=True)
         slack = [self._slack(flight, pieces, piece) if bulges else none for piece, bulges in known]
         return chosen(flight.ops, where, slack)
 
-    def _gap(self, ops: Backend[N, M], pieces: list[Piece[N]], where: N, u: Pair[N]) -> N:
-        """How far a landing is from the nearer end of its piece, in units of the velocity; negative beyond it."""
+    def _gap(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], where: N, u: Pair[N]) -> N:
+        """How far a landing is from the nearer end of its piece, in units of the velocity; negative beyond it.
+
+        A smooth join is not an end.
+        """
         far, gaps = ops.number(FAR), []
         if len(self.arcs) < len(self.kinds):
-            low, high = self._pair(ops, where, [piece.middle for piece in pieces])
+            ends = [
+                (low if first else -far, high if last else far)
+                for (low, high), (first, last) in zip((x.middle for x in pieces), self.corners, strict=True)
+            ]
+            low, high = self._pair(ops, where, ends)
             gaps.append(-ops.maximum(low - u[0], u[0] - high))
         if self.arcs:
             M, half = (
@@ -368,8 +460,11 @@ class Pieces(Coordinates):
             if any(self.wide):
                 ahead = chosen_mask(ops, where, self.wide) & (ops.number(0.0) < plane.dot(M, u))
                 gap = ops.select(ahead, far, gap)
-            if any(self.closed):
-                gap = ops.select(chosen_mask(ops, where, self.closed), far, gap)
+            nought, side = ops.number(0.0), plane.cross(M, u)
+            for end, ahead in ((0, side <= nought), (1, nought <= side)):  # the nearer end, if it is no corner
+                smooth = [not corners[end] for corners in self.corners]
+                if any(smooth):
+                    gap = ops.select(chosen_mask(ops, where, smooth) & ahead, far, gap)
             gaps.append(gap)
         return (
             gaps[0] if len(gaps) == 1 else ops.select(chosen_mask(ops, where, [k == LINE for k in self.kinds]), *gaps)
@@ -378,11 +473,11 @@ class Pieces(Coordinates):
     def leave(self, ops: Backend[N, M], shape: Fields[N], law: str, lam: N, landing: Landing[N]) -> list[N]:
         return reflected(self, ops, law, lam, landing)
 
-    def slapped(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
+    def normal_exit(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
         dx, dy = self.tangent(ops, shape, position)
         return list(plane.normalised(ops, (-dy, dx)))
 
-    def departure(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
+    def exit_normal_speed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N], exit: Fields[N]) -> N:
         return plane.cross(self.tangent(ops, shape, position), (exit[0], exit[1]))
 
     def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
@@ -394,6 +489,6 @@ class Pieces(Coordinates):
     ) -> N:
         return landing.numbers["t"]
 
-    def bend(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
+    def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
         d = landing.vectors["d"]
         return -landing.numbers["D"], plane.dot(d, d)

@@ -1,4 +1,4 @@
-"""Tables given by their radius, convex or not: the ray meets `r(theta)` first where a march that cannot jump meets it.
+"""Tables given by their radius `r(theta)`, convex or not: a march along the ray that cannot jump over the first hit.
 
 As a particle flies, the polar angle of its place runs one way, from `theta0` towards the direction of `v`, by less than
 half a turn; so the first hit is the first zero in `theta`, whatever the table looks like. With `x` the angle run
@@ -22,13 +22,12 @@ origin one is.
 A march ends where `K' < 0` and `2*L*K <= HALT*K'*K'` with `|w| + |K| <= L` near by: there a zero lies ahead by
 Kantorovich's theorem, and Newton's method converges to it. It takes the last steps, on the flight equation with its
 known zero divided out (see `Secant`), so that short flights are as exact as long ones. The last residual is that of the
-equation as it stands, with more digits (see `Doubles`): what is left is the rounding of the landing. Where the radius
-has words whose ten bits more would not do for a short flight, that one stays with the divided equation.
+equation as it stands, with more digits (see `Doubles`): only the rounding of the landing is left. Where the radius has
+elementary functions, whose ten further bits are too few for a short flight, such a flight keeps the divided equation.
 
-Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: what passes a bulge of the wall, or cuts it, by less than
-this may be taken for the other; its incidence is within 1e-7 of a tangent. A march that does not end has met a
-tangency, and is said to (`Status.GRAZING`).
-
+Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: a flight that passes or cuts a bulge of the wall by less
+than this may be mistaken for the other; its incidence is within 1e-7 of a tangent. A march that does not end has met a
+tangency: its outcome is `Status.GRAZING`.
 `W` and `L` are proved, not sampled: the program of the radius runs on intervals that cover the whole turn.
 """
 
@@ -39,12 +38,13 @@ import numpy as np
 
 from numeric.backends import functions as plane
 from numeric.backends.doubled import WORDS, Doubles, affordable
-from numeric.backends.intervals import Interval, Intervals, Secant, Secants, whole_turn
+from numeric.backends.intervals import Interval, Intervals, Secant, Secants, unit_vectors
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Landing, Status, grazing
 from numeric.flights.harmonic import Harmonic
 
-CELLS = 4096  # intervals that cover the turn
+CELLS = 4096  # intervals that cover the turn, at first
+MOST_CELLS, NARROWEST = 1 << 19, 2.0**-26  # of them, with all halves; radians
 STEEP = 2.0**10  # radius times W beyond which marches are long: then every piece is searched instead
 HALT = 2.0**-12
 FLOOR = 2.0**-50  # rounding of K*h*r*r, in units of r*r
@@ -65,7 +65,7 @@ class Polar(Harmonic):
         super().__init__(boundary)
         program = boundary.ir.program("radius")
         self.alone, self.radius, self.bent = program.only(0), program.only(0, 1), program.only(0, 1, 2)
-        self.doubled = {word for word, *_ in self.radius.lines} <= set(WORDS)  # to the last of twice the digits?
+        self.doubled = {word for word, *_ in self.radius.lines} <= set(WORDS)  # do all its words have twice the digits?
         self.refines = affordable(self.radius.lines)
         self.bounds = bounds(boundary)
 
@@ -85,29 +85,29 @@ class Polar(Harmonic):
         return [r * c, r * s]
 
     def velocity(self, ops: Backend[N, M], *values: N) -> list[N]:
-        """Its derivative by `theta`."""
+        """Derivative of the boundary point by `theta`."""
         r, slope = self.radius(ops, *values)
         return [*plane.times((slope, r), (values[0], values[1]))]
 
     def acceleration(self, ops: Backend[N, M], *values: N) -> list[N]:
-        """And the second one."""
+        """Second derivative of the boundary point by `theta`."""
         r, slope, bent = self.bent(ops, *values)
         return [*plane.times((bent - r, slope + slope), (values[0], values[1]))]
 
     # ---- a bounce
 
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
-        flight = Flight(self, ops, shape, (position[0], position[1]), (exit[0], exit[1]))
+        flight = March(self, ops, shape, (position[0], position[1]), (exit[0], exit[1]))
         x, y, left, reach = flight.marched()
         u, d = flight.refined(flight.sharpened((x, y), reach), law == SLAP)
         landing = self.landed(ops, shape, law, u, flight.v, d)
         tangent = ops.number(float(Status.GRAZING.code))
-        lost = grazing(ops, landing.across, landing.along) | (ops.number(0.5) < left)
+        lost = grazing(ops, landing.across, landing.along) | (ops.number(0.5) < left) | flight.goes_back(u)
         landing.code = ops.select(lost, tangent, ops.number(0.0))
         return landing
 
 
-class Flight(Generic[N, M]):
+class March(Generic[N, M]):
     """A ray and the march along it, on some arithmetic."""
 
     def __init__(self, family: Polar, ops: Backend[N, M], shape: Fields[N], u0: Pair[N], v: Pair[N]) -> None:
@@ -120,7 +120,7 @@ class Flight(Generic[N, M]):
         self.rate = slope * sine - self.r0 * cosine  # N0
 
     def marched(self) -> list[N]:
-        """Where the march ends, as a unit vector; 1 where it does not; and the length of the last step, or more."""
+        """The unit vector where the march ends, a flag that is 1 if it does not end, and a bound of its last step."""
         ops, family = self.ops, self.family
         one, nought = ops.number(1.0), ops.number(0.0)
         bound = self.size * self.r0 * ops.number(family.bounds.highest)
@@ -140,7 +140,7 @@ class Flight(Generic[N, M]):
         return list(ops.when(shallow, state, careful))
 
     def _going(self, state: list[N]) -> M:
-        """Has the march not ended?"""
+        """Is the march still going?"""
         going: M = self.ops.number(0.5) < state[2]
         return going
 
@@ -154,10 +154,10 @@ class Flight(Generic[N, M]):
         return [*self._turned(u, c, s), ends, modulus(s)]
 
     def _careful(self, state: list[N]) -> list[N]:
-        """The same for flights that begin along the wall, which may follow it from where it is almost straight.
+        """A `_step` for flights that begin along the wall and may follow it from where it is almost straight.
 
-        `K` is that of the divided equation, small to the last bit. A step is at most `GROWTH` times the one before,
-        so that `w` here and the bound of its slope say more than `W` does.
+        `K` is computed from the divided equation, without cancellation. A step is at most `GROWTH` times the one
+        before, so that `w` here and the bound of its slope give a better bound than `W` does.
         """
         ops, u, family = self.ops, (state[0], state[1]), self.family
         r, slope, bent = family.bent(ops, *u, *self.shape)
@@ -177,7 +177,7 @@ class Flight(Generic[N, M]):
         return [*self._turned(u, c, s), ends, ops.maximum(modulus(s), ops.number(2.0**-52))]
 
     def _stepped(self, u: Pair[N], r: N, slope: N, k: N, floor: N, highest: N) -> tuple[N, N, N]:
-        """Cosine and sine of the safe step where `w <= highest`, and 0 where the march ends with it."""
+        """Cosine and sine of a step, safe if the module's `w <= highest`; and 0 if the march ends with it, else 1."""
         ops, one, nought = self.ops, self.ops.number(1.0), self.ops.number(0.0)
         square = r * r
         k1 = self.h * slope - square * plane.dot(u, self.v)
@@ -196,7 +196,7 @@ class Flight(Generic[N, M]):
         return plane.unit(self.ops, plane.times(u, (c, self.ops.times_sign(s, self.side))))
 
     def _divided(self, u: Pair[N]) -> tuple[N, N, N]:
-        """`H`, `scale` and `weight` with `v x (z - z0) = H*scale/weight`, none of them small for want of digits.
+        """`H`, `scale` and `weight` with `v x (z - z0) = H*scale/weight`, all three computed without cancellation.
 
         `u - u0 = tan(B)*i*(u + u0)` for half the angle `B` between them: up to a quarter of a turn differences are
         divided by `tan(B) = scale/weight`, beyond it by one.
@@ -235,11 +235,18 @@ class Flight(Generic[N, M]):
         x = ops.zero(function, nought, -far, far, one, 1)
         return at(x)
 
+    def goes_back(self, u: Pair[N]) -> M:
+        """The mask of landings that are not ahead: no flight is as short as its rounding."""
+        nought = self.ops.number(0.0)
+        ahead = nought < self.side * plane.exact_cross(self.ops, self.u0, u)
+        back: M = self.ops.negated(ahead) & (nought < plane.dot(self.u0, u))
+        return back
+
     def refined(self, u: Pair[N], normal: bool) -> tuple[Pair[N], Pair[N]]:
         """The landing after one more step of Newton's method, whose residual has more digits; the velocity there.
 
-        What is left is the rounding of the landing. The velocity is that of the landing before it is rounded, and its
-        direction feels no cancellation among harmonics either. So is the direction of a flight along the `normal`.
+        Only the rounding of the landing is left. The velocity is computed before the landing is rounded, without
+        cancellation among harmonics, and so is the direction of a flight along the `normal`.
         """
         ops, family, v = self.ops, self.family, self.v
         r, slope, bent = family.bent(ops, *u, *self.shape)
@@ -259,7 +266,7 @@ class Flight(Generic[N, M]):
         d = (rise * c - far * s).high, (rise * s + far * c).high
         step = -(value.high / plane.exact_cross(ops, v, d))
         known = modulus(step) < ops.number(HALF)  # else a tangency
-        if not family.doubled:  # of a short flight the divided equation knows more
+        if not family.doubled:  # for a short flight the divided equation is better
             gap = u[0] - self.u0[0], u[1] - self.u0[1]
             known = known & (ops.number(SHORT * SHORT) < plane.dot(gap, gap))
         step = ops.select(known, step, ops.number(0.0))
@@ -269,27 +276,44 @@ class Flight(Generic[N, M]):
 
 
 class Bounds(NamedTuple):
-    """Numbers of a boundary: `w <= highest`, `|w| <= largest`, `|w'| <= slope`."""
+    """Bounds for the module's `w` on a boundary: `w <= highest`, `|w| <= largest`, `|w'| <= slope`."""
 
     highest: float
     largest: float
     slope: float
 
 
-@lru_cache(maxsize=4)  # the table is asked whether it has them, and then for them
+@lru_cache(maxsize=4)  # for `matches`, then for the constructor
 def bounds(boundary: Boundary) -> Bounds:
-    """Proved, and rounded up to four bits so that neighbouring shapes share a kernel; infinite where there are none."""
+    """Proved bounds of a boundary, rounded up to four bits so that similar shapes share a kernel; infinite if unknown.
+
+    Cells that give no bounds below `STEEP` are halved, until one of them is proved to be steeper.
+    """
     shape = [Interval.around(np.array(x)) for x in boundary.shape]
-    with np.errstate(all="ignore"):
-        r, r1, r2, r3 = boundary.ir.program("radius")(Intervals(), *whole_turn(CELLS), *shape)
-        square = r.squared()
-        two, six = (Interval.around(np.array(x)) for x in (2.0, 6.0))
-        w = (square + two * r1.squared() - r * r2) / (square * r)
-        slope = (r1 * (six * (r * r2 - r1.squared()) - square) - r3 * square) / square.squared()
-        sizes = [np.max(np.abs([x.low, x.high])) for x in (w, slope)]
-        found = Bounds(float(np.max(w.high)), *map(float, sizes))
-        known = bool(np.all(r.low > 0)) and np.isfinite(found.slope) and found.largest * float(np.max(r.high)) < STEEP
-    return Bounds(*map(rounded_up, found)) if known else Bounds(np.inf, np.inf, np.inf)
+    program, none = boundary.ir.program("radius"), Bounds(np.inf, np.inf, np.inf)
+    edges = np.linspace(-np.pi, np.pi, CELLS + 1)
+    low, high, found, count = edges[:-1], edges[1:], np.zeros(3), 0
+    found[0] = -np.inf
+    while low.size:
+        count += low.size
+        if count > MOST_CELLS or np.any(high - low < NARROWEST):
+            return none
+        with np.errstate(all="ignore"):
+            r, r1, r2, r3 = program(Intervals(), *unit_vectors(low, high), *shape)
+            square = r.squared()
+            two, six = (Interval.around(np.array(x)) for x in (2.0, 6.0))
+            w = (square + two * r1.squared() - r * r2) / (square * r)
+            slope = (r1 * (six * (r * r2 - r1.squared()) - square) - r3 * square) / square.squared()
+            sizes = [np.maximum(np.abs(x.low), np.abs(x.high)) for x in (w, slope)]
+            known = (r.low > 0) & np.isfinite(sizes[1]) & (sizes[0] * r.high < STEEP)
+            if np.any((r.low > 0) & (np.maximum(w.low, -w.high) * r.low > STEEP)) or np.any(r.high < 0):
+                return none
+        here = np.array([w.high, *sizes])[:, known]
+        found = np.maximum(found, np.max(here, axis=1, initial=-np.inf))
+        low, high = low[~known], high[~known]
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return Bounds(*map(rounded_up, found.tolist()))
 
 
 def rounded_up(x: float) -> float:

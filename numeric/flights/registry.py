@@ -1,7 +1,7 @@
-"""The ways to find the next bounce, in the order in which they are asked whether a table is theirs.
+"""Methods for finding the next bounce, in the order in which they are asked whether they serve a table.
 
-A new one is a module beside these and a line here: its module, its class, and the table of the paper that it is for,
-if it is for one alone.
+A new method is a module beside these and a line here: its module, its class, and the table of the paper that it is for,
+if it serves one alone.
 """
 
 from importlib import import_module

@@ -6,7 +6,7 @@ pieces has binary digits, and one polynomial is solved there; on the piece of de
 Elsewhere every piece has a box along its chord, and pieces are tried in the order in which the flight may come to
 their boxes: a few at most. Many boxes stand in a tree. A piece turns by a quarter of a turn at most and one way, so on
 it the flight function has one zero if its two ends lie on different sides of the flight, and two or none elsewhere.
-Whether an end of the piece of departure lies left or right is told by what is left when the known zero is divided out,
+Whether an end of the piece of departure lies left or right is decided after the known zero is divided out,
 and so is a landing on that piece. State: the component, the parameter `theta`, and the direction `v`.
 """
 
@@ -18,18 +18,20 @@ from numeric.backends import elementary
 from numeric.backends import functions as plane
 from numeric.backends.doubled import Double, Doubles
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
-from numeric.flights.corners import halved
-from numeric.flights.family import Boundary, Landing
-from numeric.flights.general import FAR, General
-from numeric.flights.grid import SAME, boxed, grown
+from numeric.flights.corners import halved, inwards, loops
+from numeric.flights.family import FAR, Boundary, Landing
+from numeric.flights.general import General
+from numeric.flights.grid import boxed, grown
 
-FEW = 2  # pieces, each of which the general flight tries as fast
+FEW = 2  # up to so many pieces the general flight is as fast
 BEND = 1e-9  # of the turning, against its largest value: less is rounding
+AT_END = 2.0**-46  # a particle this near the end of a component's parameter leaves from its neighbour, too
+TINY = 2.0**-500  # a distance from an end that tells its side
 SCANNED = 64  # pieces, up to which all their boxes are looked at: beyond, a tree takes less long
 
 
 class Spline(General):
-    """Paper: section 2, the definition of the map, on pieces cubic in the parameter."""
+    """The map of section 2 of the paper, on tables whose pieces are cubic in the parameter."""
 
     name = "spline"
     width = 16
@@ -46,6 +48,17 @@ class Spline(General):
         ]
         self.refines = True
         self.closed = False
+        before = {after: j for j, after in enumerate(boundary.following)}
+        self.neighbours = [  # the middle of a component; those that go on smoothly from its ends, and their ends there
+            [
+                0.5 * (low + high),
+                *((-1.0, 0.0) if first else (float(before[j]), self.ends[before[j]][1])),
+                *((-1.0, 0.0) if last else (float(after), self.ends[after][0])),
+            ]
+            for j, ((low, high), (first, last), after) in enumerate(
+                zip(self.ends, boundary.corners, boundary.following, strict=True)
+            )
+        ]
         self.convex = convex(boundary)
         self.boxes = [] if self.convex else boxed(boundary, self.pieces, self.rows)
         self.tree = [] if self.convex else grown(boundary, self.pieces)
@@ -76,7 +89,7 @@ class Spline(General):
         return [ops.look_up(list(column), which) for column in columns]
 
     def programmed(self, ops: Backend[N, M]) -> list[list[N]]:
-        """The coefficients of every component in some arithmetic; in floats they are constants."""
+        """The coefficients of every component in the arithmetic of `ops`; in floats they are constants."""
         exact = not ops.doubles
         if not exact:
             return [[ops.number(x) for x in row] for row in self.rows]
@@ -119,53 +132,92 @@ class Spline(General):
             x, y = (ops.look_up(values, at) for values in corners)
             return plane.cross(v, (x - z0[0], y - z0[1]))
 
-        first, last, low, below, above = halved(ops, component, count, side)
-        ahead = nought <= first
-        behind = (last < nought) & ops.negated(ahead)
-        here = ahead | behind
-        where = ops.select(here, component, low)
-        other = self._row(ops, where)
-        p = [plane.cross(v, (other[i], other[i + 4])) for i in range(4)]
-        p[0] = plane.cross(v, (other[0] - z0[0], other[4] - z0[1]))
+        _, _, low, below, above = halved(ops, component, count, side)
         divided = [
             plane.cross(v, (own[1] + (own[2] + own[3] * theta) * theta, own[5] + (own[6] + own[7] * theta) * theta)),
             plane.cross(v, (own[2] + own[3] * theta, own[6] + own[7] * theta)),
             plane.cross(v, (own[3], own[7])),
             nought,
         ]
+        ahead = nought <= (divided[2] + divided[1]) + divided[0]  # where the known zero is divided out, no end is near
+        behind = (nought < divided[0]) & ops.negated(ahead)
+        here = ahead | behind
+        where = ops.select(here, component, low)
+        other = self._row(ops, where)
+        p = [plane.cross(v, (other[i], other[i + 4])) for i in range(4)]
+        p[0] = plane.cross(v, (other[0] - z0[0], other[4] - z0[1]))
         sign = ops.select(behind, -one, one)
         p = [ops.select(here, sign * x, y) for x, y in zip(divided, p, strict=True)]
         bottom, top = ops.select(ahead, theta, nought), ops.select(behind, theta, one + nought * theta)
         guess = ops.select(here, ops.number(0.5) * (bottom + top), below / (below - above))
         at = ops.polynomial_zero(p, guess, bottom, top, one, (0, 3))
         x, y, *_ = evaluated(ops, other, at)
-        return [plane.dot(v, (x - z0[0], y - z0[1])), where, at]
+        far = ops.number(FAR) + nought * theta
+        *back, _ = self._back(ops, start, v, [far, component, theta])
+        lands = (back[0] < far) & ops.negated(here)
+        t = plane.dot(v, (x - z0[0], y - z0[1]))
+        best = ops.select(nought < t, t, far), where, at  # none behind its departure
+        return [ops.select(lands, x, y) for x, y in zip(back, best, strict=True)]
 
     def _first(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
         """The nearest landing: on the pieces whose box the flight may meet, the nearest box first."""
         far, (component, theta) = ops.number(FAR), start
         each = ops.number(0.0) * theta
         best, sides = self._own(ops, start, own, v, [far + each, component + each, theta])
+        *best, other = self._back(ops, start, v, best)
 
         def tried(state: list[N]) -> list[N]:
             floor, *best = state
             one, two, third = self._ahead(ops, component, z0, v, floor)
-            best = self._met(ops, one, component, sides, z0, v, best)
+            best = self._met(ops, one, component, other, sides, z0, v, best)
             closer = -two[0] < best[0]
-            best = ops.when(closer, best, lambda: self._met(ops, two, component, sides, z0, v, best))
+            best = ops.when(closer, best, lambda: self._met(ops, two, component, other, sides, z0, v, best))
             return [third, *best]
 
         return list(ops.repeat(lambda at: -at[0] < at[1], tried, [far + each, *best], len(self.boxes)))[1:]
 
+    def _at_end(self, ops: Backend[N, M], component: N, theta: N) -> M:
+        """Does a particle leave from an end of its component, up to rounding?"""
+        low, high = self._ends_of(ops, component)
+        least = ops.number(AT_END)
+        at_end: M = (theta - low <= least) | (high - theta <= least)
+        return at_end
+
+    def _ends_of(self, ops: Backend[N, M], component: N) -> Pair[N]:
+        """The ends of a component's parameter; constants if all components have the same ends."""
+        if len(set(self.ends)) == 1:
+            return ops.number(self.ends[0][0]), ops.number(self.ends[0][1])
+        low, high = (ops.look_up([ops.number(ends[i]) for ends in self.ends], component) for i in (0, 1))
+        return low, high
+
+    def _neighbour(self, ops: Backend[N, M], component: N, theta: N) -> Pair[N]:
+        """The component that goes on smoothly from the end where a particle is, and the parameter there; -1 if none."""
+        columns = [[ops.number(row[i]) for row in self.neighbours] for i in range(5)]
+        middle, before, end, after, begin = (ops.look_up(column, component) for column in columns)
+        first = theta < middle
+        return ops.select(first, before, after), ops.select(first, end, begin)
+
+    def _back(self, ops: Backend[N, M], start: Pair[N], v: Pair[N], best: list[N]) -> list[N]:
+        """The nearest of `best` and, if a particle leaves from an end, landings on its neighbour; and the neighbour."""
+        none, at_end = ops.number(-1.0) + ops.number(0.0) * start[0], self._at_end(ops, *start)
+
+        def found() -> list[N]:
+            other, place = self._neighbour(ops, *start)
+            landed, _ = self._own(ops, (other, place), self._row(ops, other), v, best)
+            leaves = at_end & (ops.number(-0.5) < other)
+            return [ops.select(leaves, x, y) for x, y in zip([*landed, other], [*best, none], strict=True)]
+
+        return list(ops.when(at_end, [*best, none], found))
+
     def _own(
         self, ops: Backend[N, M], start: Pair[N], own: list[N], v: Pair[N], best: list[N]
     ) -> tuple[list[N], Pair[N]]:
-        """The nearest of `best` and the landings on the piece of departure, whose known zero is divided out.
+        """The nearest landing: `best` or one on the piece of departure, whose zero at the start is divided out.
 
-        Also on which sides of the flight the two ends of this piece lie.
+        The second result says on which sides of the flight the two ends of this piece lie.
         """
         component, theta = start
-        low, high = (ops.look_up([ops.number(ends[i]) for ends in self.ends], component) for i in (0, 1))
+        low, high = self._ends_of(ops, component)
         _, _, dx, dy, ax, ay = evaluated(ops, own, theta)
         half, nought = ops.number(0.5), ops.number(0.0)
         terms = (dx, dy), (half * ax, half * ay), (own[3], own[7])
@@ -180,12 +232,15 @@ class Spline(General):
             root = ops.sqrt(ops.maximum(plane.exact_cross(ops, (w, q[0]), (q[2], w)), nought))
             w = -(w + ops.times_sign(root, w))
             real = nought < root
-            change = ops.negated(nought < first * last)
+            change, turn = ops.negated(nought < first * last), -half * q[1] / q[2]
+            both = (
+                ops.negated(change) & (nought < first * q[2]) & (low < turn) & (turn < high)
+            )  # zeros between the ends
             roots = [w / q[2], q[0] / w]
             gaps = [most(ops, low - x, x - high) for x in roots]
             found = best
             for x, gap, other in zip(roots, gaps, gaps[::-1], strict=True):
-                inside = (gap <= nought) | (change & (gap < other) & (nought < other))
+                inside = (gap <= nought) | both | (change & (gap < other) & (nought < other))
                 x = least(ops, most(ops, x, low), high)
                 t = ((along[2] * x + along[1]) * x + along[0]) * x
                 nearer = real & inside & (nought < t) & (t < found[0])
@@ -195,13 +250,13 @@ class Spline(General):
             return found
 
         best = ops.when((lowest <= nought) & (nought <= highest), best, solved)
-        return best, (low * first, high * last)
+        return best, (least(ops, low, ops.number(-TINY)) * first, most(ops, high, ops.number(TINY)) * last)
 
     def _ahead(self, ops: Backend[N, M], component: N, z0: Pair[N], v: Pair[N], floor: N) -> tuple[list[N], list[N], N]:
-        """The nearest two pieces whose box the flight may meet, none nearer than `floor`, and how near the third is.
+        """The nearest two pieces whose boxes the flight may meet, none nearer than `floor`; how near the third one is.
 
-        A piece comes with minus a length before which it is not met, and with its number. There is one mask for each
-        choice: to combine masks takes longer than to choose.
+        A piece is given as minus a length before which the flight does not meet it, and its number. Each choice has one
+        mask: combining masks takes longer than choosing.
         """
         nought, never = ops.number(0.0), ops.number(-FAR)
         aside, begin = plane.cross(z0, v), plane.dot(v, z0)
@@ -225,22 +280,31 @@ class Spline(General):
         return one, two, third
 
     def _side(self, ops: Backend[N, M], corner: Fields[N], component: N, ends: Pair[N], v: Pair[N], aside: N) -> N:
-        """How far a corner lies to the left of the flight; of the piece of departure this is known better."""
+        """How far a corner lies to the left of the flight; `ends` has better values for the piece of departure."""
         x, y, before, after = corner
         side = v[0] * y + (aside - v[1] * x)
         return ops.select(component == before, ends[1], ops.select(component == after, ends[0], side))
 
     def _met(
-        self, ops: Backend[N, M], piece: list[N], component: N, ends: Pair[N], z0: Pair[N], v: Pair[N], best: list[N]
+        self,
+        ops: Backend[N, M],
+        piece: list[N],
+        component: N,
+        neighbour: N,
+        ends: Pair[N],
+        z0: Pair[N],
+        v: Pair[N],
+        best: list[N],
     ) -> list[N]:
-        """The nearest of `best` and the landings on a piece that has no known zero."""
+        """The nearest landing: `best` or one on a piece other than the piece of departure and `neighbour`."""
         key, number = piece
         nought, one, half = (ops.number(x) for x in (0.0, 1.0, 0.5))
         row = ops.look_up_row([box.numbers for box in self.boxes], number)
         (where, low, high), corners, row = row[8:11], (row[12:16], row[16:20]), row[:8]
         aside = plane.cross(z0, v)
         s0, s1 = (self._side(ops, corner, component, ends, v, aside) for corner in corners)
-        reached, folded = -key < best[0], ops.negated((s0 < nought) & (nought <= s1) | (s1 < nought) & (nought <= s0))
+        reached = (-key < best[0]) & (half < modulus(where - neighbour))
+        folded = ops.negated((s0 < nought) & (nought <= s1) | (s1 < nought) & (nought <= s0))
         p = [plane.cross(v, (row[i], row[i + 4])) for i in range(4)]
         p[0] = plane.cross(v, (row[0] - z0[0], row[4] - z0[1]))
         third = (high - low) * ops.number(1 / 3)
@@ -252,13 +316,16 @@ class Spline(General):
             return (ops.number(3.0) * p[3] * u + ops.number(2.0) * p[2]) * u + p[1]
 
         first, last = value(low), value(high)
-        inner = [ops.select(s0 < nought, -x, x) for x in (first + third * slope(low), last - third * slope(high))]
+        slopes = slope(low), slope(high)
+        inner = [ops.select(s0 < nought, -x, x) for x in (first + third * slopes[0], last - third * slopes[1])]
         rise = last - first
+        turned = [ops.select(s0 < nought, x, -x) < nought for x in slopes]  # where it runs away from its zero at first
         guess, none = low - (high - low) * first / rise, nought * low
+        guess = ops.select(turned[0], high, ops.select(turned[1], low, guess))
         begin = [rise, low, high, guess, none, none, ops.select(folded, nought, one + none)]
 
         def parted() -> list[N]:
-            """Of a piece that turns back: the part that is met first, and where it turns back."""
+            """The part of a piece that a flight meets first, and where the piece turns back."""
             root = ops.sqrt(ops.maximum(p[2] * p[2] - ops.number(3.0) * p[3] * p[1], nought))
             w = -(p[2] + ops.times_sign(root, p[2]))
             near, other = p[1] / w, w / (ops.number(3.0) * p[3])
@@ -309,8 +376,8 @@ class Spline(General):
     def _nearest(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
         """The nearest landing: down the tree wherever the flight meets a box before the best so far.
 
-        With more digits than doubles have, every zero on a piece is sought as on any table: nothing is shared there
-        with what is found by boxes, which can be held against it.
+        With more digits than doubles have, every zero on a piece is sought as on any table: so it shares nothing with
+        the search by boxes, and can serve to test it.
         """
         component, theta = start
         one, half, nought, far = (ops.number(x) for x in (1.0, 0.5, 0.0, FAR))
@@ -319,9 +386,10 @@ class Spline(General):
         best, sides = [far + each, component + each, theta], (nought, nought)
         if not exact:
             best, sides = self._own(ops, start, own, v, best)
+            *best, other = self._back(ops, start, v, best)
 
         def walked(state: list[N]) -> list[N]:
-            """On to the next node, until a piece is reached or the tree is at its end."""
+            """Next node of the tree, until a piece is reached or the tree ends."""
             node, _, best = state
             x, y, wide, high, skip, piece, *_ = ops.look_up_row(self.tree, node)
             c = x - z0[0], y - z0[1]
@@ -342,7 +410,8 @@ class Spline(General):
             index, low, high, _ = ops.look_up_row([box.numbers[8:12] for box in self.boxes], ops.maximum(piece, nought))
             if not exact:
                 elsewhere = reached & (half * half < modulus(index - component))
-                return [node, *self._met(ops, [ops.select(elsewhere, far, -far), piece], component, sides, z0, v, best)]
+                named = [ops.select(elsewhere, far, -far), piece]
+                return [node, *self._met(ops, named, component, other, sides, z0, v, best)]
             row = self._row(ops, index)
             hit = self._hits(
                 ops, lambda at: evaluated(ops, row, at), (index, low, high, high - low), start, z0, v, best
@@ -362,33 +431,30 @@ def evaluated(ops: Backend[N, M], row: Sequence[N], u: N) -> list[N]:
 
 
 def least(ops: Backend[N, M], x: N, y: N) -> N:
-    """The smaller one."""
+    """The smaller of two numbers."""
     return ops.select(x < y, x, y)
 
 
 def most(ops: Backend[N, M], x: N, y: N) -> N:
-    """The larger one."""
+    """The larger of two numbers."""
     return ops.select(y < x, x, y)
 
 
 def convex(boundary: Boundary) -> bool:
     """Does one closed curve of pieces on [0, 1] turn to the left all the way, and once round?"""
-    if any((low, high) != (0.0, 1.0) for low, high in boundary.ends):
+    if any((low, high) != (0.0, 1.0) for low, high in boundary.ends) or len(loops(boundary.following)) > 1:
+        return False
+    if not all(inwards(boundary, i) for i in range(len(boundary.ends))):
         return False
     theta = np.linspace(0.0, 1.0, 129)
     rows = [boundary.curve(np.full(theta.shape, i), theta) for i in range(len(boundary.ends))]
-    size = max(np.max(np.abs(row[:2])) for row in rows)
     total = 0.0
     for row, after in zip(rows, [*rows[1:], rows[0]], strict=True):
         turning = row[2] * row[5] - row[3] * row[4]
         if np.min(turning) < -BEND * np.max(np.abs(turning)):
             return False
-        if np.hypot(*(row[:2, -1] - after[:2, 0])) > SAME * size:
-            return False  # a second curve begins
         angle = np.unwrap(elementary.arctan2(row[3], row[2]))
         u, v = (row[2, -1], row[3, -1]), (after[2, 0], after[3, 0])
         corner = elementary.arctan2(plane.cross(u, v), plane.dot(u, v))
-        if corner < -BEND:
-            return False
         total += float(angle[-1] - angle[0] + corner)
     return abs(total - 2 * np.pi) < 1e-6

@@ -1,6 +1,6 @@
-"""Running trajectories: rows are padded to whole blocks, blocks are shared out to threads, or NumPy does it all.
+"""Runs trajectories: rows are padded to whole blocks and blocks are divided among threads; or NumPy runs them.
 
-Every lane computes what it would compute alone, so results depend neither on threads nor on blocks.
+Every lane computes as if it were alone, so results depend neither on threads nor on blocks.
 """
 
 import itertools
@@ -19,38 +19,38 @@ from numeric.kernels.machine import LINE, START, KernelSpec, fields, rescaled
 
 Array = NDArray[np.float64]
 PART = 1 << 16  # doubles recorded at a time: a page that stays in the cache
-STRETCH = 1 << 17  # bounces told at a time where they are wanted: the rows that are written to are neighbours
-STREAM = 1 << 23  # bytes that are more than a processor's own cache holds: past it they take less long to write
-ALONE = 4  # particles that are run in narrow blocks: it takes less long to wait for
+STRETCH = 1 << 17  # bounces recorded at a time in the caller's arrays: rows written together lie near each other
+STREAM = 1 << 23  # records of so many bytes, more than a processor's cache holds, bypass the cache, which is faster
+ALONE = 4  # up to so many particles run in narrow blocks, which end sooner
 WORTH_A_THREAD = 2_000_000  # bounces; below about 10 ms a second thread costs more than it brings
 
 
-class Result(NamedTuple):
-    """Rows of the final state by name, and the recorded rows: bounce, field, particle."""
+class EngineResult(NamedTuple):
+    """Rows of the final state by name, and the recorded rows: an array with axes bounce, field, particle."""
 
     rows: dict[str, Array]
     record: Array | None
 
 
 class Engine(NamedTuple):
-    """The runner of one family on one table IR; `kernels` is False where NumPy was asked for."""
+    """Runs flights of one family on one table, by compiled kernels or, if `kernels` is False, on NumPy arrays."""
 
     family: Family
     identity: str
     names: Sequence[str]
     kernels: bool = True
-    lanes: int = 0  # how many to a block; 0 for what suits the family
+    lanes: int = 0  # in a block; 0 for what suits the family
 
     @property
     def width(self) -> int:
-        """Lanes to a block."""
+        """The number of lanes in a block."""
         width = self.family.width
         return self.lanes or (width if not self.kernels or machine.wide() else min(width, self.family.narrow))
 
     @property
-    def tells(self) -> bool:
-        """Whether kernels are asked for, and those of the family tell orbits."""
-        return self.kernels and self.family.tells
+    def can_record(self) -> bool:
+        """Are kernels used, and can those of the family record orbits?"""
+        return self.kernels and self.family.can_record
 
     def run(
         self,
@@ -62,8 +62,8 @@ class Engine(NamedTuple):
         tangent: Sequence[Array] = (),
         threads: int | None = None,
         outcome: Sequence[Array] = (),
-    ) -> Result:
-        """Bounce every particle `bounces` times. `own` and `tangent` are the starting rows, `outcome` code and lost."""
+    ) -> EngineResult:
+        """Bounces every particle `bounces` times, from the rows `own`, `tangent` and `outcome` (code, lost)."""
         names = fields(self.family, spec)
         count = own[0].size
         width = -(-count // self.width) * self.width
@@ -85,20 +85,20 @@ class Engine(NamedTuple):
             if record is not None and told is not None:
                 record[done : done + part] = told[:, :, :count]
         rows = {name: row[:count] for name, row in zip(names, state, strict=True)}
-        return Result(rows, record)
+        return EngineResult(rows, record)
 
-    def course(
+    def batch(
         self,
         law: str,
         told: Sequence[str],
         count: int,
         shape: Sequence[float],
         length: tuple[Series, Sequence[float]] = (CLOSED, ()),
-    ) -> "Course | None":
-        """Room for so many particles that kernels tell; None where there are no such kernels."""
-        if not self.tells:
+    ) -> "BatchRun | None":
+        """A batch for up to `count` particles that records the fields `told`; None if there are no kernels for it."""
+        if not self.can_record:
             return None
-        found = Course(self, law, tuple(told), count, shape, length)
+        found = BatchRun(self, law, tuple(told), count, shape, length)
         return found if found.kernel(starts=True) is not None else None
 
     def once(
@@ -111,11 +111,11 @@ class Engine(NamedTuple):
         length: tuple[Series, Sequence[float]] = (CLOSED, ()),
         threads: int | None = None,
     ) -> Array | None:
-        """A single bounce, told from where the particles lie to where it is wanted; the codes of its outcomes.
+        """One bounce from the arrays `start` into the arrays `out`; returns the codes of the outcomes.
 
-        None where there are no such kernels.
+        None where there are no kernels for it.
         """
-        if not self.tells:
+        if not self.can_record:
             return None
         spec = KernelSpec(law, told=tuple(out), once=True, length=length[0])
         width = ALONE if lam.size <= ALONE else self.width
@@ -155,7 +155,7 @@ class Engine(NamedTuple):
         page: Array | None,
         threads: int | None,
     ) -> None:
-        """Bounce all columns of `state` in place."""
+        """Bounces all columns of `state` in place."""
         function = None
         if self.kernels:
             function = machine.compiled(self.family, self.identity, self.names, spec, self.width)
@@ -167,12 +167,12 @@ class Engine(NamedTuple):
         shared(function, pointers, state.shape[1], (0, state.shape[1]), self.width, bounces, threads)
 
 
-class Course:
-    """Particles on their way: `begin` takes them up, `advance` bounces them on and tells each bounce.
+class BatchRun:
+    """A batch of particles: `begin` sets where they start, `advance` bounces them and records each bounce.
 
-    Whole blocks of lanes write what they tell where the caller wants it, a few bounces of all of them at a time: a
-    block's lanes are far apart in memory from one bounce to the next. What is left of a block, and what is no float64,
-    comes by way of a page of our own, which stays in the cache.
+    Whole blocks of lanes write records straight into the caller's arrays, a few bounces of all of them at a time,
+    because a block's records of successive bounces lie far apart. Incomplete blocks, and arrays that are not float64,
+    are filled by way of a page of memory that stays in the cache.
     """
 
     def __init__(
@@ -193,8 +193,8 @@ class Course:
         self.pointers = [x.ctypes.data for x in (self.state, self.lam, self.shape)]
         self.page, self.begun = np.empty(0), False
 
-    def begin(self, start: Sequence[NDArray[Any] | float], lam: Array) -> "Course":
-        """Takes up particles at component, parameter and exit angle, no more than there is room for."""
+    def begin(self, start: Sequence[NDArray[Any] | float], lam: Array) -> "BatchRun":
+        """Sets particles, no more than there is room for, at component, parameter and exit angle; returns the batch."""
         self.count, self.begun = lam.size, False
         self.columns = -(-self.count // self.width) * self.width
         for row, values in zip((*self.state[-len(START) :], self.lam), (*start, lam), strict=True):
@@ -203,8 +203,8 @@ class Course:
         self.state[self.own : -len(START)] = 0.0  # no outcome yet
         return self
 
-    def restore(self, rows: Array) -> "Course":
-        """Goes on from a state."""
+    def restore(self, rows: Array) -> "BatchRun":
+        """Sets the state to these rows, to go on from it; returns the batch."""
         self.state[: len(rows), : self.count] = rows
         self.state[: len(rows), self.count :] = rows[:, -1:]
         self.begun = True
@@ -216,7 +216,7 @@ class Course:
         return {name: row[: self.count] for name, row in zip(self.names, self.state, strict=False)}
 
     def kernel(self, starts: bool = False, told: bool = True, streams: bool = False) -> machine.Run | None:
-        """The kernel that starts or goes on, and tells or does not."""
+        """The kernel that begins from the starts or goes on from the state, with or without recording."""
         engine = self.engine
         told_of = self.told if told else ()
         spec = KernelSpec(self.law, told=told_of, starts=starts, length=self.how, streams=streams)
@@ -225,7 +225,7 @@ class Course:
     def advance(
         self, bounces: int, out: Mapping[str, Array], top: int, every: int = 1, threads: int | None = 1
     ) -> None:
-        """Bounces all particles, and writes what is told of every so many-th bounce into rows from `top` on."""
+        """Bounces all particles, and stores every `every`-th bounce in the rows of `out` from `top` on."""
         rows = [out[name][top : top + bounces // every] for name in self.told]
         if not rows:
             self.start()._call(self.kernel(told=False), bounces // every * every, None, threads)
@@ -236,15 +236,15 @@ class Course:
                 self.start()._call(self.kernel(told=False), every - 1, None, threads)
                 self._tell([row[i : i + 1] for row in rows], threads)
 
-    def start(self) -> "Course":
-        """Makes the fields of the state, unless they are made."""
+    def start(self) -> "BatchRun":
+        """Computes the state from the starts, unless it is computed; returns the batch."""
         if not self.begun:
             self._call(self.kernel(starts=True, told=False), 0, None, 1)
             self.begun = True
         return self
 
     def _tell(self, rows: list[Array], threads: int | None) -> None:
-        """Bounces all particles once for each row, and tells of it there."""
+        """Bounces all particles once for each row of `rows`, and records the bounce there."""
         starts, self.begun = not self.begun, True
         step = rows[0].strides[0]
         alike = all(row.dtype == np.float64 and row.strides == (step, row.itemsize) for row in rows)
@@ -255,7 +255,7 @@ class Course:
             self._through_a_page(starts, rows, whole, threads)
 
     def _where_wanted(self, starts: bool, rows: list[Array], whole: int, threads: int | None) -> None:
-        """As `_tell`, for whole blocks: a few bounces of all of them, so that memory is written from end to end."""
+        """The work of `_tell` for whole blocks, straight into `rows`: a few bounces of all blocks at a time."""
         bounces, apart = rows[0].shape[0], rows[0].strides[0]
         begin = np.array([*(row.ctypes.data for row in rows), 0])
         streams = sum(row.nbytes for row in rows) >= STREAM and not np.any(np.append(begin, apart) % LINE)
@@ -269,7 +269,7 @@ class Course:
             done += part
 
     def _through_a_page(self, starts: bool, rows: list[Array], left: int, threads: int | None) -> None:
-        """As `_tell`, for the particles from one on."""
+        """The work of `_tell` for the particles from number `left` on, by way of a page of memory."""
         columns, bounces = self.columns - left, len(rows[0])
         most = min(bounces, max(1, PART // (len(rows) * columns)))
         need = most * len(rows) * columns
@@ -307,7 +307,7 @@ def shared(
     bounces: int,
     threads: int | None,
 ) -> None:
-    """A kernel on some columns of rows so long, shared out to threads."""
+    """Runs a kernel on some columns of rows of length `row`, divided among threads."""
     first, last = columns
     pieces = _pieces((last - first) // width, (last - first) * bounces, threads)
     calls = [(*pointers, row, first + one * width, first + other * width, bounces) for one, other in pieces]

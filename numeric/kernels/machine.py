@@ -1,10 +1,10 @@
-"""A kernel as machine code: what it is asked and its rows of state; compiled, kept on disk, called without the GIL.
+"""Kernels as machine code: their specification and rows of state; compiled, kept on disk, called without the GIL.
 
-llvmlite compiles the text, ctypes calls it. What is kept on disk is a flat image: the sections of the object file
-laid out and joined once, so that a later process maps and calls it without importing LLVM (a process that asks for
-one orbit is ready in half the time). Only an object file in the ELF format of x86-64 becomes one; any other, and any
-whose fields do not fit together, is kept as it is and loaded by LLVM. Nothing that is read is believed: every offset,
-size, index and alignment is checked before it is used.
+llvmlite compiles the text, ctypes calls it. On disk is a flat image: the sections of the object file laid out and
+joined once, so that a later process maps and calls it without importing LLVM (a process that asks for one orbit is
+ready in half the time). Only an object file in the ELF format of x86-64 becomes an image; any other, or one with
+inconsistent fields, is kept unchanged and loaded by LLVM. Files are not trusted: every offset, size, index and
+alignment is checked before it is used.
 """
 
 import ctypes
@@ -28,27 +28,27 @@ LINE = 64  # bytes that go to memory together
 
 
 class KernelSpec(NamedTuple):
-    """What a kernel is made for, besides the end of the trajectory."""
+    """The choice of what a kernel computes and records besides the last state."""
 
     law: str
     record: bool = False
     exponents: bool = False
-    told: tuple[str, ...] = ()  # what is recorded in place of the state, of `TOLD`, `s` and `MATRIX`
+    told: tuple[str, ...] = ()  # recorded in place of the state: fields of `TOLD`, `s`, `MATRIX`
     starts: bool = False  # from component, parameter and exit angle, in place of a state
-    once: bool = False  # the same, from where they lie and with no state afterwards
-    length: Series = CLOSED  # how arc length is told
-    streams: bool = False  # what is told goes to memory past the caches, at multiples of `LINE` bytes
+    once: bool = False  # one bounce of particles in the caller's arrays, with no state afterwards
+    length: Series = CLOSED  # the series of the arc length
+    streams: bool = False  # records bypass the caches; they lie at multiples of `LINE` bytes
 
     @property
     def text(self) -> str:
-        """The question as part of a name."""
+        """The specification as part of a name."""
         words = [word for word in ("record", "exponents", "starts", "once", "streams") if getattr(self, word)]
         how = ["-".join(map(str, self.length))] if "s" in self.told and self.length.terms else []
         return "-".join([self.law, *words, *self.told, *how])
 
 
 def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:
-    """The rows of `state`."""
+    """The names of the rows of `state`, in order."""
     extra = (TANGENT if spec.exponents else ()) + (START if spec.starts else ())
     return (*family.fields(spec.law), *(("code", "lost") if family.stops else ()), *extra)
 
@@ -60,10 +60,10 @@ def starting(q: Array, omega: Array, n0: Array) -> list[Array]:
 
 
 def rescaled(ops: Backend[N, M], rows: list[N]) -> list[N]:
-    """The rows of a tangent vector, with mantissas far from one brought back; done every `renormalise_every` bounces.
+    """The rows of a tangent vector, rescaled if they are far from one; called every `renormalise_every` bounces.
 
-    The vector is `(q, omega)*2**growth/down` and the product of the ratios of cosines `2**volume*up/down`; so no
-    logarithm and no division is needed on the way.
+    The vector is `(q, omega)*2**growth/down`, and the product of the ratios of cosines is `2**volume*up/down`, so that
+    no bounce needs a logarithm or a division.
     """
     q, omega, growth, up, down, volume, n0 = rows
     size, one, nought = ops.maximum(modulus(q), modulus(omega)), ops.number(1.0), ops.number(0.0)
@@ -94,7 +94,7 @@ LARGEST = 1 << 24  # bytes of an image; kernels have 10 to 100 thousand
 NEAR = 64  # an address relative to the next instruction lies this much before what it means, at most
 
 
-class Section(NamedTuple):
+class ObjectSection(NamedTuple):
     """One line of the section table, all of whose bytes lie in the file."""
 
     kind: int
@@ -107,7 +107,7 @@ class Section(NamedTuple):
 
 
 def image(code: bytes, entry: bytes = b"run") -> bytes | None:
-    """The image of an object file: magic, count of places to move, entry, these places, code; None if it is none."""
+    """The image of an object file: magic, count of places to move, entry, these places, code; None for other files."""
     sections = _sections(code)
     if sections is None:
         return None
@@ -133,7 +133,7 @@ def image(code: bytes, entry: bytes = b"run") -> bytes | None:
     return head + bytes(laid)
 
 
-def _sections(code: bytes) -> list[Section] | None:
+def _sections(code: bytes) -> list[ObjectSection] | None:
     """The section table of a relocatable x86-64 file; None when a field points outside the file or has no meaning."""
     if len(code) < 64 or code[:6] != b"\x7fELF\x02\x01" or struct.unpack_from("<HH", code, 16) != (1, 62):
         return None
@@ -149,14 +149,14 @@ def _sections(code: bytes) -> list[Section] | None:
                 return None
             if kind in (SYMBOLS, RELOCATIONS) and link >= count:
                 return None
-        found.append(Section(kind, flags, begin, size, link, target, align))
+        found.append(ObjectSection(kind, flags, begin, size, link, target, align))
     return found
 
 
 def _joined(
-    code: bytes, sections: list[Section], table: Section, at: dict[int, int], laid: bytearray
+    code: bytes, sections: list[ObjectSection], table: ObjectSection, at: dict[int, int], laid: bytearray
 ) -> list[int] | None:
-    """Writes addresses into `laid` as one table of relocations says; the places that move with the whole, or None."""
+    """Applies a table of relocations to `laid`; returns the places that hold addresses in it, None for a bad table."""
     symbols, moved = sections[table.link], []
     if symbols.kind != SYMBOLS:
         return None
@@ -179,8 +179,8 @@ def _joined(
     return moved
 
 
-def _entry(code: bytes, sections: list[Section], entry: bytes, at: dict[int, int]) -> int | None:
-    """Where the function of this name begins."""
+def _entry(code: bytes, sections: list[ObjectSection], entry: bytes, at: dict[int, int]) -> int | None:
+    """The offset in the image of the function of this name; None if there is none."""
     for table in sections:
         if table.kind != SYMBOLS or sections[table.link].kind != 3:
             continue
@@ -195,9 +195,9 @@ def _entry(code: bytes, sections: list[Section], entry: bytes, at: dict[int, int
 
 
 def entered(image: bytes) -> tuple[int, Untyped] | None:
-    """The address of the function in memory of its own, executable and no longer writable, and that memory's owner.
+    """The address of an image's function, in memory that is executable and no longer writable, and that memory's owner.
 
-    None where the system refuses such memory, and for bytes that are no image: every place lies within the code.
+    None where the system refuses such memory, and for bytes that are not an image with every place within the code.
     """
     import mmap
 
@@ -235,7 +235,7 @@ _kept: list[Untyped] = []  # engines own the code that ctypes calls; they must o
 
 @memoised
 def _llvm() -> Untyped:
-    """The library, or None when it is missing or cannot serve this machine."""
+    """The library llvmlite, or None when it is missing or cannot serve this machine."""
     try:
         import llvmlite.binding as llvm
 
@@ -251,7 +251,7 @@ def _llvm() -> Untyped:
 
 @memoised
 def _processor() -> tuple[str, ...] | None:
-    """What tells this processor from others: Linux says it at once, elsewhere LLVM is asked."""
+    """Texts that identify the processor, from Linux or else from LLVM; None where neither can."""
     try:
         with open("/proc/cpuinfo", "rb", buffering=0) as file:  # noqa: PTH123  (pathlib takes 3 ms to import)
             first = file.read(4096).partition(b"\n\n")[0].decode()
@@ -266,7 +266,7 @@ def _processor() -> tuple[str, ...] | None:
 
 @memoised
 def wide() -> bool:
-    """Whether the processor has the 32 registers of AVX-512."""
+    """Has the processor the 32 registers of AVX-512?"""
     words = " ".join(_processor() or ()).replace(",", " ").split()
     return "avx512f" in words or "+avx512f" in words
 
@@ -283,9 +283,9 @@ def available() -> bool:
 
 
 def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSpec, width: int) -> Run | None:
-    """The kernel as a function, from memory, from disk, or newly made; None when only NumPy is left.
+    """The kernel as a function: kept in memory, loaded from disk or compiled; None if only NumPy can be used.
 
-    `identity` names the table IR: everything the family's steps depend on besides this package's text.
+    `identity` is a text of all that the family's steps depend on besides this package's sources.
     """
     key = (identity, family.name, spec.text, str(width), ",".join(shape))
     if key not in _loaded:
@@ -312,7 +312,7 @@ def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSp
 
 
 def from_text(text: str) -> Run | None:
-    """A function `run` of the same arguments from its text in LLVM's language; None when there is no compiler."""
+    """The function `run` in a module of LLVM text, with the arguments of a kernel; None when there is no compiler."""
     version, processor = _version(), _processor()
     if version is None or processor is None:
         return None
@@ -323,7 +323,7 @@ def from_text(text: str) -> Run | None:
 
 
 def _load(key: tuple[str, ...], kind: str, stamp: tuple[str, ...], written: Callable[[], str | None]) -> None:
-    """Keeps a function under a key, from disk, or newly made of the text that is written; or does nothing."""
+    """Sets `_loaded[key]` to a function, from disk or compiled from the text of `written`; or does nothing."""
     code = cache.read(kind, *stamp)
     found = _entered(code) if code is not None else None
     if found is None:
@@ -337,7 +337,7 @@ def _load(key: tuple[str, ...], kind: str, stamp: tuple[str, ...], written: Call
 
 
 def _made(text: str) -> tuple[bytes, tuple[int, Untyped] | None]:
-    """The code of a text as it is kept, and where it begins."""
+    """The code compiled from a text, as it is kept on disk, and its address in memory with that memory's owner."""
     made = object_code(text)
     code = image(made) or made
     found = _entered(code)
@@ -345,7 +345,7 @@ def _made(text: str) -> tuple[bytes, tuple[int, Untyped] | None]:
 
 
 def _function(address: int, owner: Untyped) -> Run:
-    """The function at an address, which its owner keeps."""
+    """The function at an address, in memory that is kept as long as its owner."""
     pointer, number = ctypes.c_void_p, ctypes.c_int64
     prototype = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, pointer, number, number, number, number)
     _kept.append(owner)
@@ -353,7 +353,7 @@ def _function(address: int, owner: Untyped) -> Run:
 
 
 def _entered(code: bytes) -> tuple[int, Untyped] | None:
-    """The address of the kernel in memory and what owns it: an image needs no LLVM, an object file does."""
+    """The address of a kernel's code in memory, and the memory's owner: an image needs no LLVM, an object file does."""
     if code[: len(MAGIC)] == MAGIC:
         return entered(code)
     llvm = _llvm()
@@ -366,7 +366,7 @@ def _entered(code: bytes) -> tuple[int, Untyped] | None:
 
 
 def optimised(text: str, target: Untyped = None) -> Untyped:
-    """The module after LLVM's passes, for this machine or for a target of LLVM's."""
+    """The LLVM module of a text after optimisation, for this machine or for a given target."""
     llvm = _llvm()
     target = target or _target()
     module = llvm.parse_assembly(text)
@@ -379,14 +379,9 @@ def optimised(text: str, target: Untyped = None) -> Untyped:
 
 
 def object_code(text: str, target: Untyped = None) -> bytes:
-    """The object file for this machine, or for a target of LLVM's."""
+    """The object file of a text, for this machine or for a given target of LLVM's."""
     target = target or _target()
     return bytes(target.emit_object(optimised(text, target)))
-
-
-def assembly(text: str) -> str:
-    """What the processor will run, for reading."""
-    return str(_target().emit_assembly(optimised(text)))
 
 
 def _version() -> str | None:

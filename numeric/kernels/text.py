@@ -1,19 +1,18 @@
-"""The text of a kernel: blocks of lanes, each bounced many times, for one family, one law and one question.
+"""The LLVM text of a kernel: blocks of lanes, each bounced many times, for one family, one law and one `KernelSpec`.
 
     void run(double state[], const double lam[], const double shape[], double record[],
              int64 width, int64 first, int64 last, int64 bounces)
 
-`state` holds one row of `width` doubles for each field: the particle's own, then `code` and `lost` when the
-family has outcomes, then the tangent vector's when exponents are asked for, or component, parameter and exit angle
-that a particle starts from. Columns `first` to `last` are worked on. `record`, when orbits are asked for, receives
-after every bounce the particle's own rows. Where something else is told of each bounce (parameter, angles, point, arc
-length), `record` is a table of addresses, one for each thing told, and of how many doubles lie between two bounces: so
-a kernel writes where its caller wants to have it. One that goes `once` has a table as `state` too: where component,
-parameter and exit angle of the particles lie, and where their outcomes go; of the state nothing is kept. After the
-numbers of the shape come those of the arc length.
+`state` holds one row of `width` doubles for each field: the particle's own; then `code` and `lost` if the family has
+outcomes; then the tangent vector's for exponents, or the component, parameter and exit angle from which a particle
+starts. The kernel works on columns `first` to `last`. To record states, `record` receives the particle's own rows
+after every bounce. To record other fields (parameter, angles, point, arc length), `record` is a table: an address for
+each field, then the number of doubles between two bounces, so that a kernel writes where its caller wants the data. In
+a kernel of one bounce (`once`) `state` is a table too: the addresses of the particles' component, parameter and exit
+angle, and of their outcomes; no state is kept. In `shape` the numbers of the arc length follow those of the shape.
 
-Inside, the processor takes numbers below 2**-1022 for zero: a particle at rest on a cycle ends up there, and many
-processors take such an operation for an exception, sixty times as long. The caller's mode is restored on the way out.
+Inside, the processor flushes numbers below 2**-1022 to zero: a particle at rest on a cycle reaches them, and on many
+processors such an operation takes sixty times as long. The caller's mode is restored on return.
 """
 
 import platform
@@ -37,7 +36,7 @@ TAIL = (
 
 
 class Mode(NamedTuple):
-    """How a processor is told to take subnormal numbers for zero: on entry, on the way out, and what to declare."""
+    """Code that makes a processor flush subnormal numbers to zero: on entry, on exit, and declarations."""
 
     entry: tuple[str, ...] = ()
     exit: tuple[str, ...] = ()
@@ -70,7 +69,7 @@ MODES = {"x86_64": X86, "amd64": X86, "aarch64": ARM, "arm64": ARM}  # elsewhere
 
 
 def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: int = 0, processor: str = "") -> str:
-    """The module in LLVM's language, for this kind of processor or for the one that it is written on."""
+    """The kernel as LLVM text, for a kind of processor (as `platform.machine` names it), by default this machine's."""
     mode = MODES.get((processor or platform.machine()).lower(), Mode())
     ops = LLVMBackend(width or family.width)
     names = fields(family, spec)
@@ -148,27 +147,27 @@ def kernel_text(family: Family, shape: Sequence[str], spec: KernelSpec, width: i
 
 
 def _stored(ops: LLVMBackend, rows: Sequence[str], addresses: Sequence[str]) -> list[str]:
-    """The end of a block of lanes: its rows go to memory, and the next one begins."""
+    """Lines that end a block of lanes: they store its rows, and go on to the next block."""
     stores = [f"  store {ops.type} {row}, ptr {address}, align 8" for row, address in zip(rows, addresses, strict=True)]
     return [*stores, "  br label %stored", "stored:", f"  %next = add i64 %at, {ops.width}", "  br label %column"]
 
 
 def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], mode: Mode) -> str:
-    """The whole text, from the lines that were written."""
+    """The whole LLVM module, from the lines written so far and those of the end."""
     lines = [*ops.lines, *end, "exit:", *(f"  {line}" for line in mode.exit)]
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
     declared = [*sorted(ops.called), *mode.declared]
     order = f' "tune-cpu"="{family.order}"' if family.order and mode is X86 and not wide() else ""
     tail = TAIL.replace(" }", f"{order} }}")
-    seen, marks = (["  fence seq_cst"], ["!0 = !{i32 1}"]) if spec.streams else ([], [])  # by others, before it returns
+    seen, marks = (["  fence seq_cst"], ["!0 = !{i32 1}"]) if spec.streams else ([], [])  # stores are visible on return
     return "\n".join([title, *arrays, HEAD, *alive(lines), *seen, "  ret void", "}", *declared, tail, *marks, ""])
 
 
 def _joined(
     ops: LLVMBackend, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
 ) -> list[str]:
-    """The head of a loop: what its index and its rows are on entry from a block, and after a pass from another."""
+    """The head of a loop: instructions that take index and rows from the block before it, or from its last block."""
     (before, zero, begins), (last, following, ends) = first, again
     phis = [f"  %{index} = phi i64 [{zero}, %{before}], [{following}, %{last}]"]
     for name, begin, end in zip(names, begins, ends, strict=True):
@@ -177,7 +176,7 @@ def _joined(
 
 
 def _broadcast(ops: LLVMBackend, i: int, name: str) -> LLVMVector:
-    """A shape parameter in every lane."""
+    """The shape's number `i`, in every lane."""
     address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
     scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
     one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
@@ -186,19 +185,19 @@ def _broadcast(ops: LLVMBackend, i: int, name: str) -> LLVMVector:
 
 
 def _address(ops: LLVMBackend, base: str, row: str) -> str:
-    """Where this column's block of a row begins; `row` counts doubles."""
+    """Writes the address of the current block in a row that begins `row` doubles after `base`."""
     return ops.emit(f"getelementptr double, ptr %{base}, i64 {ops.emit(f'add i64 {row}, %at')}")
 
 
 def _started(ops: LLVMBackend, family: Family, law: str, shape: list[LLVMVector], rows: list[str]) -> list[str]:
-    """The fields of particles that leave a component at a parameter, at an exit angle."""
+    """The state's fields of particles that leave from the given rows: component, parameter, exit angle."""
     component, theta, phi = (LLVMVector(ops, row) for row in rows)
     position = family.enter(ops, component, theta)
     if law == SLAP:
         return [x.text for x in position]
     frame = family.framed(ops, shape, position)
     assert frame is not None, family.name
-    return [x.text for x in (*position, *family.aim(ops, frame, phi))]
+    return [x.text for x in (*position, *family.exit_fields(ops, frame, phi))]
 
 
 def _told(
@@ -211,9 +210,9 @@ def _told(
     before: list[LLVMVector],
     landing: Landing[LLVMVector] | None,
 ) -> list[LLVMVector]:
-    """What people ask of a landing: the angles are those that the reflection used; of a particle that stops, anything.
+    """The recorded fields of a landing, with the angles of its reflection; meaningless for a particle that stops.
 
-    What is not recorded is not computed: nothing depends on it, so its lines are left out of the text.
+    Fields that are not recorded cost nothing: nothing depends on them, so their lines are removed from the text.
     """
     assert landing is not None
     component, theta = family.place(ops, landing.position)
@@ -240,7 +239,7 @@ def _matrix(
 ) -> list[LLVMVector]:
     """The derivative of a bounce, as `MATRIX` has it, by the tangent map of `numeric.flights.family`."""
     position, exit = before[: len(family.position)], before[len(family.position) :]
-    n0, (rate, curvature) = family.departure(ops, shape, position, exit), family.curving(ops, shape, position)
+    n0, (rate, curvature) = family.exit_normal_speed(ops, shape, position, exit), family.curving(ops, shape, position)
     ends = family.kept(ops, shape, position), family.kept(ops, shape, landing.position)
     t = family.length(ops, shape, n0, *ends, landing)
     rate1, curvature1 = family.curving(ops, shape, landing.position)
@@ -250,12 +249,12 @@ def _matrix(
 
 
 def _entry(ops: LLVMBackend, table: str, kind: str, i: int) -> str:
-    """An entry of a table of addresses."""
+    """Writes the load of entry `i` of a table of addresses; its value, of the LLVM type `kind`."""
     return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %{table}, i64 {i}')}, align 8")
 
 
 def _tell(ops: LLVMBackend, texts: list[str], goals: Sequence[str], apart: str, streams: bool) -> None:
-    """Store what is told of bounce `%i` where each thing goes."""
+    """Writes instructions that store the recorded fields of bounce `%i` at the addresses `goals`."""
     place = ops.emit(f"add i64 {ops.emit(f'mul i64 %i, {apart}')}, %at")
     for text, goal in zip(texts, goals, strict=True):
         address = ops.emit(f"getelementptr double, ptr {goal}, i64 {place}")
@@ -264,7 +263,7 @@ def _tell(ops: LLVMBackend, texts: list[str], goals: Sequence[str], apart: str, 
 
 
 def _record(ops: LLVMBackend, texts: list[str]) -> None:
-    """Store the particle's own rows of bounce `%i`."""
+    """Writes instructions that store the particle's own rows of bounce `%i`."""
     page = ops.emit(f"mul i64 %i, {len(texts)}")
     for i, text in enumerate(texts):
         row = ops.emit(f"mul i64 {ops.emit(f'add i64 {page}, {i}')}, %width")
@@ -295,7 +294,7 @@ def alive(lines: list[str]) -> list[str]:
 
 
 def operations(text: str) -> dict[str, int]:
-    """How many vector instructions of each kind one bounce takes, branches that are rarely taken left out."""
+    """The number of vector instructions of each kind in one bounce, without branches that are rarely taken."""
     counts = dict.fromkeys(("fma", "add", "mul", "div", "sqrt", "compare", "select"), 0)
     words = {"fadd": "add", "fsub": "add", "fmul": "mul", "fdiv": "div", "fcmp": "compare", "select": "select"}
     rare = True
@@ -326,9 +325,9 @@ def _bounced(
     lam: LLVMVector,
     state: list[LLVMVector],
 ) -> tuple[list[LLVMVector], Landing[LLVMVector] | None]:
-    """All rows after one bounce; a lane whose bounce has an outcome keeps what it had, and counts what it lost.
+    """All rows after one bounce, and the landing, which is None with a tangent vector.
 
-    And the landing, where there is no tangent vector.
+    A lane whose bounce has an outcome keeps its rows, and counts the bounces that it misses.
     """
     count = len(family.fields(spec.law))
     own, rest = state[:count], state[count:]

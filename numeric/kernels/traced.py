@@ -2,10 +2,10 @@
 
 A function that is made of sums, products, quotients, roots, comparisons and selections of NumPy is called with `Lanes`
 in place of arrays: each operation writes the instruction of LLVM that IEEE 754 rounds in the same way, and none is
-joined with another. So what comes back has the bits that NumPy gives, without its temporary arrays: an array of a few
-thousand doubles is read once. Where there is no compiler the function itself is called, and where it asks for an array
-by `np.asarray` or `np.broadcast_arrays`, as an exponential by powers of two does. Any other operation is refused: the
-bits of NumPy's sine, say, are not those of every machine.
+joined with another. So results have the bits that NumPy gives, without its temporary arrays: an array of a few thousand
+doubles is read once. The function itself is called where there is no compiler, and where it makes an array by
+`np.asarray` or `np.broadcast_arrays`, as an exponential by powers of two does. Any other operation is refused: the bits
+of NumPy's sine, say, are not those of every machine.
 """
 
 import ctypes
@@ -45,21 +45,21 @@ CALLS = {np.absolute: "fabs", np.sqrt: "sqrt", np.rint: "rint", np.floor: "floor
 
 
 class NoInstructionError(TypeError):
-    """An operation of NumPy's that is none of those whose bits are proved."""
+    """A NumPy operation for which no instruction with the same bits is known."""
 
 
 class Lanes(NDArrayOperatorsMixin):
-    """What stands for an array of doubles, or of truth values, while a function is written down."""
+    """A stand-in for an array of doubles, or of truth values, while a function is traced."""
 
     def __init__(self, trace: "Trace", text: str, mask: bool = False) -> None:
         self.trace, self.text, self.mask = trace, text, mask
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> "Lanes":
-        """One operation; a result that NumPy would write in place of an operand is a new one."""
+        """Traces one operation; its result is a new value, also where NumPy would write it in place of an operand."""
         return self.trace.applied(ufunc, inputs) if method == "__call__" else NotImplemented
 
     def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> "Lanes":
-        """`np.where`, and no other."""
+        """Traces `np.where`, and no other function."""
         return self.trace.chosen(*args) if function is np.where else NotImplemented
 
 
@@ -72,7 +72,7 @@ class Trace:
         self.declared: set[str] = set()
 
     def emit(self, text: str) -> str:
-        """The name of what an instruction gives."""
+        """The name of an instruction's result; equal instructions are written once."""
         if text not in self.known:
             self.known[text] = f"%v{len(self.known)}"
             self.lines.append(f"  {self.known[text]} = {text}")
@@ -85,7 +85,7 @@ class Trace:
         return f"splat (double 0x{struct.unpack('<Q', struct.pack('<d', float(x)))[0]:016X})"
 
     def applied(self, ufunc: np.ufunc, inputs: Sequence[Any]) -> Lanes:
-        """A function of NumPy's, number by number."""
+        """The result of an elementwise function of NumPy; `NoInstructionError` if it has no instruction."""
         one, *rest = (self.number(x) for x in inputs)
         if ufunc in LOGIC:
             return Lanes(self, self.emit(f"{LOGIC[ufunc]} {MASK} {one}, {rest[0]}"), True)
@@ -114,26 +114,26 @@ class Trace:
         return Lanes(self, self.emit(f"fcmp {word} {VECTOR} {one}, {other}"), True)
 
     def called(self, name: str, *operands: str) -> Lanes:
-        """An operation that LLVM knows by a name."""
+        """The result of the LLVM intrinsic of this name."""
         self.declared.add(f"declare {VECTOR} @llvm.{name}.v{WIDTH}f64({', '.join([VECTOR] * len(operands))})")
         inside = ", ".join(f"{VECTOR} {x}" for x in operands)
         return Lanes(self, self.emit(f"call {VECTOR} @llvm.{name}.v{WIDTH}f64({inside})"))
 
     def chosen(self, mask: Lanes, one: Any, other: Any) -> Lanes:
-        """`np.where`."""
+        """The result of `np.where(mask, one, other)`."""
         return Lanes(
             self,
             self.emit(f"select {MASK} {mask.text}, {VECTOR} {self.number(one)}, {VECTOR} {self.number(other)}"),
         )
 
     def row(self, base: str, index: int) -> str:
-        """The address of a block of the row of an array."""
+        """The address of the current block of row `index` of an array."""
         start = self.emit(f"mul i64 %width, {index}")
         return self.emit(f"getelementptr double, ptr {base}, i64 {self.emit(f'add i64 {start}, %at')}")
 
 
 def text(function: Callable[..., Sequence[Any]], count: int) -> tuple[str, int]:
-    """The module in LLVM's language of a function of so many arrays, and how many it gives."""
+    """The LLVM text of a function of `count` arrays, and the number of its results."""
     trace = Trace()
     rows = [Lanes(trace, trace.emit(f"load {VECTOR}, ptr {trace.row('%in', i)}, align 8")) for i in range(count)]
     found = function(*rows)
@@ -144,7 +144,7 @@ def text(function: Callable[..., Sequence[Any]], count: int) -> tuple[str, int]:
 
 
 def compiled(function: Callable[..., Sequence[Any]], count: int) -> tuple[machine.Run | None, int]:
-    """A function of so many arrays in machine code, and how many it gives; None where it cannot be written down."""
+    """The machine code of a function of `count` arrays, and the number of its results; None if it cannot be traced."""
     try:
         written, outputs = text(function, count)
     except NoInstructionError:
@@ -155,7 +155,7 @@ def compiled(function: Callable[..., Sequence[Any]], count: int) -> tuple[machin
 
 
 class Traced:
-    """A function of arrays of one length, and numbers; it gives arrays of that length.
+    """A compiled function of arrays of one length, and of numbers; it returns arrays of that length.
 
     >>> mean = Traced(lambda x, y: [(x + y) / 2, np.where(x < y, x, y)])
     >>> [each.tolist() for each in mean(np.array([1.0, 2.0]), 1.0)]

@@ -2,22 +2,46 @@
 
 from . import cache
 from .cache import key_of, sources
-from .lower import converted, exact_table, lower_law, symmetries
-from .program import Builder, LawIR, Named, Program, TableIR, by_name, table_ir
+from .files import PARTIAL, json_text, replacing, write_whole
+from .lower import converted, exact_table, lower_law
+from .program import (
+    BINARY,
+    ROOTS,
+    Builder,
+    LawIR,
+    Named,
+    Program,
+    TableIR,
+    TableSymmetry,
+    by_name,
+    kept,
+    symmetries,
+    table_ir,
+    table_ir_in_unit,
+)
 
 __all__ = [
+    "BINARY",
+    "PARTIAL",
+    "ROOTS",
     "Builder",
     "LawIR",
     "Named",
     "Program",
     "TableIR",
+    "TableSymmetry",
     "by_name",
     "cache",
     "converted",
     "exact_table",
+    "json_text",
+    "kept",
     "key_of",
     "lower_law",
+    "replacing",
     "sources",
     "symmetries",
     "table_ir",
+    "table_ir_in_unit",
+    "write_whole",
 ]

@@ -1,4 +1,4 @@
-"""Files kept between runs: scenes, table IRs, machine code. Never needed; trusted when nobody else can write them.
+"""Files kept between runs: scenes, table IRs, machine code. None is needed; trusted if only the user can write them.
 
 An entry is found by a key that contains everything it depends on. It is written to a temporary
 file and renamed, so that two processes cannot mix; it carries a digest of its name and content, so that a
@@ -31,18 +31,18 @@ _said: set[str] = set()
 
 
 def folder() -> str | None:
-    """Where entries live, or None when the user has switched the cache off."""
+    """The folder of the cache's files; None if the user has switched the cache off."""
     chosen = os.environ.get(FOLDER)
     if chosen is not None:
         return chosen or None
     base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return None if base.startswith("~") else os.path.join(base, "pinball-billiards")  # "~" where nobody is at home
+    return None if base.startswith("~") else os.path.join(base, "pinball-billiards")  # no home folder is known
 
 
 def distrust(place: str) -> str | None:
-    """Why what lies in this folder may have been written by somebody else; None when only the user can write there.
+    """The reason to distrust a folder: others could have written in it; None if only the user can.
 
-    A folder that does not exist is no reason. Systems without owners of files (Windows) have nothing to look at.
+    It is None too for a folder that does not exist, and on systems on which files have no owners (Windows).
     """
     try:
         found = os.stat(place)
@@ -52,7 +52,7 @@ def distrust(place: str) -> str | None:
 
 
 def _foreign(found: os.stat_result) -> str | None:
-    """Who else may write what was found, in words; None for nobody."""
+    """The reason why others may have written a file or folder; None if only the user can."""
     if not hasattr(os, "geteuid"):
         return None
     if found.st_uid != os.geteuid():
@@ -94,12 +94,12 @@ def _files(place: str) -> Iterator[tuple[str, os.stat_result]]:
 
 
 def key_of(*parts: str) -> str:
-    """A digest of several texts, of which no two runs together."""
+    """A digest of several texts, separated by zero bytes."""
     return blake2b("\0".join(parts).encode(), digest_size=16).hexdigest()
 
 
 def read(kind: str, *parts: str) -> bytes | None:
-    """The entry kept under this key, or None."""
+    """The bytes of the entry kept under this key, or None if there is no trusted entry."""
     place = _trusted()
     if place is None:
         return None
@@ -122,7 +122,7 @@ def read(kind: str, *parts: str) -> bytes | None:
 
 
 def write(kind: str, *parts_and_content: str | bytes) -> None:
-    """Keep an entry: the texts of its key, then its bytes. The oldest entries go when there are too many bytes."""
+    """Keeps an entry, given by the texts of its key and then its bytes; beyond `LIMIT` bytes the oldest entries go."""
     *parts, content = parts_and_content
     assert isinstance(content, bytes)
     place = _trusted()
@@ -153,7 +153,7 @@ def entries() -> list[tuple[str, int, float]]:
 
 
 def clear() -> tuple[int, int]:
-    """Remove all entries and what an interrupted run left; how many files and bytes that were."""
+    """Removes all entries and files that an interrupted run left; returns how many files and bytes that were."""
     place, removed, size = folder(), 0, 0
     why = None if place is None else distrust(place)
     if why is not None:
@@ -180,7 +180,7 @@ def _entries(place: str) -> Iterator[tuple[str, int, float]]:
 
 
 def _bound(place: str) -> None:
-    """Remove the oldest entries until three quarters of the limit are left."""
+    """Removes the oldest entries until three quarters of the limit are left."""
     kept = sorted(_entries(place), key=lambda entry: entry[2])
     size = sum(length for _, length, _ in kept)
     if size <= LIMIT:
@@ -194,7 +194,7 @@ def _bound(place: str) -> None:
 
 
 def _trusted() -> str | None:
-    """The folder, unless others can write in it, which is said once."""
+    """The cache folder; None, with one warning, if others can write in it."""
     place = folder()
     why = None if place is None else distrust(place)
     if place is None or why is None:
@@ -208,7 +208,7 @@ def _digest(name: str, content: bytes) -> bytes:
 
 
 def _say(place: str, what: str) -> None:
-    """Warn once about a folder."""
+    """Warns once about a folder."""
     if place not in _said:
         _said.add(place)
         import warnings

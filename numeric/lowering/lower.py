@@ -1,9 +1,12 @@
-"""Lowering: an exact table of the symbolic storey comes in, a table IR goes out.
+"""Lowering: turns an exact table into its table IR (intermediate representation), the plain data that kernels need.
 
-The only module of `numeric` that imports SymPy, when a table IR is not on disk, and never while a map runs.
+It is the only module of `numeric` that imports SymPy, when a table IR is not on disk, and never while a map runs.
 """
 
+import json
 from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
 from functools import reduce
 from operator import mul
 from typing import Any
@@ -11,21 +14,23 @@ from typing import Any
 from sympy import Abs, Add, Dummy, Expr, Float, I, Mul, Pow, S, Symbol, cos, expand, pi, sin, sqrt, tan
 from sympy import sympify as exact
 
-from numeric.lowering.program import Builder, LawIR, Named, Node, Part, Program, ShapeRange, TableIR
+from numeric.lowering.program import Builder, ComponentProgram, LawIR, Named, Node, Program, ShapeRange, TableIR
 from symbolic import tables
 from symbolic.expressions.signs import Box, vanishes
 from symbolic.expressions.text import FUNCTIONS
 from symbolic.motion import flight
 from symbolic.tables.curves import LONG, highest, size, varies, waves
 from symbolic.tables.formula import levels
-from symbolic.tables.geometry import Symmetry, group, velocity
+from symbolic.tables.geometry import group, velocity
+from symbolic.tables.joins import bends, contacts, following
 from symbolic.tables.law import Law, lengths
 from symbolic.tables.polynomial import cubic
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Component, Table, eta, lam, s, theta
-from symbolic.tables.validity import closed_and_finite, parameter_box, root
+from symbolic.tables.validity import parameter_box, root, validated
 
-DEEP = 12  # operations within each other, beyond which derivatives are not written out
+DEEP = 12  # nested operations, beyond which derivatives are not written out
+LARGEST = 4000  # numbers and operations of a coordinate, which is written out three times
 DEGREE = 16  # the highest harmonic of a chord polynomial: its text grows with the third power
 
 # Functions of one value that keep their names; the square root is a power.
@@ -36,11 +41,16 @@ ROOT = 12  # the highest root
 
 
 def lower(table: Table) -> TableIR:
-    """The table IR of a table; shape parameters that have no value yet stay open.
+    """The table IR of a table; shape parameters without a value are inputs of its programs.
 
-    A table may have been written down without a check, so that it is closed is seen to here.
+    It is proved here, unless it was before, that the boundary bounds a table. `ValueError` where it does not,
+    and for a formula of more than `LARGEST` numbers and operations.
     """
-    table = closed_and_finite(table)
+    for component in table.components:
+        if (count := max(map(size, component.point))) > LARGEST:
+            words = f"{count} numbers and operations; at most {LARGEST} are accepted"
+            raise ValueError(f"{table.name}: a coordinate of {component.name} has {words}")
+    table = validated(table)
     symbols = [shape.symbol for shape in table.shapes]
     parts = tuple(_part(component, symbols, parameter_box(table)) for component in table.components)
     same = _same_as(table)
@@ -54,11 +64,15 @@ def lower(table: Table) -> TableIR:
         parts,
         tuple(programs.items()),
         (index, _program(symbols, lambda nodes: [nodes(start)])),
+        tuple(
+            (after, contact.name, bend)
+            for after, contact, bend in zip(following(table), contacts(table), bends(table), strict=True)
+        ),
     )
 
 
 def lower_law(law: Law, table: Callable[[], Table]) -> LawIR:
-    """The programs of a law whose parameters have numbers, on a table that is made where arc length is asked for."""
+    """The programs of a law without free parameters; `table` is called only for a law that depends on arc length."""
     if law.parameters:
         raise ValueError(f"law = {law}: the parameter {law.parameters[0]} needs a value")
     places = (theta, s) if law.measured else (theta,)
@@ -86,13 +100,28 @@ def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any
     return given.at(**{name: exact(value) for name, value in shape.items()}) if shape else given
 
 
-def symmetries(table: Table) -> tuple[Symmetry, ...]:
-    """The symmetries of an exact table that are proved, the identity first."""
-    return group(table)
+def in_unit(table: Table, length: Fraction, x: Fraction, y: Fraction) -> Table:
+    """The same table with its origin at `(x, y)`, measured in units of `length`."""
+    scale, move = exact(length), (exact(x), exact(y))
+
+    def component(old: Component) -> Component:
+        rho = old.radius if x == y == 0 else None
+        if rho is not None:
+            rho = rho / scale
+            return replace(old, point=(rho * cos(theta), rho * sin(theta)))
+        u, v = ((place - away) / scale for place, away in zip(old.point, move, strict=True))
+        return replace(old, point=(u, v))
+
+    return replace(table, components=tuple(map(component, table.components)))
+
+
+def symmetry_text(table: Table) -> str:
+    """The symmetries of a table that are proved, in numbers, the identity first; as JSON."""
+    return json.dumps([[g.sign, float(g.angle), g.onto, [float(x) for x in g.shift]] for g in group(table)])
 
 
 def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
-    """A SymPy expression in the closed vocabulary; anything outside it is an error, never a rounding."""
+    """The node of a SymPy expression in the closed vocabulary; `ValueError`, never a rounding, for anything else."""
     if expression.has(Float):
         raise ValueError(f"{expression} contains a rounded float; write its numbers exactly, as Rational(2, 25)")
     if expression in nodes:
@@ -132,24 +161,24 @@ def _power(builder: Builder, base: Node, power: Expr) -> Node:
 
 
 def _whole_power(builder: Builder, base: Node, n: int) -> Node:
-    return builder.exact(flight.powers((base, 0), max(n, 1))[n][0] if n else 1)
+    return builder.exact(flight.power((base, 0), n)[0])
 
 
 def _circular(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
-    """Cosine or sine; of a whole multiple of `theta` by multiplication, so that one call serves all."""
+    """The node of a cosine or sine; for whole multiples of `theta` from products, so that one call serves all."""
     (argument,) = expression.args
     multiple = argument / theta
     index = 0 if isinstance(expression, cos) else 1
     if multiple.is_Integer and multiple != 0:
         at = nodes[theta].number()
         u = builder.node("cos", at), builder.node("sin", at)
-        value = builder.exact(flight.powers(u, abs(int(multiple)))[abs(int(multiple))][index])
+        value = builder.exact(flight.power(u, abs(int(multiple)))[index])
         return -value if index and multiple < 0 else value
     return builder.node("sin" if index else "cos", converted(builder, argument, nodes).number())
 
 
 class Nodes:
-    """Turns expressions into the nodes of one program; `inputs` are the nodes of what it is handed first."""
+    """Converts expressions into nodes of one program; `inputs` are the nodes of the program's first inputs."""
 
     def __init__(self, builder: Builder, inputs: list[Node], known: dict[Symbol, Node]) -> None:
         self.builder, self.inputs, self.known = builder, inputs, known
@@ -168,24 +197,28 @@ class Nodes:
 
 
 def _program(symbols: list[Symbol], formula: Callable[[Nodes], list[Node]], *first: str) -> Program:
-    """The program whose outputs `formula` gives, when handed a converter of expressions."""
+    """The program whose outputs `formula` gives when it is called with the converter of expressions."""
     builder = Builder(*first, *(symbol.name for symbol in symbols))
     nodes = dict(zip([theta] if first == ("theta",) else [], builder.nodes, strict=False))
     nodes |= dict(zip(symbols, builder.nodes[len(first) :], strict=True))
     return builder.program(*formula(Nodes(builder, builder.nodes[: len(first)], nodes)))
 
 
-def _part(component: Component, symbols: list[Symbol], ranges: Box) -> Part:
+def _part(component: Component, symbols: list[Symbol], ranges: Box) -> ComponentProgram:
     ends = _program(symbols, lambda nodes: [nodes(component.start), nodes(component.end)])
     known = cubic(component)
     if known is not None and any(row[3] for row in known):
-        return Part(component.name, ends, _program(symbols, lambda nodes: _polynomial_curve(nodes, known), "theta"))
+        return ComponentProgram(
+            component.name, ends, _program(symbols, lambda nodes: _polynomial_curve(nodes, known), "theta")
+        )
     if sum(map(size, component.point)) > LONG or max(map(levels, component.point)) > DEEP:
-        return Part(component.name, ends, _long_curve(component, symbols))
+        return ComponentProgram(component.name, ends, _long_curve(component, symbols))
     component = flight.about_far_focus(component, ranges)
     first = velocity(component)
     curve = [*component.point, *first, *first.diff(theta)]
-    return Part(component.name, ends, _program(symbols, lambda nodes: [nodes(expr) for expr in curve], "theta"))
+    return ComponentProgram(
+        component.name, ends, _program(symbols, lambda nodes: [nodes(expr) for expr in curve], "theta")
+    )
 
 
 def _long_curve(component: Component, symbols: list[Symbol]) -> Program:
@@ -218,7 +251,7 @@ Jet = tuple[Node, Node, Node]  # a value and its first two derivatives by theta
 
 
 def _jet(expression: Expr, nodes: Nodes, known: dict[Expr, Jet]) -> Jet:
-    """The value of an expression and its derivatives by `theta`, by the chain rule on each operation."""
+    """The nodes of an expression and its derivatives by `theta`, by the chain rule on each operation."""
     if expression in known:
         return known[expression]
     if not expression.args or _is_wave(expression) or not expression.has(theta):
@@ -241,7 +274,7 @@ def _jet(expression: Expr, nodes: Nodes, known: dict[Expr, Jet]) -> Jet:
 
 
 def _chained(outer: Callable[..., Expr], inner: list[Jet], nodes: Nodes) -> Jet:
-    """The jet of a function of one or two expressions, from theirs."""
+    """The jet of a function of one or two expressions, from their jets."""
     whole = outer(*(letters := [Dummy(real=True) for _ in inner]))
     known = {letter: jet[0] for letter, jet in zip(letters, inner, strict=True)}
     value = nodes(whole, known)
@@ -260,7 +293,7 @@ def _is_wave(expression: Expr) -> bool:
 
 
 def _same_as(table: Table) -> str:
-    """The paper's table with the same boundary, of those that have a flight of their own."""
+    """The name of the paper's table with the same boundary, if it has a flight method of its own; else empty."""
     if table.components == tables.cuspless.components:
         return "cuspless"
     for name, known in (("cardioid", tables.cardioid), ("circle", tables.circle)):
@@ -270,9 +303,10 @@ def _same_as(table: Table) -> str:
 
 
 def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
-    """The programs of a closed curve that is a finite Fourier sum; none of any other boundary."""
+    """The programs of a closed curve that is a finite Fourier sum; empty for any other boundary."""
     whole = len(table.components) == 1 and table.components[0].end - table.components[0].start == 2 * pi
-    if not whole or any(highest(waves(x) or {}) > DEGREE for x in table.components[0].point):
+    x, y = table.components[0].point
+    if not whole or any(flight.oscillates(z) or highest(waves(z) or {}) > DEGREE for z in (x, y)):
         return {}
     h = flight.harmonics(table.components[0])
     return {} if h is None or max(h) > DEGREE else _harmonic(h, symbols)
@@ -301,7 +335,7 @@ def _harmonic(h: flight.Harmonics, symbols: list[Symbol]) -> dict[str, Program]:
 
 
 def _conic(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
-    """The programs of an ellipse that is given by its radius about a focus; none of any other table."""
+    """The programs of an ellipse that is given by its radius about a focus; empty for any other table."""
     whole = table.components[0]
     rho = whole.radius if len(table.components) == 1 and whole.end - whole.start == 2 * pi else None
     known = None if rho is None or size(rho) > LONG or levels(rho) > DEEP else flight.about_focus(rho)
@@ -312,9 +346,9 @@ def _conic(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
 
 def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
-    """The program of `r(theta)` and three derivatives in cosine and sine, where the boundary is given by its radius.
+    """The program of `r(theta)` and three derivatives in cosine and sine, for a boundary given by its radius.
 
-    None where `theta` has a place outside sines and cosines of its whole multiples.
+    Empty for other boundaries, and where `theta` has a place outside sines and cosines of its whole multiples.
     """
     whole = table.components[0]
     x, rho, turn = whole.point[0], whole.radius, whole.end - whole.start
@@ -329,7 +363,7 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
         waves = {}
         for wave in sorted(known, key=str):
             times = int(wave.args[0] / theta)
-            value = flight.powers(nodes.unit, abs(times))[abs(times)][isinstance(wave, sin)]
+            value = flight.power(nodes.unit, abs(times))[isinstance(wave, sin)]
             waves[wave] = -value if isinstance(wave, sin) and times < 0 else value
         return [nodes(value, waves) for value in values]
 
@@ -337,17 +371,21 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
 
 def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
-    """One program for each component, when all are straight sides or arcs of ellipses, or all cubic; none otherwise.
+    """One program for each component, when all are straight sides or arcs of ellipses, or all cubic; empty otherwise.
 
     Its outputs for a cubic are the coefficients of `x` and `y`, for an arc about a focus those of `flight.focal_arc`.
     For the others they are the point, which is `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or
-    the parameter and -1; the first corner; `A x B`; the radius; what tells the ends apart.
+    the parameter and -1; the first corner; `A x B`; the radius; numbers that mark the ends.
     """
 
     def program(numbers: list[Expr]) -> Program:
         return _program(symbols, lambda nodes: [nodes(x) for x in numbers])
 
-    found = [_piece(component, parameter_box(table)) for component in table.components]
+    found: list[tuple[str, list[Expr]] | None] = []
+    for component in table.components:
+        found.append(_piece(component, parameter_box(table)))
+        if found[-1] is None:  # then all are cubic, or none counts
+            break
     if None in found:
         found = [("cubic", [*c[0], *c[1]]) if c is not None else None for c in map(cubic, table.components)]
     known = [piece for piece in found if piece is not None]
@@ -366,12 +404,14 @@ def _polynomial_curve(nodes: Nodes, known: list[list[Expr]]) -> list[Node]:
 
 
 def _piece(component: Component, ranges: Box) -> tuple[str, list[Expr]] | None:
-    """A component's kind and its numbers, in the order in which the flight reads them.
+    """A component's kind and its numbers, in the order in which the flight reads them; None for other kinds.
 
-    A circle of which the ranges of the parameters leave the radius' sign open is an ellipse.
+    A circle whose radius may have either sign, over the ranges of the parameters, counts as an ellipse.
     """
     x, y = component.point
     low, high = component.start, component.end
+    if any(word.has(theta) for word in x.atoms(*WORDS) | y.atoms(*WORDS)):  # before numbers like exp(-10**6) are needed
+        return None
     corner = component.at(low)
     slope = [coordinate.diff(theta) for coordinate in (x, y)]
     if any(d.has(theta) and d.is_polynomial(theta) for d in slope):

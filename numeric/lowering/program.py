@@ -1,10 +1,10 @@
-"""Straight-line programs: the form in which a formula leaves the symbolic storey.
+"""Straight-line programs: the form in which formulas pass from `symbolic` to `numeric`.
 
 A program is a list of lines in a closed vocabulary, without names, branches or floats. Any backend
 (LLVM lanes, NumPy arrays, multiprecision numbers) runs it, and it is plain data: it can be
 hashed, and written to a file from which it is read back without importing SymPy.
 
-A table IR is what the kernels need to know of a table: programs and a few facts, as plain data. It is made once from
+A table IR (intermediate representation) is the plain data that kernels need of a table. It is made once from
 the exact table, through `numeric.lowering.lower`, the only place where SymPy is imported. Those of tables with a name
 are kept on disk, so that a warm run never imports it.
 """
@@ -12,9 +12,9 @@ are kept on disk, so that a warm run never imports it.
 import functools
 import json
 import operator
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from numeric.backends.functions import Series
 from numeric.lowering import cache
@@ -75,7 +75,7 @@ class Program(NamedTuple):
         return builder.program(*(Node(builder, None, numbers[self.outputs[i]]) for i in outputs))
 
     def constant(self, output: int) -> Fraction | None:
-        """The rational that an output is whatever the inputs are, or None where it is not written as one."""
+        """The rational number that an output always is; None if it is not written as a constant."""
         at = self.outputs[output] - len(self.inputs)
         word, *numbers = self.lines[at] if at >= 0 else ("",)
         return Fraction(*numbers) if word == "q" else None
@@ -141,7 +141,7 @@ class Builder:
 
 
 class Node:
-    """A value in a program under construction; zeros and ones are folded away, exactly."""
+    """A value in a program under construction; operations with 0 and 1 are simplified exactly."""
 
     def __init__(self, builder: Builder, value: Fraction | None, number: int | None) -> None:
         self.builder, self.value, self._number = builder, value, number
@@ -203,6 +203,7 @@ class Node:
 
 
 Exact = Node | Fraction | int  # what a formula may be made of
+Kept = TypeVar("Kept")
 PAPER = ("circle", "ellipse", "cardioid", "cuspless", "egg")
 SOURCES = (
     "symbolic/expressions",
@@ -214,7 +215,7 @@ SOURCES = (
 
 
 class ShapeRange(NamedTuple):
-    """A shape parameter, its closed range (None for no bound) and what fails outside."""
+    """A shape parameter, its closed range (None for no bound), and the message for a value outside it."""
 
     name: str
     low: str | None
@@ -222,7 +223,7 @@ class ShapeRange(NamedTuple):
     otherwise: str
 
     def check(self, table: str, value: Fraction) -> None:
-        """Refuse a value outside the range, in one sentence."""
+        """Raises `ValueError` for a value outside the range."""
         below = self.low is not None and value < Fraction(self.low)
         above = self.high is not None and value > Fraction(self.high)
         if below or above:
@@ -232,7 +233,7 @@ class ShapeRange(NamedTuple):
             raise ValueError(f"{table}: {self.name} = {shown} {self.otherwise}; {self.name} must lie in {low}, {high}")
 
 
-class Part(NamedTuple):
+class ComponentProgram(NamedTuple):
     """A component: its parameter's ends and its curve, as programs in `theta` and the shape.
 
     `curve` has the six outputs `x, y` and their first and second derivatives.
@@ -253,7 +254,7 @@ def _first(program: Program, count: int) -> Program:
 
 
 class LawIR(NamedTuple):
-    """A reflection law as the kernels see it: programs in `eta`, `lam` and the place, its own parameters as numbers.
+    """A reflection law for kernels: programs in `eta`, `lam` and the place, with numbers for its own parameters.
 
     The place is `theta`, and the arc length `s` after it where the law is `measured`. `exit` gives the exit angle;
     `slopes` minus its derivative by `eta`, and those by the place.
@@ -276,19 +277,21 @@ class LawIR(NamedTuple):
 class TableIR(NamedTuple):
     """A table as the kernels see it.
 
-    `same_as` names the paper's table with the same boundary, among those with a flight of their own; `programs` are
-    those of a closed curve that is a finite Fourier sum.
+    `same_as` names the paper's table with the same boundary, if it has a flight method of its own; `programs` are
+    those of other flights, by name. `joins` has for the end of every component the component that begins there, the
+    name of their `symbolic.tables.joins.Contact`, and the side to which a corner turns (1 left, -1 right).
     """
 
     table: str
     same_as: str
     shape: tuple[ShapeRange, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[ComponentProgram, ...]
     programs: tuple[tuple[str, Program], ...]
     origin: tuple[int, Program]
+    joins: tuple[tuple[int, str, int], ...]
 
     def program(self, name: str) -> Program:
-        """A program by name."""
+        """The straight-line program of this name."""
         return dict(self.programs)[name]
 
     def has(self, name: str) -> bool:
@@ -304,6 +307,7 @@ class TableIR(NamedTuple):
             "parts": [[p.name, p.ends.as_data(), p.curve.as_data()] for p in self.parts],
             "programs": [[name, program.as_data()] for name, program in self.programs],
             "origin": [self.origin[0], self.origin[1].as_data()],
+            "joins": self.joins,
         }
         return json.dumps(data, separators=(",", ":"))
 
@@ -316,21 +320,22 @@ class TableIR(NamedTuple):
             data["table"],
             data["same_as"],
             tuple(ShapeRange(*entry) for entry in data["shape"]),
-            tuple(Part(name, read(ends), read(curve)) for name, ends, curve in data["parts"]),
+            tuple(ComponentProgram(name, read(ends), read(curve)) for name, ends, curve in data["parts"]),
             tuple((name, read(program)) for name, program in data["programs"]),
             (data["origin"][0], read(data["origin"][1])),
+            tuple((after, contact, bend) for after, contact, bend in data["joins"]),
         )
 
 
 class Named(NamedTuple):
-    """A table of `symbolic.tables.gallery` by its name, with the lengths that are not left out, as exact text."""
+    """A table of `symbolic.tables.gallery` by its name, with the lengths that are given for it, as exact text."""
 
     name: str
     lengths: tuple[tuple[str, str], ...] = ()
 
 
 def by_name(name: str, lengths: Mapping[str, Any]) -> Named:
-    """A table of the gallery; which lengths it has is asked when it is made.
+    """The name of a table of the gallery, with lengths; an unknown length is refused when the table is made.
 
     >>> by_name("stadium", {"straight": "0.50"})
     Named(name='stadium', lengths=(('straight', '1/2'),))
@@ -342,7 +347,7 @@ def by_name(name: str, lengths: Mapping[str, Any]) -> Named:
 def table_ir(table: "Table | Scene | Named | str", K: int = 3) -> TableIR:
     """The table IR of an exact table, of one of the paper's or the gallery's by name, or of a scene's with its numbers.
 
-    A shape parameter that has a range stays open. What has a name or a text is kept between runs, and needs SymPy once.
+    A shape parameter that has a range stays open. IRs of names and scenes are kept between runs, and need SymPy once.
 
     >>> table_ir("circle").same_as
     'circle'
@@ -351,26 +356,87 @@ def table_ir(table: "Table | Scene | Named | str", K: int = 3) -> TableIR:
         from numeric.lowering.lower import lower
 
         return lower(table)
-    name, sources = ir_name(table, K), cache.sources(*SOURCES)
-    kept = cache.read("table_ir", name, sources)
-    if kept is not None:
+
+    def made() -> str:
+        from numeric.lowering.lower import exact_table, lower
+
+        return lower(table.family if isinstance(table, Scene) else exact_table(table, K, {})).as_text()
+
+    return kept(ir_name(table, K), made, TableIR.from_text)
+
+
+def table_ir_in_unit(
+    table: "Table | Scene | Named | str", K: int, shape: dict[str, Any], unit: tuple[Fraction, Fraction, Fraction]
+) -> TableIR:
+    """The table IR of a table with numbers for its shape, measured in a unit of length and about a point."""
+
+    def lowered() -> TableIR:
+        from numeric.lowering.lower import exact_table, in_unit, lower
+
+        return lower(in_unit(exact_table(table, K, shape), *unit))
+
+    if not isinstance(table, str | Scene | Named):
+        return lowered()
+    name = repr((ir_name(table, K), sorted(shape.items()), unit))
+    return kept(name, lambda: lowered().as_text(), TableIR.from_text)
+
+
+class TableSymmetry(NamedTuple):
+    """A symmetry of a table in numbers: `symbolic.tables.geometry.TableSymmetry` without its name."""
+
+    sign: int
+    angle: float
+    onto: tuple[int, ...]
+    shift: tuple[float, ...]
+
+
+def symmetries(table: "Table | Scene | Named | str", K: int, shape: dict[str, Any]) -> tuple[TableSymmetry, ...]:
+    """The symmetries that are proved of a table with numbers for its shape, the identity first.
+
+    >>> [symmetry.sign for symmetry in symmetries("cuspless", 3, {})]
+    [1, -1]
+    """
+
+    def made() -> str:
+        from numeric.lowering.lower import exact_table, symmetry_text
+
+        return symmetry_text(exact_table(table, K, shape))
+
+    def read(text: str) -> tuple[TableSymmetry, ...]:
+        return tuple(TableSymmetry(sign, angle, tuple(onto), tuple(by)) for sign, angle, onto, by in json.loads(text))
+
+    if not isinstance(table, str | Scene | Named):
+        return read(made())
+    return kept(symmetry_name(table, K, shape), made, read)
+
+
+def symmetry_name(table: "Scene | Named | str", K: int, shape: dict[str, Any]) -> str:
+    """What the symmetries that are kept are known by."""
+    return f"symmetries of {ir_name(table, K)}, {sorted(shape.items())}"
+
+
+def kept(name: str, made: Callable[[], str], read: Callable[[str], Kept]) -> Kept:
+    """What `read` finds in a text that SymPy makes: from disk, or as it came with the package, or made and kept.
+
+    The name says all on which the text depends, except for this project's own sources.
+    """
+    sources = cache.sources(*SOURCES)
+    found = cache.read("table_ir", name, sources)
+    if found is not None:
         try:
-            return TableIR.from_text(kept.decode())
+            return read(found.decode())
         except (ValueError, KeyError, TypeError, IndexError):
             pass  # a damaged file is as good as none: it is written again
     from numeric.lowering.shipped import shipped
 
     text = shipped(name, sources)
-    if text is None:
-        from numeric.lowering.lower import exact_table, lower
-
-        text = lower(table.family if isinstance(table, Scene) else exact_table(table, K, {})).as_text()
+    text = made() if text is None else text
     cache.write("table_ir", name, sources, text.encode())
-    return TableIR.from_text(text)
+    return read(text)
 
 
 def ir_name(table: "Scene | Named | str", K: int) -> str:
-    """What a table IR that is kept is known by."""
+    """The name under which a table IR is kept on disk; `ValueError` for an unknown table."""
     if isinstance(table, Scene):
         return table.family_text or table.boundary
     if isinstance(table, Named):

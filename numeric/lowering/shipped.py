@@ -1,10 +1,10 @@
-"""Table IRs that come with the package, of the paper's tables and the gallery's: the first result waits for no SymPy.
+"""Table IRs and symmetries of tables with a name, which come with the package, so that a first run needs no SymPy.
 
-They are no second definition. Each is what `lower` makes of the exact table, written by
+They are no second definition. Each is derived by `lower` from the exact table, written by
 
     python -m numeric.lowering.shipped
 
-and used only as long as no text that it depends on has changed since: a digest says so. A test derives all anew.
+and used only while the program text that it depends on has the same digest. A test derives all of them anew.
 """
 
 import json
@@ -16,7 +16,7 @@ HOME = os.path.join(os.path.dirname(__file__), "shipped.json")  # noqa: PTH118, 
 
 
 def shipped(name: str, sources: str) -> str | None:
-    """The text of the table IR of this name, if it was made from these sources.
+    """The text of the table IR of this name, if it was made from sources with this digest; else None.
 
     >>> shipped("no such table", "")
     """
@@ -29,25 +29,29 @@ def shipped(name: str, sources: str) -> str | None:
 
 
 def derived() -> dict[str, str]:
-    """All of them from the exact tables, by the name that the cache knows them by."""
-    from numeric.lowering.lower import exact_table, lower
-    from numeric.lowering.program import PAPER, Named, ir_name
+    """The text of all shipped table IRs and symmetries, derived from the exact tables, by their names in the cache."""
+    from numeric.lowering.lower import exact_table, lower, symmetry_text
+    from numeric.lowering.program import PAPER, Named, ir_name, symmetry_name
     from symbolic.tables.scene import GALLERY
 
-    tables: list[Named | str] = [*PAPER, *map(Named, GALLERY)]
-    return {ir_name(table, 3): lower(exact_table(table, 3, {})).as_text() for table in tables}
+    named: list[Named | str] = [*PAPER, *map(Named, GALLERY)]
+    found = dict[str, str]()
+    for name, table in zip(named, (exact_table(name, 3, {}) for name in named), strict=True):
+        found[ir_name(name, 3)] = lower(table).as_text()
+        if not table.shapes:  # whose numbers decide which symmetries there are
+            found[symmetry_name(name, 3, {})] = symmetry_text(table)
+    return found
 
 
 def ship() -> bool:
-    """Write the file anew if a text has changed that it depends on; whether it was written."""
+    """Writes the file again if program text that it depends on has changed; returns whether it was written."""
+    from numeric.lowering.files import write_whole
     from numeric.lowering.program import SOURCES
 
     sources = cache.sources(*SOURCES)
     if shipped("circle", sources) is not None:
         return False
-    with open(HOME, "w", encoding="utf-8") as file:  # noqa: PTH123
-        json.dump({"sources": sources, "tables": derived()}, file, indent=0)
-        file.write("\n")
+    write_whole(HOME, json.dumps({"sources": sources, "tables": derived()}, indent=0) + "\n")
     return True
 
 

@@ -2,30 +2,63 @@
 
 from . import sampling
 from .map import PinballMap
-from .orbits import HUGE, LARGE, PIECE, Course
-from .sampling import GENERIC, Grid, Growth, Starts, boundary, interior_starts, phase_grid, phase_starts
-from .states import MEANINGS, STATUSES, UNITS, Exponents, Orbit, Slap, counted
+from .orbits import HUGE, LARGE, PIECE, OrbitRun
+from .sampling import (
+    ALIGNED,
+    GENERIC,
+    Growth,
+    PhaseGrid,
+    Starts,
+    boundary,
+    flight_through,
+    interior_starts,
+    phase_grid,
+    phase_starts,
+)
+from .states import (
+    KEYS,
+    MEANINGS,
+    STATUSES,
+    UNITS,
+    Exponents,
+    Orbit,
+    Slap,
+    counted,
+    equal,
+    html_table,
+    many,
+    plotted,
+    shape_value,
+)
 
 __all__ = [
+    "ALIGNED",
     "GENERIC",
     "HUGE",
+    "KEYS",
     "LARGE",
     "MEANINGS",
     "PIECE",
     "STATUSES",
     "UNITS",
-    "Course",
     "Exponents",
-    "Grid",
     "Growth",
     "Orbit",
+    "OrbitRun",
+    "PhaseGrid",
     "PinballMap",
     "Slap",
     "Starts",
     "boundary",
     "counted",
+    "equal",
+    "flight_through",
+    "html_table",
     "interior_starts",
+    "many",
     "phase_grid",
     "phase_starts",
+    "plotted",
     "sampling",
+    "shape_value",
 ]

@@ -1,15 +1,15 @@
-"""A particle's state in people's coordinates: boundary parameter, angle, arc length, Cartesian point; and back.
+"""A particle's state in users' coordinates: boundary parameter, angle, arc length, Cartesian point; and back.
 
-`States` translate between the fields a kernel bounces and `(component, theta, phi)`. They run on
-NumPy arrays, once per question and not once per bounce; of a recorded orbit, a tile at a time.
+`States` translates between the fields of a kernel and `(component, theta, phi)`, in NumPy
+arrays, once for each call and not for each bounce; of a recorded orbit, a tile at a time.
 
-From Cartesian coordinates to the boundary: the component and the parameter of a point on it.
+`located` finds the component and the parameter of a boundary point from its Cartesian coordinates.
 
-Arc length on every component, counted counterclockwise from the table's origin, and its inverse.
+`ArcLength` is the arc length on every component, counted counterclockwise from the table's origin, and its inverse.
 
-Closed forms for circle and cardioid, SciPy's elliptic integral for the ellipse, and for anything else
-a Fourier or Chebyshev series of the speed, extended until its tail is below rounding, integrated term
-by term. The inverse is Newton's method on these, whose derivative is the speed itself.
+It has closed forms for circle and cardioid, SciPy's elliptic integral for the ellipse, and for other tables a Fourier
+or Chebyshev series of the speed, extended until its tail is below rounding, integrated term by term. The inverse is
+Newton's method on these, whose derivative is the speed itself.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,27 +22,40 @@ from numpy.typing import NDArray
 
 from numeric.backends.functions import Series
 from numeric.flights.family import FORMULA, SLAP, Family, Frame
+from numeric.pinball.unit import ONE, Unit
 
 Array = NDArray[np.float64]
 TILE = 1 << 13  # points of orbits translated at a time
+PLACES = 9  # points on each component, for the size of the table
+ORDINARY = 8.0  # distances are measured in units of 1 if half the longer side lies between 1/ORDINARY and this
 
 
 class States:
-    """The translation for one table with its shape; what is particular to a family of tables is the family's answer."""
+    """The translation of coordinates for one table with its shape, by the methods of its family of tables."""
 
-    def __init__(self, family: Family) -> None:
-        self.family, self.boundary = family, family.boundary
+    def __init__(self, family: Family, unit: Unit = ONE) -> None:
+        self.family, self.boundary, self.unit = family, family.boundary, unit
         self.shape, self.ops, self.ends = self.boundary.shape, self.boundary.ops, self.boundary.ends
+
+    @cached_property
+    def size(self) -> float:
+        """The length in which distances between phase points are measured, a power of two: 1 for a size of about 1."""
+        at = [(np.full(PLACES, i), np.linspace(low, high, PLACES)) for i, (low, high) in enumerate(self.ends)]
+        points = np.concatenate([self.family.cartesian(*place) for place in at], axis=1)
+        half = float(np.max(np.ptp(points, axis=1))) / 2
+        own = 1.0 if 1 / ORDINARY <= half <= ORDINARY else float(np.ldexp(0.5, int(np.frexp(half)[1])))
+        return own * self.unit.length
 
     # ---- the boundary
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
         """Point and tangent, in closed form where the table has one without cancellation."""
-        return self.family.frame(component, theta)
+        x, y, tx, ty = self.family.frame(component, theta)
+        return Frame(*self.unit.point(x, y), tx, ty)
 
     def point(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """The Cartesian point."""
-        return self.family.cartesian(component, theta)
+        return self.unit.point(*self.family.cartesian(component, theta))
 
     def tangent(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """The unit tangent."""
@@ -58,11 +71,12 @@ class States:
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
         """`ds/dtheta`."""
-        return self.family.speed(component, theta)
+        return self.family.speed(component, theta) * self.unit.length
 
     def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
         """`ds/dp` for the parameter `p` of the family's tangent vectors, `theta` or arc length; and the curvature."""
-        return self.family.bending(component, theta)
+        rate, curvature = self.family.bending(component, theta)
+        return rate * self.unit.length, curvature / self.unit.length
 
     def curvature(self, component: NDArray[np.int64], theta: Array) -> Array:
         """The paper's signed curvature, negative where the boundary focuses."""
@@ -73,19 +87,19 @@ class States:
     def enter(
         self, component: NDArray[np.int64], theta: Array, phi: Array, law: str, frame: Frame[Array] | None = None
     ) -> list[Array]:
-        """The kernel's fields of a particle that leaves `theta` at the exit angle `phi`; its frame, if it is known."""
+        """The kernel's fields of particles that leave `theta` at the exit angle `phi`; `frame` is theirs, if known."""
         fields = self.family.enter(self.ops, component.astype(float), theta)
         if law != SLAP:
-            fields = fields + self.family.aim(self.ops, frame or self.frame(component, theta), phi)
+            fields = fields + self.family.exit_fields(self.ops, frame or self.frame(component, theta), phi)
         return [np.array(field, dtype=float) for field in fields]
 
-    def departure(self, own: list[Array], law: str) -> Array:
+    def exit_normal_speed(self, own: list[Array], law: str) -> Array:
         """`N0 = speed*cos(phi)` of particles that are about to leave, from their fields."""
         with np.errstate(all="ignore"):
             return np.asarray(self.family.rate(self.ops, self.boundary.numbers, law, own) + np.zeros(own[0].size))
 
     def place(self, rows: Sequence[Array]) -> tuple[NDArray[np.int64], Array]:
-        """Component and parameter of kernel fields."""
+        """Component and parameter of states, given by the kernel's fields."""
         component, theta = self.family.place(self.ops, list(rows[: len(self.family.position)]))
         return np.broadcast_to(np.rint(component).astype(np.int64), theta.shape), theta
 
@@ -97,19 +111,19 @@ class States:
         law: str,
         frame: Frame[Array] | None = None,
     ) -> Array:
-        """The exit angle of kernel fields, in radians; the frame of their place, if it is known."""
+        """The exit angle, in radians, from the kernel's fields; `frame` is that of their place, if it is known."""
         if law == SLAP:
             return np.zeros_like(theta)
         return np.asarray(self.family.exit(self.ops, frame or self.frame(component, theta), self.kept(rows)))
 
     def leaving(self, frame: Frame[Array], phi: Array, rows: Sequence[Array], law: str) -> tuple[Array, Array]:
-        """The unit direction of the flight that begins: the one that the kernel keeps, if it keeps one."""
+        """The unit direction of a departing flight, from the kernel's fields if they hold it."""
         if law == SLAP:
             return frame.direction(self.ops, phi)
-        return self.family.heading(self.ops, frame, phi, self.kept(rows))
+        return self.family.unit_direction(self.ops, frame, phi, self.kept(rows))
 
     def kept(self, rows: Sequence[Array]) -> list[Array]:
-        """The rows of the exit, which follow those of the place."""
+        """The rows of the kernel's fields that hold the direction: those after the position's."""
         begin = len(self.family.position)
         return list(rows[begin : begin + len(self.family.direction)])
 
@@ -122,9 +136,9 @@ class States:
         lam: Array,
         law: str,
     ) -> list[NDArray[Any]]:
-        """Component, parameter, exit angle, incidence angle and point, at the start and after each recorded bounce.
+        """Component, parameter, exit and incidence angle, and point, at the start and after each recorded bounce.
 
-        A tile at a time, so that what is worked on stays in the processor's cache.
+        One tile of `TILE` points is translated at a time, so that it stays in the processor's cache.
         """
         where, theta, phi = start
         told: list[NDArray[Any]] = [
@@ -159,23 +173,23 @@ GRID = 2048
 
 
 def located(states: States, x: Array, y: Array) -> tuple[NDArray[np.int64], Array]:
-    """Component and parameter of each point; a point off the boundary is refused."""
+    """Component and parameter of each point; `ValueError` for a point off the boundary."""
     x, y = np.broadcast_arrays(x, y)
     if x.size == 0:
         raise ValueError("x and y are empty; give at least one point")
     best = np.full(x.shape, np.inf)
     component, theta = np.zeros(x.shape, dtype=np.int64), np.zeros(x.shape)
-    size = 0.0
+    size, (_, *centre) = 0.0, states.unit
     for index, (low, high) in enumerate(states.ends):
         grid = np.linspace(low, high, GRID + 1)
         px, py = states.point(np.full(grid.shape, index), grid)
-        size = max(size, float(np.max(np.hypot(px, py))))
+        size = max(size, float(np.max(np.hypot(px - centre[0], py - centre[1]))))
         nearest = np.argmin(np.hypot(x[..., None] - px, y[..., None] - py), axis=-1)
         at = _polished(states, index, grid[nearest], x, y, low, high)
         gap = _gap(states, index, at, x, y)
         better = gap < best
         best, component, theta = (np.where(better, *pair) for pair in ((gap, best), (index, component), (at, theta)))
-    off = best > ON * size
+    off = best > ON * size + 2.0**-50 * np.hypot(centre[0], centre[1])  # a point far away is rounded there
     if np.any(off):
         point = f"({x[off].flat[0]}, {y[off].flat[0]})"
         raise ValueError(f"the point {point} is not on the boundary; it is {best[off].flat[0]:.3g} away from it")
@@ -188,7 +202,7 @@ def _gap(states: States, index: int, theta: Array, x: Array, y: Array) -> Array:
 
 
 def _polished(states: States, index: int, theta: Array, x: Array, y: Array, low: float, high: float) -> Array:
-    """Gauss and Newton's way to the nearest point: the step along the tangent."""
+    """The parameter of the nearest boundary point, by Gauss-Newton steps along the tangent."""
     where = np.full(theta.shape, index)
     for _ in range(8):
         px, py = states.point(where, theta)
@@ -200,17 +214,19 @@ def _polished(states: States, index: int, theta: Array, x: Array, y: Array, low:
 
 
 MOST = 1 << 14  # terms; a boundary that needs more is not smooth
-SETTLED = 1e-9  # radians: the step after one this short is below rounding
-HIGHEST = 1 << 10  # degree of a Chebyshev series
-ROOM, MOST_TOLD = 4, 64  # waves told by kernels: their number is a multiple of the one, and at most the other
-WHOLE = 1 << 1074  # times a double is a whole number
-SMALL = 2.0**-55  # of the mean speed: waves that are no longer seen in a perimeter
-MILD = 0.5  # of the mean speed: a sum of absolute coefficients up to which the rounding of powers is not seen either
-ROUNDING = 4e-16  # of the largest speed: what a transform of rounded samples leaves in a coefficient that is 0
+SETTLED = 1e-9  # radians: the Newton step after one this short is below rounding
+HIGHEST, SHARE = 1 << 10, 1 << 5  # degree of a Chebyshev series; of one on a part of an interval
+PARTS = 1 << 10
+Length = Callable[[Array], Array]
+ROOM, MOST_TOLD = 4, 64  # waves in kernels: their number is a multiple of the first, and at most the second
+WHOLE = 1 << 1074  # times any double is an integer
+SMALL = 2.0**-55  # of the mean speed: smaller waves change no perimeter
+MILD = 0.5  # of the mean speed: up to this sum of moduli the rounding of powers does no harm
+ROUNDING = 4e-16  # of the largest speed: a transform of rounded samples gives this for a coefficient of 0
 
 
 class Waves(NamedTuple):
-    """The integral of a speed of period `2*pi` from 0: `mean*theta`, and waves of a few frequencies.
+    """The integral from 0 of a speed with period `2*pi`: `mean*theta` plus waves of a few frequencies.
 
     >>> Waves.of(lambda theta: 2 + np.cos(3 * theta)).frequencies.tolist()
     [3]
@@ -222,22 +238,24 @@ class Waves(NamedTuple):
     rises: Array
 
     @staticmethod
-    def of(speed: Callable[[Array], Array]) -> "Waves":
-        """From twice as many samples until they will do."""
+    def of(speed: Callable[[Array], Array]) -> "Waves | None":
+        """The Fourier sum of the arc length, from as many samples as it needs; None if it needs more than `MOST`."""
         count = 64
         while True:
             theta = 2 * np.pi * np.arange(count) / count - np.pi
             values = speed(theta)
             c = np.fft.rfft(values) / count * (1 - 2 * (np.arange(count // 2 + 1) % 2))
-            if settled(c, values) or count >= MOST:
+            if settled(c, values):
                 break
+            if count >= MOST:
+                return None
             count *= 2
         kept = np.flatnonzero(np.abs(c[: count // 3]) > ROUNDING * np.max(values))[1:]
         terms = 2 * c[kept] / kept
         return Waves(c[0].real, kept, terms.real, -terms.imag)
 
     def __call__(self, theta: Array) -> Array:
-        """The integral, smallest waves first."""
+        """The integral up to `theta`, smallest waves first."""
         flat = theta.ravel()
         k = self.frequencies[:, None]
         waves = self.sines[:, None] * np.sin(k * flat) + 2 * self.rises[:, None] * np.sin(k * flat / 2) ** 2
@@ -245,7 +263,7 @@ class Waves(NamedTuple):
 
 
 def in_powers(sines: Array) -> list[float]:
-    """The polynomial in `cos(x)` that times `sin(x)` is a sum of `sines[k-1]*sin(k*x)`, each coefficient rounded once.
+    """The polynomial in `cos(x)` whose product with `sin(x)` is the sum of `sines[k-1]*sin(k*x)`, rounded once.
 
     >>> in_powers(np.array([1.0, 1.0, 1.0]))  # 1 + 2*c + (4*c**2 - 1)
     [0.0, 2.0, 4.0]
@@ -259,15 +277,16 @@ def in_powers(sines: Array) -> list[float]:
 
 
 def settled(coefficients: Array | NDArray[np.complex128], values: Array) -> bool:
-    """Whether the last third of the coefficients is what rounding leaves of such values."""
+    """Are the coefficients in the last third no larger than the rounding of such values?"""
     last = coefficients[2 * (len(coefficients) - 1) // 3 :]
     return bool(np.max(np.abs(last)) < ROUNDING * np.max(values))
 
 
-def chebyshev(speed: Callable[[Array], Array], low: float, high: float) -> Callable[[Array], Array]:
-    """The integral of a speed from 0, or from `low` where 0 is beyond, from twice the degree until that will do.
+def chebyshev(speed: Length, low: float, high: float, highest: int = HIGHEST, anyway: bool = False) -> Length | None:
+    """The integral of a speed from 0, or from `low` if 0 lies outside, as a Chebyshev series of sufficient degree.
 
-    The coefficients are those of the waves of the speed in an angle whose cosine runs from one end to the other.
+    The degree is doubled until it suffices. None where `highest` does not, unless `anyway` is set. The coefficients are
+    those of the cosine series of the speed in an angle whose cosine runs from one end to the other.
     """
     from numpy.polynomial import Chebyshev
 
@@ -277,12 +296,47 @@ def chebyshev(speed: Callable[[Array], Array], low: float, high: float) -> Calla
         values = speed(low + (high - low) * (1 + x) / 2)
         c = np.fft.hfft(values)[: degree + 1] / degree  # `values` is half of an even sequence
         c[0] /= 2
-        if settled(c, values) or degree >= HIGHEST:
+        if settled(c, values):
+            break
+        if degree >= highest:
+            if not anyway:
+                return None
             break
         degree *= 2
     kept = np.flatnonzero(np.abs(c) > ROUNDING * np.max(values))
     integral = Chebyshev(c[: kept[-1] + 1], [low, high]).integ(lbnd=0.0 if low <= 0.0 <= high else low)
     return lambda theta: np.asarray(integral(theta))
+
+
+def halved(speed: Length, low: float, high: float) -> Length:
+    """The integral of a speed with narrow features, from 0, or from `low` if 0 lies outside, as in `chebyshev`.
+
+    The range is halved until a series serves on each part, or there are `PARTS` parts: what is left then is rounding.
+    """
+    open, done = [(low, high)], list[tuple[float, float, Length]]()
+    while open:
+        a, b = open.pop(0)
+        known = chebyshev(speed, a, b, SHARE, anyway=len(open) + len(done) > PARTS)
+        if known is None:
+            open += [(a, 0.5 * (a + b)), (0.5 * (a + b), b)]
+        else:
+            done.append((a, b, known))
+    done.sort(key=lambda piece: piece[0])
+    starts = np.array([a for a, *_ in done])
+    first = [float(known(np.array(a))) for a, _, known in done]
+    sizes = [float(known(np.array(b))) - begin for (_, b, known), begin in zip(done, first, strict=True)]
+    reached = np.concatenate([[0.0], np.cumsum(sizes)])
+
+    def length(theta: Array) -> Array:
+        theta = np.asarray(theta, dtype=float)
+        found, piece = np.empty(theta.shape), np.clip(np.searchsorted(starts, theta, side="right") - 1, 0, None)
+        for i in np.unique(piece):
+            here = piece == i
+            found[here] = done[i][2](theta[here]) - first[i] + reached[i]
+        return found
+
+    zero = float(length(np.array(min(max(low, 0.0), high) if low <= 0.0 <= high else low)))
+    return lambda theta: length(theta) - zero
 
 
 class ArcLength:
@@ -295,11 +349,11 @@ class ArcLength:
             (float(length(np.array(low))), float(length(np.array(high))))
             for length, (low, high) in zip(self.lengths, states.ends, strict=True)
         ]
-        self.ruled: dict[int, tuple[Array, Array]] = {}  # of a component: lengths at many parameters, and these
+        self.ruled: dict[int, tuple[Array, Array]] = {}  # by component: lengths at many parameters, and the parameters
         index, program = states.boundary.ir.origin
         offsets = {}
         zero, (first, last) = float(program(states.ops, *states.boundary.numbers)[0]), states.ends[index]
-        reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 where nothing else is said
+        reached = -float(self.lengths[index](np.array(min(max(zero, first), last))))  # 0 without another origin
         for turn in range(len(states.ends)):
             at = (index + turn) % len(states.ends)
             if turn:
@@ -309,7 +363,7 @@ class ArcLength:
         self.offsets = [offsets[i] for i in range(len(states.ends))]
 
     def s(self, theta: Array, component: NDArray[np.int64] | int = 0) -> Array:
-        """Arc length at `theta`."""
+        """Arc length at `theta` on a component."""
         theta, component = np.broadcast_arrays(np.asarray(theta, dtype=float), component)
         out = np.empty(theta.shape)
         for index, (length, offset) in enumerate(zip(self.lengths, self.offsets, strict=True)):
@@ -329,13 +383,15 @@ class ArcLength:
 
     @cached_property
     def series(self) -> tuple[Series, list[float]] | None:
-        """How kernels tell arc length, and the numbers that it takes; None where too many waves would be needed."""
+        """The series by which kernels compute arc length, and its numbers; None where it needs too many waves."""
         family, index = self.states.family, np.zeros(1, dtype=np.int64)
         if family.arclength(self.states.ops, 0, np.zeros(1)) is not None:
-            return Series(len(self.offsets)), self.offsets
+            return (Series(len(self.offsets)), self.offsets) if self.states.unit == ONE else None
         if not self.states.boundary.closed:
             return None
         waves = Waves.of(lambda at: self.states.speed(np.broadcast_to(index, at.shape), at))
+        if waves is None:
+            return None
         step = int(np.gcd.reduce(waves.frequencies)) or 1
         order = waves.frequencies // step
         told = int(order[np.abs(waves.sines) + np.abs(waves.rises) > SMALL * waves.mean].max(initial=1))
@@ -366,7 +422,7 @@ class ArcLength:
             name = self.states.boundary.ir.parts[index].name
             first, last = bottom + self.offsets[index], top + self.offsets[index]
             raise ValueError(f"s = {bad} is not on the {name}; there s lies in [{first:.17g}, {last:.17g}]")
-        inverse = self.states.family.parameter(index, s)
+        inverse = self.states.family.parameter(index, s / self.states.unit.length)
         if inverse is not None:
             return inverse
         if index not in self.ruled:
@@ -378,21 +434,31 @@ class ArcLength:
             step = (length(theta) - s) / self.states.speed(where, theta)
             theta = np.clip(theta - step, low, high)
             if np.max(np.abs(step), initial=0.0) < SETTLED:
-                break
-        return theta
+                return theta
+        lengths, grid = self.ruled[index]  # on a narrow feature Newton's method may not settle
+        after = np.clip(np.searchsorted(lengths, s), 1, grid.size - 1)
+        before, beyond = grid[after - 1], grid[after]
+        for _ in range(60):
+            middle = 0.5 * (before + beyond)
+            below = length(middle) < s
+            before, beyond = np.where(below, middle, before), np.where(below, beyond, middle)
+        return np.where(np.abs(step) < SETTLED, theta, 0.5 * (before + beyond))
 
     def _length(self, index: int) -> Callable[[Array], Array]:
-        family = self.states.family
+        family, unit = self.states.family, self.states.unit.length
         if family.arclength(self.states.ops, index, np.zeros(1)) is not None:
-            return lambda theta: np.asarray(family.arclength(self.states.ops, index, theta))
+            return lambda theta: np.asarray(family.arclength(self.states.ops, index, theta)) * unit
         m = family.elliptic()
         if m is not None:
             from scipy.special import ellipeinc
 
-            return lambda theta: np.asarray(ellipeinc(theta, m))
+            return lambda theta: np.asarray(ellipeinc(theta, m)) * unit
 
         def speed(at: Array) -> Array:
             return self.states.speed(np.full(at.shape, index), at)
 
         low, high = self.states.ends[index]
-        return Waves.of(speed).__call__ if self.states.boundary.closed else chebyshev(speed, low, high)
+        if self.states.boundary.closed:
+            waves = Waves.of(speed)
+            return halved(speed, low, high) if waves is None else waves.__call__
+        return chebyshev(speed, low, high) or halved(speed, low, high)

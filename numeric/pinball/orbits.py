@@ -1,8 +1,8 @@
-"""Particles on their way, told bounce by bounce in people's coordinates: by the kernel in lanes, or translated later.
+"""Orbits recorded bounce by bounce in users' coordinates: by kernels, or translated from recorded states.
 
-The paper's tables, and other ellipses and finite sums, have kernels that tell component, parameter, angles, point and
-arc length themselves, as far as they are asked. Of other tables, and without kernels, the recorded states are
-translated; arc length then comes from the parameter, as it does where too many waves would be needed.
+The paper's tables, and other ellipses and finite sums, have kernels that record component, parameter, angles, point
+and arc length themselves, where these are wanted. For other tables, and without kernels, the recorded states are
+translated; arc length is then computed from the parameter, as it is where too many waves would be needed.
 """
 
 import ctypes
@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from numeric.backends.functions import CLOSED
 from numeric.flights.family import NEAR, SLAP, Family
-from numeric.kernels.engine import ALONE
-from numeric.kernels.engine import Course as KernelCourse
+from numeric.kernels.engine import ALONE, BatchRun
 from numeric.kernels.machine import MATRIX, START, TOLD, KernelSpec
 from numeric.lowering.program import LawIR
 from numeric.pinball.states import Orbit, counted
@@ -27,13 +26,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 HALF_PI = math.pi / 2
 SIDE_BY_SIDE = 1 << 12  # particles at a time: their state stays in the processor's second cache
-HUGE, LARGE = 1 << 21, 1 << 22  # bytes of a large page of memory; of a field that has memory of its own
-PIECE = 1 << 20  # numbers to a field of a piece of an orbit
+HUGE, LARGE = 1 << 21, 1 << 22  # bytes of a large page of memory; of a field that gets memory of its own
+PIECE = 1 << 20  # numbers of a field in a piece of an orbit
 FIELDS = (*Orbit._fields, "s")
 
 
-class Course:
-    """Particles that start somewhere; `advance` takes them on and tells some fields of every so many-th bounce."""
+class OrbitRun:
+    """Moves particles piece by piece: `advance` returns the fields `names` of every `every`-th bounce."""
 
     def __init__(
         self,
@@ -46,7 +45,7 @@ class Course:
         dtype: DTypeLike = np.float64,
         keep: bool = False,
     ) -> None:
-        """`keep` is for those that advance more than once."""
+        """`keep` must be set if `advance` is to be called more than once."""
         where, at, angle = map._start(theta, phi, component)
         self.map, self.shape, self.law = map, at.shape, map._law(angle)
         self.where, self.theta, self.phi = where.ravel(), at.ravel(), angle.ravel()
@@ -56,19 +55,19 @@ class Course:
             counted("every", every),
             _real(dtype),
         )
-        self.length = map.arclength.series if "s" in self.names and map.engine.tells else None
+        self.length = map.arclength.series if "s" in self.names and map.engine.can_record else None
         needed = {*self.names, *(("component", "theta") if "s" in self.names and self.length is None else ())}
         if len(map.states.ends) == 1:
             needed -= {"component"}
         self.needed = tuple(name for name in (*TOLD, "s") if name in needed and (name != "s" or self.length))
         self.done, self.last = 0, dict[str, NDArray[Any]]()
-        self.keep, self.kernels = keep, dict[int, KernelCourse | None]()
+        self.keep, self.kernels = keep, dict[int, BatchRun | None]()
         self.own: list[Array] = []
         self.code: NDArray[np.int64] = np.zeros(self.lam.size, dtype=np.int64)
         self.bad = np.zeros(self.lam.size, dtype=np.int64)  # the first bounce that a particle did not make
 
     def advance(self, bounces: int, begin: bool = False, threads: int | None = None) -> dict[str, NDArray[Any]]:
-        """What is told of the next bounces; from the start on, if it is asked for."""
+        """The fields of the next bounces, preceded by those of the start if `begin`."""
         rows, top = bounces // self.every + begin, int(begin)
         kinds = {"component": np.dtype(np.int64)}
         out = room((rows, self.lam.size), {name: kinds.get(name, self._kind(name)) for name in self.needed})
@@ -83,7 +82,7 @@ class Course:
         return self._chosen(out, made)
 
     def saved(self) -> Array:
-        """All that the rest of the orbit depends on besides its start: rows of numbers, one for each particle."""
+        """The state on which the rest of the orbit depends, besides its start: rows with a number for each particle."""
         if self.kernels:
             known = [kernel.rows for kernel in self.kernels.values() if kernel is not None]
             own = [np.concatenate([rows[name] for rows in known]) for name in known[0]]
@@ -93,7 +92,7 @@ class Course:
         return np.array([self.where, self.theta, self.phi, self.bad, *own, *(first[name] for name in self.needed)])
 
     def restore(self, saved: Array, done: int) -> None:
-        """Goes on from what was `saved` after so many bounces."""
+        """Restores a state that was `saved` after `done` bounces."""
         own, told = saved[4 : len(saved) - len(self.needed)], saved[len(saved) - len(self.needed) :]
         self.where, self.theta, self.phi, self.bad, self.done = saved[0].astype(int), saved[1], saved[2], saved[3], done
         self.bad = self.bad.astype(np.int64)
@@ -113,7 +112,7 @@ class Course:
         return np.dtype(np.float64) if name == "theta" and "s" in self.names and not self.length else self.dtype
 
     def _first(self) -> dict[str, NDArray[Any]]:
-        """The start, or what was told last: nothing landed at a start, so `eta` is no number."""
+        """The fields of the start, or those recorded last; `eta` is nan at a start, since nothing has landed."""
         if self.last:
             return self.last
         known: dict[str, NDArray[Any]] = {"component": self.where, "theta": self.theta, "phi": self.phi}
@@ -127,11 +126,12 @@ class Course:
     def _advanced(
         self, bounces: int, out: dict[str, NDArray[Any]], top: int, threads: int | None
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Some thousand particles at a time, which stay in the cache; codes of outcomes, and bounces that were lost."""
+        """Bounces some thousand particles at a time, which stay in the cache; codes of outcomes, and bounces missed."""
         if bounces == 1 and not (self.keep or self.done):
             given, rows = (self.where, self.theta, self.phi), {name: values[top] for name, values in out.items()}
             length = self.length or (CLOSED, ())
             code = self.map.engine.once(self.law, given, self.lam, self.map.shape, rows, length, threads)
+            self.map.unit.restore(rows)
             if code is not None:
                 return code, np.asarray(code != 0)
         ends: tuple[NDArray[Any], NDArray[Any]] = np.zeros(self.lam.size), np.zeros(self.lam.size)
@@ -145,17 +145,18 @@ class Course:
             if self.keep:
                 self.kernels[left] = kernel
             kernel.advance(bounces, {name: values[:, part] for name, values in out.items()}, top, self.every, threads)
+            self.map.unit.restore({name: values[top:, part] for name, values in out.items()})
             rows = kernel.rows
             if "code" in rows:
                 ends[0][part], ends[1][part] = rows["code"], rows["lost"]
         return ends
 
-    def _kernel(self, part: slice, other: KernelCourse | None) -> KernelCourse | None:
-        """Some of the particles in the hands of a kernel; the room of others that are done with may be used again."""
+    def _kernel(self, part: slice, other: BatchRun | None) -> BatchRun | None:
+        """A batch with some of the particles; the batch `other`, whose particles are finished, may be used again."""
         if other is None or self.keep:
             count = min(self.lam.size - part.start, SIDE_BY_SIDE)
             length = self.length or (CLOSED, ())
-            other = self.map.engine.course(self.law, self.needed, count, self.map.shape, length)
+            other = self.map.engine.batch(self.law, self.needed, count, self.map.shape, length)
         return other and other.begin((self.where[part], self.theta[part], self.phi[part]), self.lam[part])
 
     def _stopped(
@@ -166,7 +167,7 @@ class Course:
         out: dict[str, NDArray[Any]],
         made: NDArray[np.int64],
     ) -> None:
-        """Particles that stopped repeat what was told of their last good bounce; nothing lands any more."""
+        """Gives particles that stopped the fields of their last regular bounce, and no incidence angle."""
         self.code = code.astype(np.int64)
         missed = np.flatnonzero(self.code)
         self.bad[missed] = self.done + bounces + 1 - lost[missed].astype(np.int64)
@@ -180,7 +181,7 @@ class Course:
     def _translated(
         self, bounces: int, out: dict[str, NDArray[Any]], top: int, threads: int | None
     ) -> dict[str, Array]:
-        """Records the states, and translates them."""
+        """Records the states of the next bounces, and translates them into the rows of `out`."""
         map, states = self.map, self.map.states
         frame = states.frame(self.where, self.theta)
         if not self.own:
@@ -199,7 +200,7 @@ class Course:
         return result.rows
 
     def _chosen(self, out: dict[str, NDArray[Any]], made: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
-        """The fields that were asked for, in their order."""
+        """The fields that were wanted, in their order."""
         shape = len(made), self.lam.size
         if "component" not in out and {"component", "s"} & {*self.names}:
             out["component"] = np.zeros(shape, dtype=np.int64)
@@ -213,7 +214,7 @@ class Course:
 
 
 def room(shape: tuple[int, int], kinds: Mapping[str, np.dtype[Any]]) -> dict[str, NDArray[Any]]:
-    """Arrays to be filled, in pages of two megabytes each: to clear as many small ones takes longer than to fill them.
+    """Empty arrays by name, in pages of two megabytes: clearing many small pages would take longer than filling them.
 
     A large field has memory of its own, so that it may be kept without the others; small ones share theirs.
     """
@@ -235,7 +236,7 @@ def room(shape: tuple[int, int], kinds: Mapping[str, np.dtype[Any]]) -> dict[str
 
 
 def _known(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of fields, each of them known."""
+    """Names of fields as a tuple; `ValueError` for an unknown one."""
     names = (names,) if isinstance(names, str) else tuple(names)
     for name in names:
         if name not in FIELDS:
@@ -244,14 +245,14 @@ def _known(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _real(dtype: DTypeLike) -> np.dtype[Any]:
-    """float64 or float32."""
+    """`dtype`, which must be float64 or float32; otherwise `ValueError`."""
     if (found := np.dtype(dtype)) not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise ValueError(f"dtype = {found} is not possible; give float64 or float32")
     return found
 
 
 def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Array, Array], lam: Array) -> Array | None:
-    """The derivative of one bounce of each particle as kernels tell it; None without them, or where one stops."""
+    """The derivative of one bounce of each particle, by kernels; None if there are none or a particle stops."""
     found = room((4, lam.size), {"": np.dtype(float)})[""].reshape(2, 2, -1)
     out = dict(zip(MATRIX, found.reshape(4, -1), strict=True))
     code = map.engine.once(law, start, lam, map.shape, out)
@@ -261,29 +262,29 @@ def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Arr
 REALS, WHOLES = frozenset({float, int, np.float64}), frozenset({int, np.int64})
 
 
-class Single:
-    """One bounce of one particle in some microseconds: what does not depend on the particle is prepared.
+class SingleBounce:
+    """One bounce of one particle in some microseconds: everything that does not depend on the particle is prepared.
 
-    `told` is None for what only the general way can say: a particle that stops, bad input, an angle to be taken modulo
-    the whole turn. Buffers are taken from a list and put back, so threads, and a call within a call, have their own.
+    `told` returns None where the general method is needed: for a particle that stops, bad input, or an angle beyond a
+    whole turn. Buffers are taken from a list and put back, so threads, and a call within a call, have their own.
     """
 
     def __init__(self, map: "PinballMap", law: str, names: tuple[str, ...]) -> None:
         self.lam, self.reflection, self.law, self.names = map.lam, map.reflection, law, names
         self.ends, self.cusped = map.states.ends, map.family.cusped
         low, high = self.ends[0]
-        course = map.engine.course(law, names, 1, map.shape) if map.lam.size == 1 else None
-        if course is not None:
-            course.begin((0.0, 0.4 * low + 0.6 * high, 0.1 * (law != SLAP)), np.array([float(map.lam.flat[0])]))
-        self.course, self.run = course, course.kernel(starts=True) if course is not None else None
+        batch = map.engine.batch(law, names, 1, map.shape) if map.lam.size == 1 else None
+        if batch is not None:
+            batch.begin((0.0, 0.4 * low + 0.6 * high, 0.1 * (law != SLAP)), np.array([float(map.lam.flat[0])]))
+        self.batch, self.run = batch, batch.kernel(starts=True) if batch is not None else None
         self.free: list[Any] = []
 
     def serves(self, map: "PinballMap") -> bool:
-        """Whether it was made for this map as it is now."""
+        """Was this bounce prepared for the map as it is now?"""
         return self.lam is map.lam and self.reflection is map.reflection
 
     def told(self, theta: Any, phi: Any, component: Any) -> list[float] | None:
-        """What the kernel tells of the bounce, in the order of the names."""
+        """The values that the kernel records of the bounce, in the order of the names; None where it does not serve."""
         if not (self.run is not None and type(theta) in REALS and type(phi) in REALS and type(component) in WHOLES):
             return None
         if not (-HALF_PI < phi < HALF_PI and 0 <= component < len(self.ends)):
@@ -303,21 +304,21 @@ class Single:
         return found
 
     def _buffer(self) -> tuple[tuple[int, ...], Any, Any, Any, int, int]:
-        """Arguments of the kernel, state, record, its table; where the start begins, and the outcome stands or 0."""
-        assert self.course is not None
-        rows, code = self.course.state.shape[0], "code" in self.course.names
-        state = (ctypes.c_double * (rows * ALONE))(*self.course.state.ravel())
+        """A buffer: the kernel's arguments, state, record, its table; the offsets of start and outcome (0 for none)."""
+        assert self.batch is not None
+        rows, code = self.batch.state.shape[0], "code" in self.batch.names
+        state = (ctypes.c_double * (rows * ALONE))(*self.batch.state.ravel())
         record = (ctypes.c_double * (len(self.names) * ALONE))()
         first, row = ctypes.addressof(record), ALONE * ctypes.sizeof(ctypes.c_double)
         table = (ctypes.c_int64 * (len(self.names) + 1))(*(first + i * row for i in range(len(self.names))), ALONE)
-        kept = self.course.lam.ctypes.data, self.course.shape.ctypes.data
+        kept = self.batch.lam.ctypes.data, self.batch.shape.ctypes.data
         arguments = ctypes.addressof(state), *kept, ctypes.addressof(table), ALONE, 0, ALONE, 1
-        place = self.course.names.index("code") * ALONE if code else 0
+        place = self.batch.names.index("code") * ALONE if code else 0
         return arguments, state, record, table, (rows - len(START)) * ALONE, place
 
 
 def lowered_law(map: "PinballMap") -> LawIR:
-    """The programs of a map's law; of one that speaks of arc length, with how kernels find that."""
+    """The programs of a map's law, with the series of the arc length if the law depends on it."""
     from numeric.lowering.lower import lower_law
 
     law = lower_law(map.reflection, lambda: map.table)

@@ -1,4 +1,4 @@
-"""Where orbits start, and how a tangent vector and an area grow along them.
+"""Random and regular starts of orbits, and the growth of a tangent vector and of areas along orbits.
 
 Starts are random points of phase space, random points of the table, or a grid for pictures.
 
@@ -10,8 +10,8 @@ Its other end is the first collision. This holds on every table, with the flight
 
 All draws come from one seeded generator in one order: they depend neither on threads nor on batches.
 
-A `Growth` is a set of particles on their way, each with one tangent vector. Sums of logarithms are kept from the
-start, so differences between two moments are the growth between them, and nothing is lost by looking often.
+A `Growth` is a set of particles on their way, each with a tangent vector. Sums of logarithms are kept from the
+start, so differences between two moments are the growth between them, and reading them often loses nothing.
 """
 
 from collections.abc import Sequence
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 BATCH = 1 << 14  # chords drawn at a time
-FEWEST = 256  # of them that are placed at a time
-INSIDE = 1 - 1e-12  # of a component or of the angles: never at an end
+FEWEST = 256  # chords that are placed at a time, at least
+INSIDE = 1 - 1e-12  # share of a component and of the angles that starts fill: never an end
 RULER = 512  # boundary points between which the diameter is measured
 
 
@@ -47,11 +47,11 @@ class Starts(NamedTuple):
     y: Array
 
     def only(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "Starts":
-        """Some of them."""
+        """The particles at these indices, or where a mask is true."""
         return Starts(*(row[which] for row in self))  # type: ignore[arg-type]  # rows keep their kinds
 
 
-class Grid(NamedTuple):
+class PhaseGrid(NamedTuple):
     """Cell centres: `s` along the columns, `sin_phi` along the rows, and the particles there, row after row."""
 
     s: Array
@@ -103,7 +103,7 @@ def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
     return Starts(*(np.concatenate(fields) for fields in zip(*batches, strict=True)))
 
 
-def phase_grid(map: "PinballMap", columns: int, rows: int) -> Grid:
+def phase_grid(map: "PinballMap", columns: int, rows: int) -> PhaseGrid:
     """A particle at the centre of each cell of phase space, in `s` from `-L/2` to `L/2` and `sin(phi)` from -1 to 1.
 
     `L` is the perimeter; `s` is the paper's arc length. The first row is the lowest.
@@ -120,7 +120,7 @@ def phase_grid(map: "PinballMap", columns: int, rows: int) -> Grid:
     x, y = map.states.point(component, theta)
     across = (np.tile(field, rows) for field in (x, y))
     phi = np.repeat(elementary.arcsin(sin_phi), columns)
-    return Grid(s, sin_phi, Starts(np.tile(component, rows), np.tile(theta, rows), phi, *across))
+    return PhaseGrid(s, sin_phi, Starts(np.tile(component, rows), np.tile(theta, rows), phi, *across))
 
 
 def boundary(map: "PinballMap", s: Array) -> tuple[NDArray[np.int64], Array]:
@@ -140,8 +140,77 @@ def boundary(map: "PinballMap", s: Array) -> tuple[NDArray[np.int64], Array]:
     return component, map.arclength.theta(inside, component)
 
 
+WALLS = (1 << 10, 1 << 14, 1 << 18)  # boundary points between which a line is followed, finer where that is too coarse
+NEARLY = 1e-12  # of the table's size: a point so near the wall lies on it
+
+
+def flight_through(map: "PinballMap", x: float, y: float, vx: float, vy: float) -> tuple[float, float, int]:
+    """The flight from wall to wall that passes an interior point in a direction: its `theta`, `phi` and component.
+
+    Its landing is the first wall that a particle from the point meets. The wall behind the point is searched for on a
+    grid; the map's own flight from there, which passes the point, shows that no wall lies between.
+
+    >>> from numeric import PinballMap
+    >>> theta, phi, component = flight_through(PinballMap("circle"), 0.5, 0.0, 0.0, 2.0)
+    >>> round(theta, 12), round(phi, 12)
+    (-1.047197551197, 0.523598775598)
+    """
+    length = float(np.hypot(vx, vy))
+    if not np.isfinite([x, y, length]).all() or length == 0:
+        raise ValueError(f"({vx}, {vy}) at ({x}, {y}) is no direction; give finite numbers, not both of them 0")
+    vx, vy = vx / length, vy / length
+    size = longest(map)
+    for points in WALLS:
+        component, theta, along = _crossings(map, x, y, vx, vy, points)
+        if np.any(np.abs(along) < NEARLY * size):
+            raise ValueError(f"({x}, {y}) lies on the wall; give a point inside, or a start on the boundary")
+        nearest = np.max(along, where=along < 0, initial=-np.inf)
+        for k in np.flatnonzero((along < 0) & (along > nearest - NEARLY * size)):  # two, where the line meets a join
+            where, at = component[k : k + 1], theta[k : k + 1]
+            phi = map.states.angle_to_normal(where, at, np.array([vx]), np.array([vy]))
+            if not abs(phi[0]) < np.pi / 2:  # the point lies outside of this wall
+                continue
+            landed = map.step(at, phi, where)
+            if landed.code[0] or (landed.x[0] - x) * vx + (landed.y[0] - y) * vy > 0:
+                return float(at[0]), float(phi[0]), int(where[0])
+    raise ValueError(f"({x}, {y}) is not inside of the table")
+
+
+def _crossings(
+    map: "PinballMap", x: float, y: float, vx: float, vy: float, points: int
+) -> tuple[NDArray[np.int64], Array, Array]:
+    """Where a line meets the boundary, searched for on a grid of `points`: component, parameter, place on the line."""
+    ends = np.array(map.states.ends)
+    each = max(4, points // len(ends))
+    share = np.linspace(0, 1, each + 1)
+    component = np.repeat(np.arange(len(ends)), each + 1)
+    theta = (ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * share).ravel()
+
+    def offset(where: NDArray[np.int64], at: Array) -> Array:
+        px, py = map.states.point(where, at)
+        return np.asarray((px - x) * vy - (py - y) * vx)
+
+    value = offset(component, theta)
+    found = np.flatnonzero((value[:-1] < 0) != (value[1:] < 0))
+    found = found[component[found] == component[found + 1]]
+    where, low, high, negative = component[found], theta[found], theta[found + 1], value[found] < 0
+    for _ in range(60):
+        middle = (low + high) / 2
+        same = (offset(where, middle) < 0) == negative
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    first, last = theta.reshape(len(ends), -1)[:, 0], theta.reshape(len(ends), -1)[:, -1]
+    index = np.arange(len(ends))
+    (x0, y0), (x1, y1) = map.states.point(index, first), map.states.point(index, last)
+    after = np.argmin(np.hypot(x0 - x1[:, None], y0 - y1[:, None]), axis=1)  # the component that begins where one ends
+    joined = np.flatnonzero((value.reshape(len(ends), -1)[:, -1] < 0) != (value.reshape(len(ends), -1)[after, 0] < 0))
+    where = np.concatenate([where, joined, after[joined]])
+    low = np.concatenate([low, last[joined], first[after[joined]]])
+    px, py = map.states.point(where, low)
+    return where, low, (px - x) * vx + (py - y) * vy
+
+
 def longest(map: "PinballMap") -> float:
-    """An upper bound for the table's diameter: every boundary point is near one of the `RULER`."""
+    """An upper bound of the table's diameter: the largest distance of `RULER` boundary points, plus their spacing."""
     s = np.arange(RULER, dtype=np.float64) * (map.arclength.perimeter / RULER)
     x, y = map.states.point(*boundary(map, s))
     measured = np.max(np.hypot(x[:, None] - x, y[:, None] - y))
@@ -153,8 +222,10 @@ def _uniform(map: "PinballMap", count: int, rng: "np.random.Generator") -> Start
 
 
 def _drawn(map: "PinballMap", count: int, rng: "np.random.Generator") -> tuple[NDArray[np.int64], Array, Array]:
-    """Components, arc lengths and angles."""
+    """Random components, arc lengths and exit angles, by the elastic map's measure."""
     low, high = _spans(map)
+    if not np.all(np.isfinite(high - low)):
+        raise ValueError(f"{map.ir.table}: its arc length is beyond what float64 holds; scale the table")
     component = rng.choice(np.arange(low.size), size=count, p=(high - low) / np.sum(high - low))
     s = low[component] + (high - low)[component] * rng.uniform(1 - INSIDE, INSIDE, count)
     return component, s, elementary.arcsin(rng.uniform(-1, 1, count) * INSIDE)
@@ -173,13 +244,14 @@ def _spans(map: "PinballMap") -> tuple[Array, Array]:
 
 
 GENERIC = 0.8, 0.6  # a first tangent vector (ds, dphi), of length 1
+ALIGNED = 256  # bounces in which a tangent vector turns to the direction of growth
 
 
 class Growth:
-    """Particles with a tangent vector each, in the coordinates `(s, phi)`; `advance` moves all of them.
+    """Particles, each with a tangent vector in the coordinates `(s, phi)`; `advance` moves all of them.
 
-    `stretch` is the logarithm of the vector's length, `volume` that of `|det|` without what `contraction` adds for
-    each bounce, both since the start; `bounces` is what each particle made before it stopped, if it did.
+    `stretch` is the logarithm of the vector's length, `volume` that of `|det|` without the `contraction` of each
+    bounce, both since the start; `bounces` is the number that each particle made, until it stopped if it did.
 
     >>> import numpy as np
     >>> from numeric import PinballMap
@@ -202,15 +274,15 @@ class Growth:
 
     @property
     def contraction(self) -> Array:
-        """The logarithm of what a bounce multiplies angles by, where `volume` leaves it out: `log(lam)`.
+        """The term `log(lam)` for each bounce, the contraction of angles, that `volume` leaves out.
 
-        Of a law that is no uniform contraction, `volume` has the slopes already.
+        For any law but the uniform contraction it is 0: there `volume` contains the slopes.
         """
         with np.errstate(divide="ignore"):
             return np.zeros_like(self.lam) if self.law == FORMULA else elementary.log(self.lam)
 
     def only(self, which: NDArray[np.int64]) -> "Growth":
-        """Some of the particles, on their way as they are.
+        """A `Growth` of some of the particles, in their present state.
 
         >>> from numeric import PinballMap
         >>> growth = Growth(PinballMap("cardioid", lam=0.5), [0.5, 1.0], 0.1)
@@ -229,26 +301,50 @@ class Growth:
         return some
 
     def began(self) -> None:
-        """Starts the sums anew; the vectors are made when they are needed."""
+        """Sets the sums to 0; tangent vectors are made when they are needed."""
         self.tangent: list[Array] = []
         self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
+        self.origin = np.zeros((self.theta.size, 2))  # of both sums
+        self.misalignment = np.ones(self.theta.size)
+
+    def settle(self, bounces: int, threads: int | None = None) -> None:
+        """Moves particles without counting; in the last `ALIGNED` bounces their vectors turn to the growing direction.
+
+        These vectors are kept. `misalignment` is then the ratio of the singular values of the derivative of those
+        bounces, about the vector's angle to the direction of growth. It is 1 for a new vector.
+
+        >>> from numeric import PinballMap
+        >>> growth = Growth(PinballMap("cardioid", lam=0.5), 0.3, 0.2)
+        >>> growth.settle(100)
+        >>> float(growth.stretch[0]), bool(growth.misalignment[0] < 1e-30)
+        (0.0, True)
+        """
+        turning = min(bounces, ALIGNED)
+        self.skip(bounces - turning, threads)
+        self.advance(turning, threads)
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            ratio = elementary.exp(self.volume + self.contraction * turning - 2 * self.stretch)
+        self.misalignment = np.fmin(ratio, 1.0) if turning else self.misalignment
+        self.origin += np.stack([self.stretch, self.volume], axis=1)
+        self.stretch, self.volume = np.zeros(self.theta.size), np.zeros(self.theta.size)
+        self.bounces = np.zeros_like(self.bounces)
 
     def _vectors(self) -> list[Array]:
-        """The generic vector at each particle."""
+        """The rows of the generic tangent vector at each particle."""
         self.speed, curvature = self.map.states.bending(self.component, self.theta)
         ds, dphi = (1.0, 0.0) if self.law == SLAP else GENERIC
-        self.n0 = self.map.states.departure(self.own, self.law)
+        self.n0 = self.map.states.exit_normal_speed(self.own, self.law)
         omega = curvature * ds + dphi
         return starting(self.n0 * (ds / self.speed), omega, self.n0)
 
     def skip(self, bounces: int, threads: int | None = None) -> None:
-        """Moves the particles alone, and starts the sums where they arrive; these bounces do not count."""
+        """Moves the particles without tangent vectors and sets the sums to 0: these bounces do not count."""
         if bounces and self.theta.size:
             self._run(KernelSpec(self.law), bounces, (), threads)
             self.began()
 
     def advance(self, bounces: int, threads: int | None = None) -> None:
-        """Moves particles and vectors on."""
+        """Moves particles and tangent vectors by `bounces` bounces, and adds their growth to the sums."""
         if not bounces or not self.theta.size:
             return
         going = self.code == 0
@@ -262,8 +358,8 @@ class Growth:
             stretch = elementary.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * elementary.log(2.0)
             ends = elementary.log(speed / self.speed) + elementary.log(self.n0 / rows["n0"])
             volume = elementary.log(rows["up"] / rows["down"]) + rows["volume"] * elementary.log(2.0) + ends
-        self.stretch = np.where(going, stretch, self.stretch)
-        self.volume = np.where(going, volume, self.volume)
+        self.stretch = np.where(going, stretch - self.origin[:, 0], self.stretch)
+        self.volume = np.where(going, volume - self.origin[:, 1], self.volume)
         made = bounces - (rows["lost"].astype(np.int64) if "lost" in rows else 0)
         self.bounces = self.bounces + np.where(going, made, 0)
 

@@ -1,8 +1,8 @@
-"""What a sweep will cost, before it begins: seconds, bytes of results, and memory.
+"""The cost of a sweep before it begins: seconds, bytes of results, and memory.
 
-Its own task is run on some of its parts, spread over the grid, until their mean is known: whole parts where these are
-short, else thinned ones at two sizes, so that what a part costs whatever its size is told from what each coordinate
-adds; and a first time, when its map is made. Measured is the processor's time, which other work hardly lengthens.
+The sweep's own task is timed on some of its parts, spread over the grid, until their mean is known: on whole parts
+where these are short, else on thinned ones at two sizes, which separate the fixed cost of a part from the cost of each
+coordinate; and once when its map is made. The processor's time is measured, which other work hardly lengthens.
 """
 
 import time
@@ -15,25 +15,25 @@ import numpy as np
 
 from numeric.pinball.map import PinballMap
 from numeric.sweeps.run import AHEAD
-from numeric.sweeps.sweep import Part, Sweep
+from numeric.sweeps.sweep import Sweep, SweepPart
 from numeric.sweeps.workers import cores
 
-LEAST, CLOSE = 6, 0.03  # parts that are looked at, and the relative standard error of their mean at which it is enough
+LEAST, CLOSE = 6, 0.03  # parts that are timed, and the relative standard error of their mean that is enough
 ENOUGH = 1_500_000  # bounces of the first thinned part, which says how long they take: some hundredths of a second
 MOST = 20_000_000  # of the smallest thinned part; beyond, only the kernel's speed is measured
-SPAN = 0.5  # seconds of a part that is run whole, about
-SHARE, PATIENCE = 0.02, (3.0, 20.0)  # of all the seconds, and at least and at most how many, are spent on looking
+SPAN = 0.1  # seconds of a part that is run whole, about
+SHARE, PATIENCE = 0.02, (0.3, 20.0)  # of all the seconds, at least and at most so many are spent on timing
 PARTICLES, BOUNCES, TURNS = 1024, 400, 3  # to measure the kernel's speed
 GOLDEN = (5**0.5 - 1) / 2  # its multiples are spread evenly over the unit interval, however many there are
 Clock = Callable[[], float]
 
 
 class Cost(NamedTuple):
-    """`nanoseconds` are the processor's, for a bounce with all that goes with it; `memory` is in bytes, at most, about.
+    """The estimated cost of a sweep: processor `nanoseconds` for a bounce, all included; at most about `memory` bytes.
 
     `error` is the relative standard error of the seconds, from the differences between the `looked` parts that were
-    run; None where only the kernel's speed was measured. `memory` comes on top of the program's own and its libraries'.
-    At no time more than `workers` parts are worked on, so memory does not grow with the grid, but for results that go
+    timed; None where only the kernel's speed was measured. `memory` is added to that of the program and its libraries.
+    At most `workers` parts are worked on at a time, so memory does not grow with the grid, except for results that go
     into no store.
     """
 
@@ -48,7 +48,7 @@ class Cost(NamedTuple):
 
     @property
     def seconds(self) -> float:
-        """How long it takes with `workers` cores like this one."""
+        """The seconds that the sweep takes with `workers` cores like this one."""
         return self.collisions * self.nanoseconds * 1e-9 / self.workers
 
     def as_data(self) -> dict[str, Any]:
@@ -56,7 +56,7 @@ class Cost(NamedTuple):
         return {**self._asdict(), "seconds": self.seconds}
 
     def lines(self) -> list[str]:
-        """The estimate, for people."""
+        """The estimate as lines of text."""
         known = "the kernel alone" if self.error is None else f"+- {self.error:.0%}, from {self.looked} parts"
         return [
             f"{self.parts} parts, {self.collisions:.3g} bounces",
@@ -68,14 +68,14 @@ class Cost(NamedTuple):
 
 
 def duration(seconds: float) -> str:
-    """A time, for people."""
+    """A time as text, in seconds, minutes or hours."""
     if seconds < 90:
         return f"{seconds:.2g} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
 def size(count: int) -> str:
-    """Bytes, for people."""
+    """A number of bytes as text."""
     for unit, least in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if count >= least:
             return f"{count / least:.3g} {unit}"
@@ -83,19 +83,19 @@ def size(count: int) -> str:
 
 
 def cost(sweep: Sweep, workers: int | None = None, stored: bool = True, clock: Clock = time.process_time) -> Cost:
-    """The cost of all parts of a sweep, whose results go into a store or stay in memory; `clock` counts seconds."""
+    """The cost of all parts of a sweep; `stored` if results go into a store, not memory. `clock` gives seconds."""
     workers, parts = workers or cores(), len(sweep.indices())
     kept = AHEAD * workers * sweep.size // parts + (0 if stored else sweep.size)
     each, length = max(sweep.collisions / parts, 1.0), prod(_cut(sweep).values())
     few = max(1, min(length, round(length * ENOUGH / each)))
     order = _spread(sweep)
     only_speed = each * few / length > MOST
-    # attractors of basins are looked for later; to compare with none of them is another task
+    # the attractors of basins are found later; without them the task is another one
     if only_speed or sweep.settings.get("attractors") == []:
         peak = 0.0 if only_speed else _largest(sweep, next(order), few, min(length, 2 * few), length)
         return Cost(parts, sweep.collisions, speed(sweep.map()), workers, sweep.size, kept + int(workers * peak))
 
-    def seconds(part: Part) -> float:
+    def seconds(part: SweepPart) -> float:
         begun = clock()
         sweep.task(part)
         return clock() - begun
@@ -126,7 +126,7 @@ def cost(sweep: Sweep, workers: int | None = None, stored: bool = True, clock: C
 
 
 def _spread(sweep: Sweep) -> Iterator[tuple[int, ...]]:
-    """Every part once, each as far as may be from those before it, in step with no axis."""
+    """Every part once, in an order in which each is far from those before it and follows no axis."""
     indices = sweep.indices()
     seen: set[int] = set()
     for i in range(8 * len(indices)):
@@ -137,7 +137,7 @@ def _spread(sweep: Sweep) -> Iterator[tuple[int, ...]]:
 
 
 def _error(found: list[float], places: list[int], parts: int) -> float:
-    """The relative standard error of what some of so many parts take for each place; 0 when all were looked at."""
+    """The relative standard error of the time per grid point, from measured parts; 0 if all `parts` were measured."""
     count = len(found)
     if count >= parts:
         return 0.0
@@ -148,12 +148,12 @@ def _error(found: list[float], places: list[int], parts: int) -> float:
 
 
 def _scenes(sweep: Sweep) -> int:
-    """How many times a part meets values of which it must prepare the map first: those taken one at a time."""
+    """The number of maps to prepare: one for each combination of values on axes that are cut into single values."""
     return prod(axis.size for axis in sweep.axes if axis.part == 1)
 
 
-def _places(sweep: Sweep, part: Part) -> int:
-    """The places of a part on the axes that are cut in pieces."""
+def _places(sweep: Sweep, part: SweepPart) -> int:
+    """The number of grid points of a part along those axes that are cut into pieces."""
     return prod(len(part.values[name]) for name in _cut(sweep))
 
 
@@ -171,12 +171,12 @@ def speed(map: PinballMap) -> float:
 
 
 def _cut(sweep: Sweep) -> dict[str, int]:
-    """The axes of which a part takes several values but not all that there are: how many."""
+    """The axes along which a part takes several values, with the number of values in a part."""
     return {axis.name: min(axis.part, axis.size) for axis in sweep.axes if axis.part > 1}
 
 
-def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> Part:
-    """A part with about so many coordinates: the middle ones of as many equal shares."""
+def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> SweepPart:
+    """A part thinned to about `count` coordinates: the middle ones of as many equal shares."""
     part, values = sweep.part(index), {}
     for name in _cut(sweep):
         here = part.values[name]
@@ -187,7 +187,7 @@ def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> Part:
 
 
 def _line(few: int, more: int, length: int, small: float, large: float) -> float:
-    """What a whole part takes, from what two thinned ones take."""
+    """The cost of a whole part, extrapolated from the costs `small` and `large` of two thinned ones."""
     if more == few:
         return large * length / more
     rise = max(0.0, large - small) / (more - few)
@@ -195,13 +195,13 @@ def _line(few: int, more: int, length: int, small: float, large: float) -> float
 
 
 def _largest(sweep: Sweep, at: tuple[int, ...], few: int, more: int, length: int) -> float:
-    """Bytes that a whole part takes at once, from thinned ones."""
+    """Bytes that a whole part takes at once, extrapolated from thinned ones."""
     ends = [_peak(sweep, _thinned(sweep, at, count)) for count in (few, more)[: 1 + (few < more)]]
     return _line(few, more, length, float(ends[0]), float(ends[-1]))
 
 
-def _peak(sweep: Sweep, part: Part) -> int:
-    """Bytes at once."""
+def _peak(sweep: Sweep, part: SweepPart) -> int:
+    """The largest number of bytes that a part takes at once."""
     watched = tracemalloc.is_tracing()
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]

@@ -1,8 +1,8 @@
-"""What sweeps measure: basins of attraction, bifurcation diagrams, exponents by attractor.
+"""The sweeps and their fields: basins of attraction, bifurcation diagrams, exponents by attractor.
 
 Basins (paper: appendix): the attractors are found once, from random starts; then each cell's centre is a particle,
-and its label is the number of the attractor that it reaches. Bifurcation diagrams (section 6.6): where random
-particles are after a long time, against the contraction or another parameter. Exponents (sections 4.1 and 5.3):
+and its label is the number of the attractor that it reaches. Bifurcation diagrams (section 6.6): the places of random
+particles after a long time, against the contraction or another parameter. Exponents (sections 4.1 and 5.3):
 orbits that share an attractor make a group, and groups are never averaged together; the groups of one value are
 numbered from the one with the most orbits on, and the same number at two values need not be the same branch.
 """
@@ -26,8 +26,8 @@ from numeric.sweeps.sweep import (
     Array,
     Axis,
     Field,
-    Part,
     Sweep,
+    SweepPart,
     against,
     fixed,
     map_of,
@@ -43,15 +43,15 @@ FIELDS = (Field("label", ("sin_phi", "s"), "int16", "1", "number of the attracto
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
-    """The task: the labels of some rows of cells."""
+class LabelTask:
+    """The task of a sweep over basins: the labels of some rows of cells."""
 
     scene: str
     lam: float
     attractors: tuple[Attractor, ...]
     transient: int
 
-    def __call__(self, part: Part) -> dict[str, Array]:
+    def __call__(self, part: SweepPart) -> dict[str, Array]:
         columns, rows = part.values["s"], part.values["sin_phi"]
         map = map_of(self.scene, self.lam)
         particles = starts_at(map, np.tile(columns, rows.size), np.repeat(rows, columns.size))
@@ -72,7 +72,7 @@ def basins(
 ) -> Sweep:
     """The sweep over the cells of a window, or of all phase space; `images` adds those under the symmetries.
 
-    Attractors that are `known` already are not looked for.
+    Attractors that are `known` already are not searched for.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -83,7 +83,7 @@ def basins(
     map = map_of(scene, lam)
     attractors = find(map, starts, seed, transient, images=images) if known is None else known
     where = window or whole(map)
-    cells, share = Cells(scene, lam, attractors, transient), max(1, PARTICLES // columns)
+    cells, share = LabelTask(scene, lam, attractors, transient), max(1, PARTICLES // columns)
     return Sweep(
         name="basins",
         about=f"Basins of attraction at lam = {lam:g}",
@@ -112,11 +112,11 @@ def described(attractor: Attractor) -> dict[str, Any]:
     exponents = {"nu_plus": attractor.nu_plus, "nu_minus": attractor.nu_minus}
     finite = {name: value if np.isfinite(value) else None for name, value in exponents.items()}
     kind = {"kind": attractor.kind.name.lower(), "period": attractor.period, "family": attractor.family}
-    return kind | finite | first
+    return kind | finite | first | ({"undecided": attractor.doubt} if attractor.doubt else {})
 
 
 def attractors_of(settings: str) -> list[dict[str, Any]]:
-    """What `described` said of the attractors, from the settings that label a result."""
+    """The descriptions of attractors by `described`, from the settings that label a result."""
     found: list[dict[str, Any]] = json.loads(settings)["attractors"]
     return found
 
@@ -139,8 +139,8 @@ DIAGRAM_FIELDS = (
 
 
 @dataclass(frozen=True)
-class Diagram:
-    """The task: the orbits of a few contractions, or of one shape, on their attractors."""
+class DiagramTask:
+    """The task of a bifurcation diagram: the orbits at a few contractions, or at one shape, on their attractors."""
 
     scene: str
     orbits: int
@@ -150,7 +150,7 @@ class Diagram:
     parameter: str = "lam"
     lam: float = 1.0
 
-    def __call__(self, part: Part) -> dict[str, Array]:
+    def __call__(self, part: SweepPart) -> dict[str, Array]:
         values = part.values[self.parameter]
         runs = spread_over(self.scene, self.parameter, values, self.lam, self.orbits, part.seed)
         rows = [self.rows(map, starts) for _, map, starts in runs]
@@ -182,7 +182,7 @@ def bifurcation(
 ) -> Sweep:
     """The sweep over `lams`: for each the last `points` bounces of `orbits` particles. `s` is nan where one stopped.
 
-    With another `parameter`, of the table or of the law, its values stand in their place, and `lam` is fixed.
+    With another `parameter`, of the table or of the law, `lams` holds its values, and `lam` is fixed.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -191,7 +191,7 @@ def bifurcation(
     >>> np.unique(found["theta"].round(6)).tolist()  # every particle ends on the minor axis
     [-1.570796, 1.570796]
     """
-    diagram = Diagram(scene, orbits, points, bounces // BLOCKS * BLOCKS, transient, parameter, lam)
+    diagram = DiagramTask(scene, orbits, points, bounces // BLOCKS * BLOCKS, transient, parameter, lam)
     return Sweep(
         name="bifurcation",
         about=f"Attractors against {said(parameter)}, from {orbits} random particles each",
@@ -228,7 +228,7 @@ EXPONENT_FIELDS = (
 
 @dataclass(frozen=True)
 class Surveys:
-    """The task: the groups of one contraction, or of one shape."""
+    """The task of a sweep over exponents: the groups at one contraction, or at one shape."""
 
     scene: str
     orbits: int
@@ -238,7 +238,7 @@ class Surveys:
     parameter: str = "lam"
     lam: float = 1.0
 
-    def __call__(self, part: Part) -> dict[str, Array]:
+    def __call__(self, part: SweepPart) -> dict[str, Array]:
         values = part.values[self.parameter][:1]
         lam = float(values[0]) if self.parameter == "lam" else self.lam
         ((scene, _, starts),) = spread_over(self.scene, self.parameter, values, lam, self.orbits, part.seed)
@@ -250,7 +250,7 @@ class Surveys:
 
 
 def numbers(group: Group) -> dict[str, float]:
-    """The fields of one group."""
+    """The values of `EXPONENT_FIELDS` for one group."""
     found: dict[str, float] = {
         "orbits": group.members.size,
         "kind": KINDS.index(group.attractor.kind if group.attractor else None),
@@ -277,7 +277,7 @@ def exponents(
     parameter: str = "lam",
     lam: float = 1.0,
 ) -> Sweep:
-    """The sweep over `lams`, or over another `parameter` at one `lam`, with as many `groups` as are kept for each.
+    """The sweep over `lams`, or over another `parameter` at one `lam`; it keeps `groups` groups for each value.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of

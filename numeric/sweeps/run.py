@@ -1,9 +1,7 @@
-"""Who does the tasks: threads or processes of this machine, or the workers of a Dask cluster.
+"""Runs a sweep: the missing parts, by threads, processes or a Dask cluster, into memory or into a store.
 
-All hand back results as they come. Threads do for kernels, which let others run beside them; a task in Python holds
-the interpreter, so its sweep asks for processes.
-
-Doing a sweep: what is missing, by whoever does the tasks, into memory or into a store.
+All executors give results as they come. Threads are used for kernels, which let others run beside them; a task that is
+mostly Python holds the interpreter, so its sweep asks for processes.
 """
 
 import errno
@@ -17,7 +15,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from numeric.sweeps.store import Memory, Stored, opened
+from numeric.sweeps.store import Memory, Stored, kept, opened
 from numeric.sweeps.sweep import Array, Sweep
 from numeric.sweeps.workers import Lost, cores, in_processes
 
@@ -34,11 +32,11 @@ LIVES = 3  # times that a part may lose its worker and be given to another
 
 
 class UnfinishedError(Exception):
-    """A sweep that could not be finished, in one sentence; what is done is kept."""
+    """A sweep that could not be finished, in one sentence; finished parts are kept."""
 
 
 def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
-    """The results of each part, by the threads of this process: the kernels let others run beside them."""
+    """The results of each part, computed by threads of this process: kernels let others run beside them."""
     waiting = iter(indices)
     with ThreadPoolExecutor(workers) as pool:
         running: dict[Future[dict[str, Array]], Index] = {}
@@ -73,7 +71,7 @@ def in_memory(sweep: Sweep, workers: int) -> dict[str, Array]:
 
 
 def on_processes(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
-    """The results of each part, by processes of this machine."""
+    """The results of each part, computed by processes of this machine; `UnfinishedError` if one dies again."""
     tasks = ([sweep.part(index)] for index in indices)
     for part, found in in_processes(sweep.task, tasks, workers, [type(sweep.task).__module__], ahead=AHEAD - 1):
         if isinstance(found, Lost):
@@ -96,7 +94,7 @@ def connected(address: str) -> Any:
 
 
 def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
-    """The results of each part, by the workers of the Dask scheduler at `address`."""
+    """The results of each part, computed by the workers of the Dask scheduler at `address`."""
     from distributed.comm.core import CommClosedError
 
     dask: Any = import_module("distributed")
@@ -112,7 +110,7 @@ def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
 
 @contextmanager
 def _quiet(*names: str) -> Iterator[None]:
-    """What goes wrong is said once, by us, and not in a traceback by the loggers named."""
+    """Silences the named loggers in the block, since errors are reported once, by this package."""
     levels = {name: logging.getLogger(name).level for name in names}
     try:
         for name in names:
@@ -157,7 +155,7 @@ def _given(client: Any, sweep: Sweep, index: Index) -> Any:
 
 
 def _found(future: Any) -> dict[str, Array] | None:
-    """What a worker found; None when it was lost on the way."""
+    """The result of a worker; None when the worker was lost on the way."""
     from distributed import KilledWorker
 
     try:
@@ -191,8 +189,22 @@ def run(
 ) -> "xr.Dataset":
     """The results as a labelled Dataset; `tick(done, parts)` is called as parts come in.
 
-    With a `store` the parts that are there already are kept, and `UnfinishedError` or `KeyboardInterrupt` says how many
-    there are when it ends early. The bits do not depend on `scheduler`, `workers`, or how often it was stopped.
+    The other arguments are those of `carried_out`.
+    """
+    return carried_out(sweep, store, scheduler, workers, tick).dataset()
+
+
+def carried_out(
+    sweep: Sweep,
+    store: Path | None = None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    tick: Tick | None = None,
+) -> Memory | Stored:
+    """The results, as arrays by name in `.arrays`; `.dataset()` labels them, which imports xarray, for a second.
+
+    With a `store`, parts that are there are kept; when it ends early, `UnfinishedError` or `KeyboardInterrupt` gives
+    their number. The bits do not depend on `scheduler`, `workers`, or how often it was stopped.
     """
     place: AbstractContextManager[Memory | Stored] = (
         nullcontext(Memory(sweep)) if store is None else opened(sweep, store)
@@ -212,18 +224,12 @@ def run(
                 if tick is not None:
                     tick(done, parts)
         except KeyboardInterrupt:
-            raise KeyboardInterrupt(f"interrupted; {_kept(store, done, parts)}") from None
+            raise KeyboardInterrupt(f"interrupted; {kept(store, done, parts)}") from None
         except UnfinishedError as stop:
-            raise UnfinishedError(f"{stop}; {_kept(store, done, parts)}") from None
+            raise UnfinishedError(f"{stop}; {kept(store, done, parts)}") from None
         except OSError as error:
             reason = FULL.get(error.errno or 0, str(error))
-            raise UnfinishedError(f"{reason}; {_kept(store, done, parts)}") from None
+            raise UnfinishedError(f"{reason}; {kept(store, done, parts)}") from None
         finally:
             pool.close()  # which lets the workers go
-        return results.dataset()
-
-
-def _kept(store: Path | None, done: int, parts: int) -> str:
-    if store is None:
-        return f"{done} of {parts} parts were done and are lost; with --store DIR they would be kept"
-    return f"{done} of {parts} parts are in {store}, and the same command goes on from there"
+        return results

@@ -1,8 +1,8 @@
-"""Parameter space: over pairs of a shape and a contraction, where chaos is, and which periods. Paper: section 6.5.
+"""Parameter space: chaos and periods over pairs of a shape and a contraction. Paper: section 6.5.
 
 From each pair random particles are started as in the paper's appendix, and those are counted whose exponent is
-positive beyond its error (`numeric.sweeps.sweep`). The one with the smallest exponent is watched for as many bounces
-more as a cycle may have that it comes back on.
+positive beyond its error (`numeric.sweeps.sweep`). For the one with the smallest exponent up to `LONGEST` more bounces
+are computed, to find the period with which it comes back.
 """
 
 from collections.abc import Sequence
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import determinants
 from numeric.pinball.sampling import Growth, Starts
 from numeric.sweeps.sweep import (
@@ -22,8 +23,8 @@ from numeric.sweeps.sweep import (
     Array,
     Axis,
     Field,
-    Part,
     Sweep,
+    SweepPart,
     against,
     at_value,
     map_of,
@@ -48,8 +49,8 @@ SPACE_FIELDS = (
 
 
 @dataclass(frozen=True)
-class Pairs:
-    """The task: all orbits of a range of `lam` at a few shapes."""
+class ShapeTask:
+    """The task of a sweep over parameter space: all orbits of a range of `lam` at a few shapes."""
 
     scene: str
     parameter: str
@@ -57,7 +58,7 @@ class Pairs:
     bounces: int
     transient: int
 
-    def __call__(self, part: Part) -> dict[str, Array]:
+    def __call__(self, part: SweepPart) -> dict[str, Array]:
         rng = np.random.default_rng(part.seed)
         values = part.values[self.parameter]
         seeds = rng.integers(0, 2**63, values.size)
@@ -85,7 +86,7 @@ class Pairs:
 
 
 def periods(map: PinballMap, starts: Starts) -> NDArray[np.int64]:
-    """The first bounce, up to `LONGEST`, after which each particle is where it was; 0 where it did not come back.
+    """The number of bounces, up to `LONGEST`, after which each particle first returns; 0 if it does not.
 
     >>> diameters = Starts(*(np.array(x) for x in ([0, 0], [0.5, 0.5], [0.0, 0.2], [0.0, 0.0], [0.0, 0.0])))
     >>> periods(PinballMap("circle", lam=1), diameters).tolist()
@@ -99,33 +100,42 @@ def periods(map: PinballMap, starts: Starts) -> NDArray[np.int64]:
 
 
 def attracting(map: PinballMap, starts: Starts, period: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Are both multipliers of the cycle through each particle, of the period given, smaller than 1? Not for period 0.
+    """Are both multipliers of the cycle through each particle, of the given period, below 1? False for period 0.
 
-    Paper: section 2.1; `|trace| < 1 + det` and `|det| < 1` say so.
+    Paper: section 2.1; this holds if `|trace| < 1 + det` and `|det| < 1`.
 
     >>> ends = Starts(*(np.array(x) for x in ([0, 0], [np.pi / 2, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0])))
     >>> attracting(PinballMap("ellipse", a=2, lam="0.5"), ends, np.array([2, 2])).tolist()  # the short axis, the long
     [True, False]
     """
-    found, fields = np.zeros(period.size, dtype=bool), ("component", "theta", "phi")
+    trace, determinant = returns(map, starts, period)
+    with np.errstate(invalid="ignore"):
+        return np.asarray((np.abs(trace) < 1 + determinant) & (np.abs(determinant) < 1))
+
+
+def returns(map: PinballMap, starts: Starts | PhasePoints, period: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Trace and determinant of the derivative over as many bounces as each particle's period; nan for period 0."""
+    trace, determinant = np.full((2, period.size), np.nan)
+    fields = "component", "theta", "phi"
     for n in np.unique(period[period > 0]):
         on = np.flatnonzero(period == n)
-        lam, (component, theta, phi, *_) = np.broadcast_to(map.lam, period.shape)[on], starts.only(on)
+        lam = np.broadcast_to(map.lam, period.shape)[on]
+        component, theta, phi = (getattr(starts, name)[on] for name in fields)
         told = map.at(lam).orbit(theta, phi, int(n), component, threads=1, fields=fields)
         component, theta, phi = (told[name][:-1] for name in fields)
         slopes = map.at(np.broadcast_to(lam, theta.shape)).derivative(theta, phi, component)
         product = slopes[0]
         for slope in slopes[1:]:
             product = np.sum(slope[:, :, :, None] * product[:, None, :, :], axis=2)
-        trace, determinant = product[:, 0, 0] + product[:, 1, 1], np.prod(determinants(slopes), axis=0)
-        found[on] = (np.abs(trace) < 1 + determinant) & (np.abs(determinant) < 1)
-    return found
+        trace[on] = product[:, 0, 0] + product[:, 1, 1]
+        determinant[on] = np.prod(determinants(slopes), axis=0)
+    return trace, determinant
 
 
 class Followed(NamedTuple):
-    """The period of the cycle on which each particle is, 0 for none; which of the others go on, and they on their way.
+    """Each particle's period, 0 for no cycle; the indices `going` of those without a cycle, and their `Growth`.
 
-    Of all particles `starts` has where they are.
+    `starts` holds the last phase points of all particles.
     """
 
     period: NDArray[np.int64]
@@ -135,10 +145,10 @@ class Followed(NamedTuple):
 
 
 def followed(map: PinballMap, starts: Starts, marks: Sequence[int], threads: int | None = None) -> Followed:
-    """Particles after the last of so many bounces; those that are on an attracting cycle after one of the `marks` stay.
+    """Follows particles over `marks[-1]` bounces; those on an attracting cycle after an earlier mark stop there.
 
-    Such a particle is back where it was after up to `LONGEST` bounces, the derivative along which contracts: one that
-    passes by a saddle is back as well.
+    Such a particle returns after up to `LONGEST` bounces, and their derivative contracts; the second condition excludes
+    particles that pass near a saddle, which return as well.
 
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
     >>> starts = Starts(*(np.array(x) for x in ([0, 0], [1.5, 0.2], [0.0, 0.1], [0.0, 0.0], [0.0, 0.0])))
@@ -163,7 +173,7 @@ def followed(map: PinballMap, starts: Starts, marks: Sequence[int], threads: int
 
 
 def egg(K: int, alpha: float) -> str:
-    """The scene of one shape, the decimal that `alpha` shows."""
+    """The scene's text for the egg at one shape, the decimal that `alpha` shows."""
     return text_of(Scene("egg", alpha=Fraction(repr(float(alpha))), K=K))
 
 
@@ -185,7 +195,7 @@ def parameter_space(
     [[0, 3]]
     """
     whole = egg(K, 0.08 * 10 / (1 + K * K)) if scene is None else scene
-    pairs = Pairs(whole, parameter, starts, bounces // BLOCKS * BLOCKS, transient)
+    pairs = ShapeTask(whole, parameter, starts, bounces // BLOCKS * BLOCKS, transient)
     name, what = (f"the {K}-pointed egg", "shape of the egg") if scene is None else ("the scene", "shape of the table")
     return Sweep(
         name="parameter-space",

@@ -1,8 +1,8 @@
-"""Where results go: a Zarr store that grows chunk by chunk and is whole at every moment, or plain memory.
+"""Stores of results: a Zarr store that grows chunk by chunk and is whole at every moment, or plain memory.
 
 A part is done when the file of each of its fields is there and its checksum is right; a file appears at once or not
-at all. So there is no journal to lose, and whatever a killed sweep leaves behind is redone or overwritten. A part has
-the same bits whoever computes it: two drivers are kept apart by a lock, and without one only waste time.
+at all. So there is no journal, and incomplete parts of a killed sweep are computed again. A part has the same bits
+whoever computes it: a lock keeps a second process out, and without a lock two only waste time.
 """
 
 import glob
@@ -11,22 +11,25 @@ import json
 import os
 import re
 import shutil
+import tomllib
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from numeric.lowering.files import PARTIAL, write_whole
 from numeric.sweeps.sweep import Array, Field, Sweep, missing_value
+from numeric.sweeps.workers import undisturbed
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Index = tuple[int, ...]
-PARTIAL = ".partial"  # at the end of the name of a file that is being written
 ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/")  # of an object store; a path made of it has lost a slash
+SHORT = 80  # letters of a value up to which it is shown where two differ
 _written = itertools.count()
 
 
@@ -38,7 +41,7 @@ class Memory:
         self.arrays = {f.name: np.full(sweep.shape(f), missing_value(f.dtype), f.dtype) for f in sweep.fields}
 
     def missing(self) -> list[Index]:
-        """Every part."""
+        """All parts: none is stored."""
         return self.sweep.indices()
 
     def write(self, index: Index, arrays: dict[str, Array]) -> None:
@@ -47,7 +50,7 @@ class Memory:
             self.arrays[field.name][self.sweep.where(field, index)] = arrays[field.name]
 
     def dataset(self) -> "xr.Dataset":
-        """All results, labelled."""
+        """All results as a labelled Dataset."""
         import xarray as xr
 
         sweep = self.sweep
@@ -59,8 +62,9 @@ class Memory:
 
 
 class Stored:
-    """Results in a Zarr store at `path`, which is made if there is none; `opened` makes sure of a single writer."""
+    """Results in a Zarr store at `path`, which must exist; `opened` makes it, and makes sure of a single writer."""
 
+    @undisturbed()
     def __init__(self, sweep: Sweep, path: Path) -> None:
         import zarr
 
@@ -70,7 +74,7 @@ class Stored:
             self.arrays: dict[str, Any] = {field.name: self.group[field.name] for field in sweep.fields}
 
     def missing(self) -> list[Index]:
-        """The parts that are not there, or not whole; a warning names files that are there and damaged."""
+        """The parts that are not there or damaged; a warning names damaged files."""
         damaged: list[Path] = []
         missing = []
         for index in self.sweep.indices():
@@ -81,19 +85,22 @@ class Stored:
             warnings.warn(f"{count} damaged files are computed again, {first} among them", stacklevel=3)
         return missing
 
+    @undisturbed()
     def write(self, index: Index, arrays: dict[str, Array]) -> None:
         """Writes the results of a part; `OSError` when the disk is full, and then the part is still missing."""
         for field in self.sweep.fields:
             values = np.asarray(arrays[field.name], field.dtype)
             self.arrays[field.name][self.sweep.where(field, index)] = values
 
+    @undisturbed()
     def dataset(self) -> "xr.Dataset":
-        """All results, labelled, read when they are looked at."""
+        """All results as a labelled Dataset, read on demand."""
         import xarray as xr
 
         found: xr.Dataset = xr.open_zarr(self.path)
         return found
 
+    @undisturbed()
     def _has(self, field: Field, index: Index, damaged: list[Path]) -> bool:
         at = dict(zip(self.sweep.axis, index, strict=True))
         array = self.arrays[field.name]
@@ -111,7 +118,7 @@ class Stored:
 
 @contextmanager
 def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
-    """The store of a sweep, new or to be resumed; `ValueError` for another's, or when another process writes to it."""
+    """The store of a sweep, new or to be resumed; `ValueError` if it is another's, or another process writes to it."""
     if ADDRESS.match(path.as_posix()):
         raise ValueError(
             f"--store {path}: an object store has no files that appear at once; accepted: a directory on a disk, which "
@@ -130,7 +137,7 @@ def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[bool]:
-    """Keeps a second driver out by a lock that ends with its process, and says whether the file system has one."""
+    """Keeps a second process out by a lock that ends with its process; yields whether the file system has locks."""
     from filelock import FileLock, Timeout
 
     lock = FileLock(path.with_name(f".{path.name}.lock"), blocking=False)
@@ -147,8 +154,9 @@ def _alone(path: Path) -> Iterator[bool]:
         lock.release()
 
 
+@undisturbed()
 def _made(sweep: Sweep, path: Path) -> None:
-    """An empty store, which appears at once."""
+    """Makes an empty store, which appears at once."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         own = f".{path.name}.{os.getpid()}"
@@ -167,7 +175,7 @@ def _made(sweep: Sweep, path: Path) -> None:
 
 
 def _laid_out(sweep: Sweep, place: Any) -> None:
-    """Axes, fields without values, and what is said of them, in one of Zarr's stores."""
+    """Writes axes, fields without values, and their descriptions into a Zarr store."""
     import zarr
 
     group = zarr.create_group(place, zarr_format=3, attributes=sweep.attributes())
@@ -189,8 +197,9 @@ def _laid_out(sweep: Sweep, place: Any) -> None:
         zarr.consolidate_metadata(group.store)
 
 
+@undisturbed()
 def _mended(sweep: Sweep, path: Path) -> None:
-    """Writes again what lies in an empty store, where it is not as it was written: axes have no checksum."""
+    """Writes the files of an empty store again where they are damaged: axes have no checksum."""
     from zarr.storage import MemoryStore
 
     own: dict[str, Any] = {}
@@ -204,7 +213,8 @@ def _mended(sweep: Sweep, path: Path) -> None:
             pass
         damaged.append(path / name)
         try:
-            _written_whole(path / name, value.to_bytes())
+            (path / name).parent.mkdir(parents=True, exist_ok=True)
+            write_whole(path / name, value.to_bytes())
         except OSError as error:
             reason = error.strerror or error
             raise ValueError(f"--store {path}: {path / name} is damaged and cannot be mended: {reason}") from None
@@ -228,7 +238,7 @@ def _field(group: Any, sweep: Sweep, field: Field) -> None:
 
 
 def _same(sweep: Sweep, path: Path) -> None:
-    """Nothing when the store is this sweep's; `ValueError` that says what differs."""
+    """Raises `ValueError`, which names what differs, unless the store is this sweep's."""
     try:
         found = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
         found["sweep"]
@@ -236,19 +246,68 @@ def _same(sweep: Sweep, path: Path) -> None:
         raise ValueError(
             f"--store {path} is not a sweep of ours; accepted: a new directory, or one to be resumed"
         ) from None
-    for key, value in sweep.attributes().items():
-        if key == "versions" and found.get(key) != value:
-            raise ValueError(
-                f"--store {path} was begun with {_listed(found.get(key))}, and here are {_listed(value)}, which may "
-                "differ in the last bits; install those versions to go on, or name another store"
-            )
-        if found.get(key) != value:
-            said = "another grid" if key == "grid" else f"{key} = {found.get(key)} and not {value}"
-            raise ValueError(f"--store {path} holds a sweep with {said}; resume it as it was begun, or name another")
+    own = sweep.attributes()
+    if differing := _differing(_named(found), _named(own)) or _other_axes(sweep, path, found):
+        said = ", ".join(differing)
+        raise ValueError(f"--store {path} holds a sweep with {said}; resume it as it was begun, or name another")
+    if found.get("versions") != own["versions"]:
+        raise ValueError(
+            f"--store {path} was begun with {_listed(found.get('versions'))}, and here are {_listed(own['versions'])}, "
+            "which may differ in the last bits; install those versions to go on, or name another store"
+        )
+
+
+def _named(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The values on which the results of a sweep depend, by the names of the options: kind, scene, settings and seed.
+
+    >>> _named({"sweep": "basins", "scene": 'scene = { table = "circle" }', "settings": '{"lam": 0.5}', "seed": 1})
+    {'sweep': 'basins', 'seed': 1, 'table': 'circle', 'lam': 0.5}
+    """
+    try:
+        scene = dict(tomllib.loads(str(attributes.get("scene")))["scene"])
+    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError):
+        scene = {"scene": attributes.get("scene")}
+    try:
+        settings = dict(json.loads(str(attributes.get("settings"))))
+    except (TypeError, ValueError):
+        settings = {"settings": attributes.get("settings")}
+    shape = scene.pop("shape", {})
+    named = {"sweep": attributes.get("sweep"), "seed": attributes.get("seed")}
+    return named | scene | (shape if isinstance(shape, dict) else {}) | settings
+
+
+def _differing(was: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
+    """The differing values as text, with both values where they are short."""
+    names = [name for name in {**here, **was} if was.get(name) != here.get(name)]
+    short = [
+        f"{name} = {was.get(name, 'none')} and not {here.get(name, 'none')}"
+        for name in names
+        if max(len(str(each.get(name, ""))) for each in (was, here)) <= SHORT
+    ]
+    return short or [f"another {name}" for name in names]
+
+
+def _other_axes(sweep: Sweep, path: Path, found: Mapping[str, Any]) -> list[str]:
+    """The axes whose coordinates are not those of the store."""
+    import zarr
+
+    if found.get("grid") == sweep.grid():
+        return []
+    different = []
+    group: Any = zarr.open_group(path, mode="r", use_consolidated=False)
+    for axis in sweep.axes:
+        try:
+            values = np.asarray(group[axis.name][:])
+        except Exception:  # whatever a codec says of a damaged file
+            continue
+        if values.shape != axis.values.shape or not np.array_equal(values, axis.values):
+            old, new = (f"{x.size} values from {x.min():g} to {x.max():g}" for x in (values, axis.values))
+            different.append(f"{axis.name} = {old} and not {new}")
+    return different or ["parts of another size"]
 
 
 def _listed(versions: Any) -> str:
-    """Packages with their versions, in words."""
+    """Packages with their versions as text."""
     try:
         return ", ".join(f"{name} {number}" for name, number in json.loads(versions).items())
     except (TypeError, ValueError, AttributeError):
@@ -260,24 +319,18 @@ def _whole_files() -> Any:
     from zarr.storage import LocalStore
 
     class WholeFiles(LocalStore):  # type: ignore[misc, unused-ignore]
-        """Each value goes to its place when it is whole."""
+        """A local store that writes each value whole."""
 
         async def set(self, key: str, value: Any) -> None:
-            _written_whole(Path(self.root) / key, value.to_bytes())
+            place = Path(self.root) / key
+            place.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(place, value.to_bytes())
 
     return WholeFiles
 
 
-def _written_whole(place: Path, value: bytes) -> None:
-    """A file that appears at once: written beside its place, to the disk, and then put there."""
-    place.parent.mkdir(parents=True, exist_ok=True)
-    partial = place.with_name(f".{place.name}.{os.getpid()}.{next(_written)}{PARTIAL}")  # this writer's own
-    try:
-        with partial.open("wb") as file:
-            file.write(value)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(place)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
+def kept(store: Path | None, done: int, parts: int) -> str:
+    """A sentence with the number of stored parts of an interrupted sweep."""
+    if store is None:
+        return f"{done} of {parts} parts were done and are lost; with --store DIR they would be kept"
+    return f"{done} of {parts} parts are in {store}, and the same command goes on from there"

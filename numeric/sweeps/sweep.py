@@ -1,13 +1,13 @@
-"""What a sweep is: named axes, the fields measured over them, and one task for each part of the grid.
+"""Sweeps: named axes, the fields measured over them, and one task for each part of the grid.
 
-A scene as a line of text, which labels results and travels to other machines; its map, and random particles in it.
+A scene is a line of text, which labels results and is sent to other machines.
 
-The sign of a finite-time Lyapunov exponent, when its error decides it.
-
-A run is cut into blocks, and the scatter of the growth over them gives the mean a standard error. Two things besides
-can make a regular orbit look chaotic. On an elliptic or a neutral orbit vectors grow like the number of bounces, so
-`B` bounces show `log(B)/B`; a sign counts beyond twice that. And an orbit may be on its way through a chaotic
-transient: then late blocks fall, and the scatter says so, unless the whole run was too short to see the end of it.
+The sign of a finite-time Lyapunov
+exponent is decided by its error. A run is cut into blocks, and the scatter of the growth over them gives the mean a
+standard error. Two things besides can make a regular orbit look chaotic. On an elliptic or a neutral orbit vectors grow
+like the number of bounces, so `B` bounces show `log(B)/B`; a sign counts beyond twice that. And an orbit may be on its
+way through a chaotic transient: then late blocks fall, and the scatter shows it, unless the whole run was too short to
+see the end of it.
 """
 
 import itertools
@@ -44,17 +44,17 @@ class Axis:
 
     @property
     def size(self) -> int:
-        """How many values."""
+        """The number of values."""
         return len(self.values)
 
     @property
     def length(self) -> int:
-        """How many of its values a task takes."""
+        """The number of its values that a task takes."""
         return self.part or self.size
 
 
 class Field(NamedTuple):
-    """A quantity on some of the axes; those that are cut into parts come among them."""
+    """A quantity on some of the axes, among them all that are cut into parts."""
 
     name: str
     dims: tuple[str, ...]
@@ -63,24 +63,24 @@ class Field(NamedTuple):
     about: str
 
 
-class Part(NamedTuple):
-    """One task's share of the grid: where it lies, the coordinates there, and a seed that no other part has."""
+class SweepPart(NamedTuple):
+    """One task's share of the grid: its index, the coordinates there, and a seed that no other part has."""
 
     at: tuple[int, ...]
     values: Mapping[str, Array]
     seed: int
 
 
-Task = Callable[[Part], dict[str, Array]]
+Task = Callable[[SweepPart], dict[str, Array]]
 
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A grid of independent tasks. `task` can be sent to another machine; it sees nothing but its part.
+    """A grid of independent tasks. `task` can be sent to another machine; it needs nothing but its part.
 
-    `settings` and `scene` are what else the results depend on; `collisions` is how many bounces it all takes,
-    and `map` makes the map on which their speed is measured. A task that is `python` for the most part, and no kernel,
-    is done in processes, since threads would wait for one another.
+    The results also depend on `settings` and `scene`; `collisions` is the number of bounces of the whole sweep, and
+    `map` makes the map on which their speed is measured. A task that is mostly `python`, and no kernel, is done in
+    processes, since threads would wait for one another.
     """
 
     name: str
@@ -107,21 +107,21 @@ class Sweep:
         return {axis.name: axis for axis in self.axes}
 
     def indices(self) -> list[tuple[int, ...]]:
-        """Where the parts lie, along each axis, in order."""
+        """The indices of the parts along each axis, in order."""
         return list(itertools.product(*(range(-(-axis.size // axis.length)) for axis in self.axes)))
 
-    def part(self, index: tuple[int, ...]) -> Part:
+    def part(self, index: tuple[int, ...]) -> SweepPart:
         """The part at `index`."""
         values = {axis.name: axis.values[self.within(axis.name, i)] for axis, i in zip(self.axes, index, strict=True)}
-        return Part(index, values, seed_of(self.seed, index))
+        return SweepPart(index, values, seed_of(self.seed, index))
 
     def within(self, name: str, i: int) -> slice:
-        """The values of an axis in its part `i`."""
+        """The slice of an axis in its part `i`."""
         length = self.axis[name].length
         return slice(i * length, min((i + 1) * length, self.axis[name].size))
 
     def where(self, field: Field, index: tuple[int, ...]) -> tuple[slice, ...]:
-        """The place of a part in a field's array."""
+        """The slices of a field's array that a part fills."""
         at = dict(zip(self.axis, index, strict=True))
         return tuple(self.within(name, at[name]) for name in field.dims)
 
@@ -136,7 +136,7 @@ class Sweep:
         return fields + sum(axis.values.nbytes for axis in self.axes)
 
     def attributes(self) -> dict[str, Any]:
-        """What labels the results: scene, seed, settings and versions."""
+        """The labels of the results: scene, seed, settings and versions."""
         return {
             "sweep": self.name,
             "scene": self.scene,
@@ -166,7 +166,7 @@ def seed_of(seed: int, index: tuple[int, ...]) -> int:
 
 
 def versions() -> dict[str, str]:
-    """The packages whose versions the last bits may depend on."""
+    """The versions of the packages on which the last bits may depend."""
     found = {}
     for name in ("pinball-billiards", "numpy", "scipy", "llvmlite"):
         try:
@@ -177,7 +177,7 @@ def versions() -> dict[str, str]:
 
 
 def missing_value(dtype: str) -> float:
-    """What stands where nothing was measured: nan, or -1 for whole numbers."""
+    """The value where nothing was measured: nan, or -1 for whole numbers."""
     return np.nan if np.dtype(dtype).kind == "f" else -1
 
 
@@ -185,9 +185,9 @@ KEPT = 16  # maps
 
 
 def text_of(scene: Scene) -> str:
-    """The scene as a sweep labels it: at `lam = 1`, since the contraction is an axis of the sweep.
+    """The scene's text for a sweep: at `lam = 1`, since the contraction is an axis of the sweep.
 
-    With a law of another kind it stays as it is: at `lam = 1` such a law may lead out of the table.
+    With another law than the paper's it stays as it is: at `lam = 1` such a law may lead out of the table.
 
     >>> text_of(Scene("egg", alpha="2/25", lam="1/2"))
     'scene = { table = "egg", shape = { alpha = "2/25" }, lam = "1" }'
@@ -221,7 +221,7 @@ def at_value(text: str, parameter: str, value: float) -> str:
     'scene = { table = "egg", shape = { alpha = "1/20" }, lam = "1" }'
     """
     scene, shown = Scene.parse(text), Fraction(repr(float(value)))
-    low, high = scene.ranges.get(parameter, (shown, shown))  # an end of it may have no decimal
+    low, high = scene.ranges.get(parameter, (shown, shown))  # an end of a range may have no decimal
     number: dict[str, Any] = {parameter: low if shown < low else high if shown > high else shown}
     return scene.at(**number).text
 
@@ -231,7 +231,7 @@ def spread_over(
 ) -> Iterator[tuple[str, PinballMap, Starts]]:
     """Particles of one scene at several values of a parameter: all contractions at once, or one shape after the other.
 
-    With each map comes the scene at that value.
+    With each map comes the scene's text at that value.
     """
     if parameter == "lam":
         yield text, *spread(text, values, each, seed)
@@ -242,23 +242,23 @@ def spread_over(
 
 
 def against(parameter: str, fields: Iterable[Field]) -> tuple[Field, ...]:
-    """The fields, each on the axis of the parameter that varies before its own."""
+    """The fields, each with the axis of the varied parameter before its own axes."""
     return tuple(field._replace(dims=(parameter, *field.dims)) for field in fields)
 
 
 def parameter_axis(parameter: str, values: Array, part: int) -> Axis:
-    """The axis of what varies: contractions, `part` of them at a time, or shapes, one at a time."""
+    """The axis of the varied parameter: contractions, `part` of them at a time, or shapes, one at a time."""
     about, part = ("contraction", part) if parameter == "lam" else ("parameter of the scene", 1)
     return Axis(parameter, np.asarray(values, dtype=np.float64), "1", about, part)
 
 
 def said(parameter: str) -> str:
-    """What varies, in words."""
+    """The words for a varied parameter."""
     return "the contraction" if parameter == "lam" else parameter
 
 
 def fixed(parameter: str, lam: float) -> dict[str, Any]:
-    """The one contraction at which another parameter varies, for the label of the results."""
+    """The contraction, if another parameter is varied, as a label of the results; empty if `lam` is varied."""
     return {} if parameter == "lam" else {"lam": lam}
 
 
@@ -271,8 +271,8 @@ BLOCKS = 4  # too few for a fine error, and enough to see a transient end
 SIGMAS = 2.0  # standard errors by which an exponent is beyond the floor
 
 
-class Measured(NamedTuple):
-    """Exponents of orbits: means over their blocks with standard errors, where they end, and how they ended."""
+class OrbitExponents(NamedTuple):
+    """Exponents of orbits (means over blocks, with standard errors), phase points at their ends, and status codes."""
 
     nu_plus: Array
     nu_minus: Array
@@ -284,21 +284,21 @@ class Measured(NamedTuple):
 
     @property
     def chaotic(self) -> NDArray[np.bool_]:
-        """Surely positive: beyond the floor by `SIGMAS` standard errors."""
+        """Mask of orbits whose exponent is positive: beyond the floor by `SIGMAS` standard errors."""
         return np.asarray((self.code == 0) & (self.nu_plus - SIGMAS * self.nu_plus_error > self.floor))
 
     @property
     def regular(self) -> NDArray[np.bool_]:
-        """Not above the floor. An orbit that is neither chaotic nor regular is undecided."""
+        """Mask of orbits with an exponent not above the floor. An orbit neither chaotic nor regular is undecided."""
         return np.asarray((self.code == 0) & (self.nu_plus <= self.floor))
 
     def ended(self, which: NDArray[np.int64]) -> Starts:
-        """Where some of the orbits end, to go on from there."""
+        """The ends of some of the orbits, as starts from which they can go on."""
         return self.end.only(which)
 
 
 def floor_of(bounces: int) -> float:
-    """The exponent up to which so many bounces cannot tell growth from shear.
+    """The exponent below which a run of so many bounces cannot tell exponential growth from shear.
 
     >>> round(floor_of(1000), 4)
     0.0138
@@ -306,7 +306,9 @@ def floor_of(bounces: int) -> float:
     return float(2 * elementary.log(bounces) / bounces)
 
 
-def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, threads: int | None = None) -> Measured:
+def measured(
+    map: PinballMap, starts: Starts, bounces: int, transient: int, threads: int | None = None
+) -> OrbitExponents:
     """The exponents of particles over `bounces` bounces in `BLOCKS` blocks, after `transient` that do not count.
 
     >>> circle = PinballMap("circle", lam=1)
@@ -316,16 +318,17 @@ def measured(map: PinballMap, starts: Starts, bounces: int, transient: int, thre
     (False, True)
     """
     growth = Growth(map, starts.theta, starts.phi, starts.component)
-    growth.skip(transient, threads)
+    growth.settle(transient, threads)
     return counted(growth, bounces, threads)
 
 
-def counted(growth: Growth, bounces: int, threads: int | None = None) -> Measured:
-    """The same of particles on their way whose sums have just begun."""
+def counted(growth: Growth, bounces: int, threads: int | None = None) -> OrbitExponents:
+    """The same as `measured` for particles whose vectors `Growth.settle` has turned; `ValueError` for few bounces."""
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")
     map, reached = growth.map, np.zeros((2, BLOCKS + 1, growth.theta.size))
+    reached[:, 0] = growth.stretch, growth.volume
     for i in range(1, BLOCKS + 1):
         growth.advance(block, threads)
         reached[:, i] = growth.stretch, growth.volume
@@ -335,4 +338,4 @@ def counted(growth: Growth, bounces: int, threads: int | None = None) -> Measure
         means = [(x.mean(axis=0), x.std(axis=0, ddof=1) / BLOCKS**0.5) for x in (plus, minus)]
     end = Starts(growth.component, growth.theta, growth.phi, *map.states.point(growth.component, growth.theta))
     (nu_plus, nu_plus_error), (nu_minus, nu_minus_error) = means
-    return Measured(nu_plus, nu_minus, nu_plus_error, nu_minus_error, floor_of(block * BLOCKS), end, growth.code)
+    return OrbitExponents(nu_plus, nu_minus, nu_plus_error, nu_minus_error, floor_of(block * BLOCKS), end, growth.code)

@@ -1,13 +1,14 @@
 """Independent work in worker processes, over all cores: the claims of a report, its figures, a sweep in Python.
 
-Threads of Python wait for one another, balls and mpmath hold ambient state and SymPy its caches, so workers are
-processes, started afresh. Answers come as they are found, whatever became of the process: one that
-dies is replaced, and what it was at is tried once more.
+Threads of Python wait for one another, balls and mpmath have ambient state and SymPy has caches, so workers are
+processes, started afresh. Answers come as they are found. A process that dies is replaced, and the item it worked on
+is tried once more.
 """
 
 import gc
 import os
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,6 +17,7 @@ from multiprocessing import get_all_start_methods, get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread, current_thread, main_thread
 from typing import Any, Generic, TypeVar
@@ -26,14 +28,48 @@ TRIES = 2  # processes that one item may cost
 GRACE = 5.0  # seconds for a process to end
 
 
+ROOT = str(Path(__file__).resolve().parents[2])  # the folder of this project's packages
+
+
+def own_command(module: str, *arguments: str) -> tuple[list[str], dict[str, str]]:
+    """The command and the environment that run a module of this package in a process of its own.
+
+    It imports from the same folders as this process: Python's `-m` alone would search the current folder first, and run
+    a file `json.py` that somebody left there.
+    """
+    return [sys.executable, "-P", "-m", module, *arguments], {**os.environ, **_paths()}
+
+
+def _paths() -> dict[str, str]:
+    """Environment variables with which a child process imports from the same folders as this one, and no others."""
+    folders = [path or ROOT for path in sys.path]  # the empty one is the current folder
+    folders += [] if ROOT in folders else [ROOT]
+    return {"PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(folders)}
+
+
+@contextmanager
+def _same_paths() -> Iterator[None]:
+    """Processes that are started within the block import from the folders of this one, and no others."""
+    before = {name: os.environ.get(name) for name in _paths()}
+    os.environ.update(_paths())
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
 def cores() -> int:
-    """The cores that this process may use."""
+    """The number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(frozen=True)
 class Lost:
-    """What came of an item whose process died, each time that it was tried."""
+    """The answer for an item whose process died each time that it was tried."""
 
     status: int
 
@@ -46,7 +82,7 @@ class Lost:
 
 @dataclass
 class _Worker(Generic[Item]):
-    """A process, this end of its pipe, and the items it was given and has not answered, in order."""
+    """A worker process, this end of its pipe, and the items that it was given and has not answered, in order."""
 
     process: BaseProcess
     pipe: Connection
@@ -61,19 +97,19 @@ def in_processes(
     modules: Sequence[str] = (),
     ahead: int = 0,
 ) -> Generator[tuple[Item, Answer | Lost], None, None]:
-    """Each item with what `work` makes of it, as answers come; a task's items go to one process, in order.
+    """Pairs of an item and `work(item)`, as answers come; a task's items go to one process, in order.
 
-    There are `jobs` processes, or one for each core. With `ahead` a process has so many more items in hand as long as
-    there is more to do than processes: none stands still while answers are written, and the last are shared out singly.
-    `work`, items and answers must be picklable; `modules` are those that every worker needs, imported once where the
-    system can fork. What `work` raises is raised here. However this ends, by Ctrl-C as well, the workers end with it.
+    There are `jobs` processes, or one for each core. With `ahead` a process holds so many more items while there are
+    more tasks than processes: none waits while answers are written, and the last tasks are given out singly. `work`,
+    items and answers must be picklable; `modules` are those that every worker needs, imported once where the system can
+    fork. What `work` raises is raised here. However this ends, by Ctrl-C as well, the workers end with it.
     """
     queue = deque(list(task) for task in tasks)
     context = _context(modules)
     workers: list[_Worker[Item]] = []
     tried: dict[int, int] = {}  # by identity: an item need not be hashable
     try:
-        with _undisturbed():
+        with _beginning():
             workers.extend(_started(context, work) for _ in range(min(jobs or cores(), len(queue))))
         while workers:
             for pipe in wait([each.pipe for each in workers]):
@@ -84,7 +120,7 @@ def in_processes(
                     workers.remove(worker)
                     yield from _mourned(worker, queue, tried)
                     if queue:
-                        with _undisturbed():
+                        with _beginning():
                             workers.append(_started(context, work))
                     continue
                 if worker.ready and isinstance(told, BaseException):
@@ -92,7 +128,7 @@ def in_processes(
                 answered = [(worker.waiting.popleft(), told)] if worker.ready else []
                 worker.ready = True
                 while queue and len(worker.waiting) <= (ahead if len(queue) > len(workers) else 0):
-                    worker.waiting.extend(queue[0])  # before the answer is looked at
+                    worker.waiting.extend(queue[0])  # before the answer is used
                     worker.pipe.send(queue.popleft())
                 yield from answered
                 if not worker.waiting:
@@ -107,19 +143,19 @@ def in_processes(
 
 
 def begin(modules: Sequence[str]) -> None:
-    """Has the modules imported for processes to come, where the system can fork, while this process goes on.
+    """Starts the server that imports `modules` for later processes, where the system can fork; returns at once.
 
-    `in_processes` with the same modules then waits only for what is left of that.
+    `in_processes` with the same modules then waits only until the imports are finished.
     """
     if _context(modules).get_start_method() == "forkserver":
         from multiprocessing.forkserver import ensure_running
 
-        with _undisturbed():
+        with _beginning():
             ensure_running()
 
 
 def _context(modules: Sequence[str]) -> BaseContext:
-    """Processes that inherit nothing of this one: forked from a server that has imported `modules`, or spawned."""
+    """The context for processes that inherit nothing: forked from a server that has imported `modules`, or spawned."""
     if "forkserver" not in get_all_start_methods():
         return get_context("spawn")
     context = get_context("forkserver")
@@ -128,18 +164,26 @@ def _context(modules: Sequence[str]) -> BaseContext:
 
 
 @contextmanager
-def _undisturbed() -> Iterator[None]:
-    """Ctrl-C waits until processes have started: a half started one would find nobody and die of a traceback.
+def _beginning() -> Iterator[None]:
+    """Processes that are started within the block import what this one does; Ctrl-C waits until they are there."""
+    with _same_paths():
+        resource_tracker.ensure_running()  # whose start, left to a later moment, lets Ctrl-C through
+        with undisturbed():
+            yield
 
-    They inherit the mask, so that Ctrl-C goes to the one that asks, from their first instruction on. A mask binds one
-    thread, and libraries have threads of their own that the signal may reach: what it then sets off waits as well.
-    The tracker of multiprocessing's resources, where its start is left to a later moment, lets the signal through.
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Delays Ctrl-C until the end of the block, as while processes start or results are stored.
+
+    A half started process would end with a traceback. Processes inherit the mask, so that from their first instruction
+    on Ctrl-C goes to the process that started them. A mask binds one thread, and libraries have threads of their own
+    that the signal may reach: the exception that it would raise is delayed as well.
     """
     usual = signal.getsignal(signal.SIGINT)
     if not hasattr(signal, "pthread_sigmask") or usual is None or current_thread() is not main_thread():
         yield
         return
-    resource_tracker.ensure_running()
     heard: list[int] = []
     signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -161,9 +205,9 @@ def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[It
 
 
 def _serve(pipe: "Connection", work: Callable[[Any], Any], rarely: tuple[int, int, int]) -> None:
-    """What a worker does: answers until nobody asks. Ctrl-C is for the one that asks.
+    """The loop of a worker: it answers until the pipe closes, and leaves Ctrl-C to the process that started it.
 
-    Unused cycles of objects are searched for as `rarely` as in the process that asks, and not in what was imported.
+    Garbage is collected as `rarely` as in the process that started it, and not among imported objects.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(*rarely)
@@ -184,7 +228,7 @@ def _serve(pipe: "Connection", work: Callable[[Any], Any], rarely: tuple[int, in
 
 
 def _received(pipe: "Connection", tasks: "SimpleQueue[Any]") -> None:
-    """Takes tasks from the pipe as they come: else each end might wait for the other to take what it sends."""
+    """Takes tasks from the pipe as they come: otherwise each end might wait for the other to take what it sends."""
     try:
         while True:
             tasks.put(pipe.recv())
@@ -195,7 +239,7 @@ def _received(pipe: "Connection", tasks: "SimpleQueue[Any]") -> None:
 def _mourned(
     worker: _Worker[Item], queue: deque[list[Item]], tried: dict[int, int]
 ) -> Generator[tuple[Item, Answer | Lost], None, None]:
-    """The items of a worker that died go back to the queue, but for one that it died of once too often."""
+    """Returns the items of a dead worker to the queue; an item that killed `TRIES` processes is answered by `Lost`."""
     worker.process.join(GRACE)
     status = worker.process.exitcode or 0
     if not worker.ready:

@@ -1,11 +1,11 @@
-"""Every orbit of the cardioid is hyperbolic at every contraction below 1, and bounds for almost every one.
+"""Every orbit of the cardioid is hyperbolic at every contraction below 1, with bounds that hold for almost every orbit.
 
-Paper: section 4.1. In the notation of `defocusing` and `splitting`, lengths along the wall are measured by `|K|*ds`,
-of which the whole boundary has `3*pi`; a beam leaves with curvature `-y/D`, `dphi = (1 - y)*|K|*ds`; the cone is `1
+Paper: section 4.1. In the notation of `defocusing` and `splitting`, lengths along the wall are measured by `|K|*ds`, in
+which the whole boundary is `3*pi` long; a beam leaves with curvature `-y/D`, `dphi = (1 - y)*|K|*ds`; the cone is `1
 <= y <= 1 + lam`, and horizontal lines, `phi` constant, are curves along it, with `y = 1`. `P` is the strip `|phi| <=
 lam*pi/2`.
 
-*Pieces.* From every point of the wall the cusp is in sight, at one exit angle: a curve `S` in phase space, a graph
+*Pieces.* From every point of the wall the cusp is visible, at one exit angle: a curve `S` in phase space, a graph
 over the whole wall. A beam focused at the cusp, at a distance `t`, has `y = D0/t < 1`, since `t*(t - D0) =
 (4/3)*(c0*sin(delta))**2 > 0` for a chord that ends there. So `dphi > 0` along `S`, when `ds > 0`, and `dphi <= 0` on
 a curve along the cone: such a curve meets `S` at most once. Off `S` the map is smooth, and takes the curve to curves
@@ -20,13 +20,17 @@ By Markov's inequality the points of the line where the product exceeds `exp(n*(
 `log(r_1*...*r_n)/n` is at most `log(2)`. As `|K| >= 3/4` and slopes in the cone are bounded, this bounds the growth
 of every vector: almost every start has `nu_plus <= log(2)`, as an upper limit.
 
-*Areas.* In `|K|*ds` and `dphi` a bounce multiplies areas by `lam*D0/d1 = lam*r*D0/(t*y - D0)`, and `D0/(t*y - D0) <=
-2` in the cone, since `2*t >= 3*D0`. So on every orbit off the cusp, back in `ds` and `dphi`,
+*Areas.* In `|K|*ds` and `dphi` a bounce multiplies areas by `lam*D0/d1 = lam*r*D0/(t*y - D0)`. As `C > 0` on every
+flight (`cusp`), with `x = c0/c1`
 
-    |det D(T**n)| <= (4/3)*|K_0|*(2*lam)**n * r_1*...*r_n,
+    D0/(t*y - D0)  <=  D0/(t - D0) = 2*x*(x + 2*C)/(x**2 + 3 + 2*x*C)  <=  x**(2/3).
 
-and for almost every start the upper limit of `log|det D(T**n)|/n` is at most `log(4*lam)`: it tends to minus infinity
-with `lam`, and is negative for `lam < 1/4`, where the area of `T**n(P)` is at most `4*pi**2*lam*(4*lam)**n`.
+The right side telescopes. So on every orbit off the cusp, back in `ds` and `dphi`, where `|K| = 3/(4*c)`,
+
+    |det D(T**n)| <= lam**n * r_1*...*r_n * (c_n/c_0)**(1/3),
+
+and for almost every start the upper limit of `log|det D(T**n)|/n` is at most `log(2*lam)`: it tends to minus infinity
+with `lam`, and is negative for `lam < 1/2`, where the area of `T**n(P)` is at most `4*pi**2*lam*(2*lam)**n`.
 
 *The other direction.* On an orbit that never meets the cusp the directions that no bounce takes into the cone are one
 (`splitting`), `E`. With `y = D0/(t - f)` it has `0 < f < d1`, since the next `y` is `1 + lam - lam*d1/f` and below 1.
@@ -37,7 +41,8 @@ off the cusp is hyperbolic for `0 < lam < 1`, and uniformly so in `|K|*ds = (3/2
 is stretched by `g` at each bounce, the other shrinks by `g`, and they keep apart by an angle that depends on `lam`
 alone. In `ds` and `dphi` too the lower limit of the one rate is at least `log(g)`, by `defocusing`, and the upper
 limit of the other at most `-log(g)`, since `|K| >= 3/4`. Areas spanned by the two are the product of their lengths
-and the gap of their `y`, so what is said of areas bounds the second rate by `log(2*lam)` as well.
+and the gap of their `y`, so the bound on areas bounds the second rate by `log(lam)`: at times when `c_n` keeps off 0,
+as it does at one of two successive bounces, and in between it shrinks as well.
 
 *No cycle.* A curve along the cone that is never cut would outgrow the wall; so two points of a horizontal line whose
 orbits are on the same side of `S` at every bounce are one point. An orbit that converges to a cycle is from some
@@ -46,21 +51,22 @@ countably many such points on each line. So *almost every orbit converges to no 
 (`defocusing`). The likely limit set [Milnor1985], the smallest closed set that holds the limit points of almost every
 orbit, is therefore not a finite union of cycles.
 
-Not shown: that the limits exist; that the likely limit set is in one piece; a natural measure.
+That the limits exist, and finitely many natural measures: `docs/exponents.md`. Not shown: that there is one.
 """
 
 from functools import cache
 
-from sympy import Expr, Matrix, Min, Rational, S, limit, log, oo, symbols
+from sympy import Expr, Interval, Matrix, Rational, S, Symbol, limit, log, oo, symbols
 
-from symbolic.cycles.defocusing import C, excess, gain, least_exponent, x
-from symbolic.cycles.splitting import arc_defect, splits
-from symbolic.expressions.signs import Finding, all_vanish, conjunction, defect
+from symbolic.cycles.defocusing import C, excess, gain, x
+from symbolic.cycles.splitting import splits
+from symbolic.expressions.signs import SignFinding, all_vanish, conjunction, defect, nonnegative
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
 
 y, D0, d1 = symbols("y D0 d1", positive=True)
 LENGTHENED = (t * y - D0) / d1
+POWER = Rational(2, 3)
 
 
 def bounce() -> Matrix:
@@ -75,7 +81,7 @@ def bounce() -> Matrix:
 
 
 def growth_defects() -> list[Expr]:
-    """By what a vector of the cone grows, and by what areas, minus what is said above: zeros.
+    """Growth of a vector of the cone, and of areas, at a bounce, minus the formulas of this module; both are 0.
 
     >>> growth_defects()
     [0, 0]
@@ -85,9 +91,9 @@ def growth_defects() -> list[Expr]:
 
 
 def cusp_defects() -> list[Expr]:
-    """A beam with `y = D0/t` has no width where it lands, and a chord to the cusp is longer than `D0`: zeros.
+    """The width of a beam with `y = D0/t` where it lands, and the excess of a chord to the cusp, minus 4/3; both are 0.
 
-    The second is `t*(t - D0 - d1)` for `c1 = 0`, hence `d1 = 0`, in units of `(c0*sin(delta))**2`, minus 4/3.
+    The second is `t*(t - D0 - d1)` for `c1 = 0`, hence `d1 = 0`, in units of `(c0*sin(delta))**2`, so that `t > D0`.
 
     >>> cusp_defects()
     [0, 0]
@@ -97,7 +103,7 @@ def cusp_defects() -> list[Expr]:
 
 
 def shrinking_defects() -> list[Expr]:
-    """`1 - y` and `|K|*ds` after a bounce of a vector with `y = D0/(t - f)`, minus what is said above: zeros.
+    """`1 - y` and `|K|*ds` after a bounce of a vector with `y = D0/(t - f)`, minus the module's formulas; both are 0.
 
     >>> shrinking_defects()
     [0, 0]
@@ -108,9 +114,9 @@ def shrinking_defects() -> list[Expr]:
 
 
 def backward_defect() -> Expr:
-    """`(t - d1)/D0` is the gain with the ends of the chord exchanged, `x` for `1/x`: zero.
+    """`(t - d1)/D0` minus the gain with the ends of the chord exchanged (`1/x` in the place of `x`); it is 0.
 
-    In units in which `c1 = 1`, and divided by `sin(delta)**2/t` above and below.
+    Units are such that `c1 = 1`; numerator and denominator are divided by `sin(delta)**2/t`.
 
     >>> backward_defect()
     0
@@ -120,35 +126,38 @@ def backward_defect() -> Expr:
 
 
 def largest_exponent() -> Expr:
-    """What the upper limit of `log|D(T**n)|/n` is at most, for almost every start."""
+    """An upper bound of the upper limit of `log|D(T**n)|/n`, for almost every start."""
     return log(S(2))
 
 
 def largest_sum() -> Expr:
-    """What the upper limit of `log|det D(T**n)|/n` is at most, for almost every start.
+    """An upper bound of the upper limit of `log|det D(T**n)|/n`, for almost every start.
 
     >>> largest_sum().subs(lam, Rational(1, 10)).n(3), largest_sum().subs(lam, 0)
-    (-0.916, zoo)
+    (-1.61, zoo)
     """
-    return log(4 * lam)
+    return log(2 * lam)
 
 
-def smaller_exponent(contraction: Expr = lam) -> Expr:
-    """What the upper limit of the rate in `E` is at most, on every orbit off the cusp, for `0 < lam < 1`.
+def area_bound(power: Rational = POWER) -> SignFinding:
+    """Is `D0/(t - D0) <= x**power` on every flight, `x = c0/c1`? With `x = z**q` that is a polynomial inequality.
 
-    >>> smaller_exponent(Rational(1, 10)).n(3), smaller_exponent(Rational(9, 10)).n(3)
-    (-1.61, -0.000772)
+    >>> area_bound().outcome.name
+    'PROVED'
     """
-    return Min(-least_exponent().subs(lam, contraction), log(2 * S(contraction)))
+    z = Symbol("z", nonnegative=True)
+    focal = 2 * x * (x + 2 * C)  # t*D0, over (4/3)*(c1*sin(delta))**2
+    beyond = Rational(3, 4) * excess() + 2 * (1 + 2 * x * C)  # t*(t - D0), over the same
+    room = (x**power * beyond - focal).subs(x, z**power.q).expand()
+    return nonnegative(room, {z: Interval(0, oo), C: Interval(0, 1)})
 
 
 @cache
-def two_rates() -> Finding:
-    """Growth, areas, the curve of the cusp and what shrinks, on the grounds of `defocusing` and `splitting`."""
+def two_rates() -> SignFinding:
+    """Are the identities for lengths, areas, the curve `S` and the direction `E` proved, and those of `splitting`?"""
     steps = {
         "what a bounce makes of lengths and areas": growth_defects(),
-        "2*t >= 3*D0, so areas grow by 2*lam*r at most": [arc_defect()],
         "a curve along the cone meets the curve of the cusp once": cusp_defects(),
         "directions that no bounce takes into the cone": [*shrinking_defects(), backward_defect()],
     }
-    return conjunction(splits(), all_vanish(steps))
+    return conjunction(splits(), all_vanish(steps), area_bound())

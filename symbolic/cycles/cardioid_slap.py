@@ -1,16 +1,16 @@
-"""The slap map of the cardioid: parametrised algebraically, so that its expansion can be proved; and in the half
-angle, where it expands at once, with a rational slope.
+"""The slap map `T0` of the cardioid, in two parametrisations that prove its expansion. Paper: section 4.2.
 
-Paper: section 4.2."""
+By the landing point `q` the second iterate `T0**2` is algebraic and expands; in the half angle `T0` expands itself.
+"""
 
 from functools import cache
 
 from sympy import Expr, I, Interval, Poly, Rational, S, Symbol, atan, cancel, cos, expand, pi, sin, sqrt, together
 
-from symbolic.expressions.signs import Finding, Outcome, conjunction, nonnegative, positive, vanishes
+from symbolic.expressions.signs import Outcome, SignFinding, conjunction, nonnegative, positive, vanishes
 from symbolic.expressions.text import Kernel, kernel
 
-q = Symbol("q", real=True)  # the landing point
+q = Symbol("q", real=True)  # the landing point: sin(Theta/2)/sqrt(1 + 7*cos(Theta/2)**2)
 y = Symbol("y", real=True)  # q of the launching point, where both are needed
 UPPER = Interval.open(-1, Rational(1, 3))  # landing points of the upper half
 
@@ -28,11 +28,12 @@ def slope_squared(q: Expr = q) -> Expr:
     return 4 * (3 - q) ** 3 / ((1 - 3 * q) ** 2 * (1 + q) * (5 - 7 * q) ** 2)
 
 
-def parametrised() -> Finding:
-    """The landing at `q` from `LAUNCH_COS2` solves the flight equation, and `slope_squared` follows.
+def parametrised() -> SignFinding:
+    """Is it proved that a launch with `cos(theta/2)**2 = LAUNCH_COS2` lands at `q`, with `T0'**2 = slope_squared(q)`?
 
-    The launching point is `u = -U*E*(cos - i*r)/(2*U + 1)` with `E = exp(i*Theta/2)`, `U = E**2`,
-    `cos = cos(Theta/2)` and `r = sqrt(1 + 7*cos**2)`, so that `E = cos + i*q*r`.
+    The polar angles are `theta` of the launch and `Theta` of the landing, `u = exp(i*theta)` and `U = exp(i*Theta)`.
+    With `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at
+    `u = -U*E*(cos - i*r)/(2*U + 1)`.
     """
     u, U = Symbol("u"), Symbol("U")
     ray = (U - u) * (2 + u + U) * u**-3 - (1 / U - 1 / u) * (2 + 1 / u + 1 / U)  # Im((Z - z)/normal), scaled
@@ -49,7 +50,7 @@ def parametrised() -> Finding:
         "its q^2": LAUNCH_Q2 - (1 - LAUNCH_COS2) / (1 + 7 * LAUNCH_COS2),
         "T0'^2 = (ds1/ds0)^2 with s = 4*sin(theta/2)": slope_squared() - ratio,
     }
-    return conjunction(*(Finding(_zero(expression), fact) for fact, expression in facts.items()))
+    return conjunction(*(SignFinding(_zero(expression), fact) for fact, expression in facts.items()))
 
 
 _C, _R = Symbol("cos"), Symbol("r")
@@ -65,8 +66,8 @@ def _zero(expression: Expr) -> Outcome:
     return Outcome.PROVED if vanishes(expression) else Outcome.UNKNOWN
 
 
-def forward_once() -> Finding:
-    """The upper half launches to each `q` of `UPPER` exactly once.
+def forward_once() -> SignFinding:
+    """Is it proved that exactly one launch from the upper half lands at each `q` of `UPPER`?
 
     `cos(theta/2)**2` falls strictly from 1 to 0 on it, and the flight never has length 0 there: a
     landing at the launching point would need `4*u**2*(u + 1) = 0`, the cusp.
@@ -76,7 +77,7 @@ def forward_once() -> Finding:
     """
     falls = positive(-LAUNCH_COS2.diff(q), {q: UPPER})
     ends = _zero(LAUNCH_COS2.subs(q, -1) - 1), _zero(LAUNCH_COS2.subs(q, UPPER.end))
-    return conjunction(falls, *(Finding(end, "cos(theta/2)^2 runs from 1 to 0") for end in ends))
+    return conjunction(falls, *(SignFinding(end, "cos(theta/2)^2 runs from 1 to 0") for end in ends))
 
 
 def slow_region() -> tuple[Expr, Expr]:
@@ -106,15 +107,15 @@ def _critical() -> Expr:
 
 @cache
 def expansion_polynomial(bound: Expr) -> Expr:
-    """A polynomial in the final `q` without a root where `|(T0**2)'| = bound` nowhere on the table.
+    """A polynomial in the final `q`: if it has no root, `|(T0**2)'|` equals `bound` nowhere on the table.
 
     The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; both signs are multiplied.
     """
     return _norm(*_split(_expanding_by(bound))).as_expr()
 
 
-def expands_by(bound: Expr) -> Finding:
-    """Is `|(T0**2)'| > bound` everywhere? Unbounded at the ends of each branch, it is if it nowhere equals it.
+def expands_by(bound: Expr) -> SignFinding:
+    """Is `|(T0**2)'| > bound` everywhere? As it is infinite at the ends of each branch, it need not equal it anywhere.
 
     >>> expands_by(Rational(3, 2)).outcome.name
     'PROVED'
@@ -123,12 +124,12 @@ def expands_by(bound: Expr) -> Finding:
     roots = polynomial.count_roots(UPPER.start, UPPER.end)
     if roots == 0:
         return conjunction(
-            unbounded(), Finding(Outcome.PROVED, f"Sturm: |(T0^2)'| = {bound} has no solution on either branch")
+            unbounded(), SignFinding(Outcome.PROVED, f"Sturm: |(T0^2)'| = {bound} has no solution on either branch")
         )
-    return Finding(Outcome.UNKNOWN, f"|(T0^2)'| = {bound} has {roots} formal solution(s)")
+    return SignFinding(Outcome.UNKNOWN, f"|(T0^2)'| = {bound} has {roots} formal solution(s)")
 
 
-def unbounded() -> Finding:
+def unbounded() -> SignFinding:
     """Is `|(T0**2)'|` infinite at the ends of both branches of `T0**2`?
 
     On one, `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other from 0 to 1/3, as `q` runs from -1.
@@ -142,9 +143,9 @@ def unbounded() -> Finding:
         LAUNCH_Q2.subs(q, UPPER.end) - 1,
     ]
     whole = conjunction(
-        positive(inverse, {q: UPPER}), *(Finding(_zero(end), "T0' is infinite at the ends") for end in ends)
+        positive(inverse, {q: UPPER}), *(SignFinding(_zero(end), "T0' is infinite at the ends") for end in ends)
     )
-    return Finding(whole.outcome, "(T0^2)' is infinite at the ends of its branches") if whole else whole
+    return SignFinding(whole.outcome, "(T0^2)' is infinite at the ends of its branches") if whole else whole
 
 
 @cache
@@ -163,7 +164,7 @@ def expansion_infimum() -> Expr:
 
 
 @cache
-def infimum_attained() -> Finding:
+def infimum_attained() -> SignFinding:
     """Is `expansion_infimum` the least value of `|(T0**2)'|` on the table? In exact arithmetic, by counting.
 
     On the branch that changes halves, `y < 0`, it is infinite at both ends and has one critical point: its minimum.
@@ -177,9 +178,9 @@ def infimum_attained() -> Finding:
     level = [side for _, side in zeros(_expanding_by(ABOVE))]
     if not unbounded() or critical.count(-1) != 1 or sorted(level) != [-1, -1]:
         said = f"critical points {critical}, solutions of |(T0^2)'| = {ABOVE} {level} by the sign of y"
-        return Finding(Outcome.UNKNOWN, said)
+        return SignFinding(Outcome.UNKNOWN, said)
     said = f"Sturm: (T0^2)' has one critical point on the branch that changes halves, and is {ABOVE} twice, there alone"
-    return Finding(Outcome.PROVED, said)
+    return SignFinding(Outcome.PROVED, said)
 
 
 @cache
@@ -200,10 +201,10 @@ ABOVE = Rational(151, 100)  # between the least values of (T0**2)' on its two br
 
 
 def zeros(expression: Expr) -> list[tuple[tuple[Expr, Expr], int]]:
-    """The zeros of a polynomial in `q`, `y` where `y**2 = LAUNCH_Q2`, over `UPPER`: bounds on `q`, and the sign of `y`.
+    """Zeros over `UPPER` of a polynomial in `q` and `y`, `y**2 = LAUNCH_Q2`: bounds on `q` and the sign of `y`.
 
-    With `even + y*odd`, a zero of the norm is one at the `y` whose sign is that of `-even*odd`; at a common zero of
-    both, at either. Points with `y >= 1/3`, where no particle that leaves the upper half lands, are left out.
+    With `even + y*odd`, a zero of the norm is one at the `y` whose sign is that of `-even*odd`; a common zero of both
+    is one for both signs. Points with `y >= 1/3`, where no particle that leaves the upper half lands, are left out.
 
     >>> zeros(q + y)  # LAUNCH_Q2 is 1/25 at q = -1/5
     [((-1/5, -1/5), 1)]
@@ -262,8 +263,8 @@ SHRINKS = Rational(835, 1000)
 STEEP = Rational(31, 10)
 
 
-def derived() -> Finding:
-    """`RATE`, `LAUNCH_TAN2`, `SPEED2` follow from what `symbolic.cycles.cardioid_slap` proves.
+def derived() -> SignFinding:
+    """Do `RATE`, `LAUNCH_TAN2` and `SPEED2` follow from `slope_squared`, `LAUNCH_COS2` and `COS2`?
 
     Arc length is `s = 4*sin(theta/2)`, so the slope in half angles is `T0'(s)*cos(theta/2)/cos(b)`.
 
@@ -278,11 +279,11 @@ def derived() -> Finding:
         "its speed: d(sin(b)^2)/dq = 2*sin(b)*cos(b)*db/dq": sin2.diff(q) ** 2 * SPEED2 - 4 * sin2 * COS2,
     }
     zero = {fact: _zero(e) for fact, e in facts.items()}
-    return conjunction(*(Finding(outcome, fact) for fact, outcome in zero.items()))
+    return conjunction(*(SignFinding(outcome, fact) for fact, outcome in zero.items()))
 
 
-def lands_first() -> Finding:
-    """Of all points where the normal of an upper launch meets the boundary, the landing at `q < 1/3` alone is ahead.
+def lands_first() -> SignFinding:
+    """Is the landing at `q < 1/3` the only point ahead, of all where the normal of an upper launch meets the boundary?
 
     The flight equation is quadratic in `u`, so the launches to a landing are `u(q)` and, mirrored, that of `-q`; and
     `u(q)` is continuous for `-1 < q < 1`, in the upper half below 1/3 and in the lower above. Along `-exp(3*I*theta/2)`
@@ -300,7 +301,7 @@ def lands_first() -> Finding:
         "the landing at q = 0 is theta = 0": COS2.subs(q, 0) == 1,
         "ahead there": bool(flown(cosine) > 0),
     }
-    found = [Finding(Outcome.PROVED if true else Outcome.UNKNOWN, fact) for fact, true in facts.items()]
+    found = [SignFinding(Outcome.PROVED if true else Outcome.UNKNOWN, fact) for fact, true in facts.items()]
     return conjunction(positive(COS2, {q: Interval.open(-1, 1)}), *found)
 
 
@@ -313,8 +314,8 @@ def flown(cosine: Expr) -> Expr:
     return 2 * cosine**3 - 2 * (4 * cosine**3 - 3 * cosine)
 
 
-def expands() -> Finding:
-    """`RATE < SHRINKS` at every landing, so that one bounce expands half angles by more than 1.197.
+def expands() -> SignFinding:
+    """Is `0 < RATE < SHRINKS` at every landing? One bounce then expands half angles by more than 1.197.
 
     >>> expands().outcome.name
     'PROVED'
@@ -322,23 +323,23 @@ def expands() -> Finding:
     return conjunction(positive(RATE, {q: UPPER}), positive(SHRINKS - RATE, {q: Interval(-1, UPPER.end)}))
 
 
-def quiet_near_the_cusp() -> Finding:
-    """Below `CUSP` the rate grows from 0 at the cusp to less than `SHRINKS/2`.
+def quiet_near_the_cusp() -> SignFinding:
+    """Does the rate grow, below `CUSP`, from 0 at the cusp to less than `SHRINKS/2`?
 
     >>> quiet_near_the_cusp().outcome.name
     'PROVED'
     """
     near = {q: Interval(-1, CUSP)}
     grows = positive(RATE.diff(q), near)
-    return conjunction(grows, nonnegative(SHRINKS / 2 - RATE, near), Finding(_zero_at_cusp(), "0 at the cusp"))
+    return conjunction(grows, nonnegative(SHRINKS / 2 - RATE, near), SignFinding(_zero_at_cusp(), "0 at the cusp"))
 
 
 def _zero_at_cusp() -> Outcome:
     return Outcome.PROVED if RATE.subs(q, -1) == 0 else Outcome.UNKNOWN
 
 
-def gentle_elsewhere() -> Finding:
-    """`abs(d log(RATE)/db) < STEEP` from `CUSP` on.
+def gentle_elsewhere() -> SignFinding:
+    """Is `abs(d log(RATE)/db) < STEEP` from `CUSP` on?
 
     >>> gentle_elsewhere().outcome.name
     'PROVED'
@@ -348,10 +349,10 @@ def gentle_elsewhere() -> Finding:
 
 @cache
 def branch(above: bool) -> Kernel:
-    """`(launch, rate)` of the landing half angle `b`, without cancellation at the cusp.
+    """The generated function `(launch, rate)` of the landing half angle `b`, without cancellation at the cusp.
 
-    `launch` is the arc tangent of `sqrt(LAUNCH_TAN2)`, for `b < pi/4`, or `above` the right angle less that of its
-    inverse, for `b > -pi/2`; `rate` is its derivative.
+    `launch` is the half angle of the launch: `atan(sqrt(LAUNCH_TAN2))`, for `b < pi/4`, or if `above` a right angle
+    less `atan(1/sqrt(LAUNCH_TAN2))`, for `b > -pi/2`; `rate` is its derivative.
 
     >>> branch(False).results
     ('launch', 'rate')
@@ -364,7 +365,7 @@ def branch(above: bool) -> Kernel:
 
 
 def near_launch() -> Expr:
-    """The launching half angle of `q = CUSP`.
+    """The half angle of the launch that lands at `q = CUSP`.
 
     >>> near_launch().n(6)
     0.0610851

@@ -1,14 +1,9 @@
-"""Cycles, exact: periodic orbits given by their boundary points, and their monodromy matrices.
+"""Cycles, exact: periodic orbits given by their boundary points, with monodromy matrices and multipliers.
 
-Exit and incidence angles follow from the chords that meet at a point, so nothing but the points is
-typed in. Paper: end of section 2.1.
-
-Where the multipliers of a cycle lie, decided from trace and determinant of its monodromy.
-
-The characteristic polynomial is `mu**2 - trace*mu + det`; its values at 1 and -1 and the size of
-`det` decide everything (Jury's criterion), so no root is ever extracted.
-
-The cycles that the paper names or implies, each by its boundary points.
+Exit and incidence angles follow from the chords that meet at a point, so that only the points are given. Paper: end of
+section 2.1. Where the multipliers lie is decided by trace and determinant of the monodromy matrix: the characteristic
+polynomial is `mu**2 - trace*mu + det`, and its values at 1 and -1 and the size of `det` suffice (Jury's criterion), so
+that no root is extracted. The cycles that the paper names or implies are at the end.
 """
 
 from dataclasses import dataclass, replace
@@ -40,7 +35,7 @@ from sympy import (
 )
 
 from symbolic.expressions.identities import over_one_root
-from symbolic.expressions.signs import Box, Finding, conjunction, positive, vanishes
+from symbolic.expressions.signs import Box, SignFinding, conjunction, positive, vanishes
 from symbolic.motion.collision import derivative_matrix, determinant
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from symbolic.tables.table import Table, alpha, cos_eta1, cos_phi0, lam, theta
@@ -110,7 +105,7 @@ class Cycle:
         return shortened(leaving), shortened(arriving)
 
     def _repr_latex_(self) -> str:
-        from symbolic.tables.formula import equation  # a notebook asks for it, nothing else does
+        from symbolic.tables.formula import equation  # needed in notebooks only
 
         return equation(rf"\text{{{self.table.name}, {self.name}:}}\quad D T^{{{len(self.bounces)}}}", monodromy(self))
 
@@ -137,7 +132,7 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
 
 
 def shortened(expression: Expr) -> Expr:
-    """As `simplify`; rational functions of letters, and of one square root besides, are cancelled, which says all.
+    """The expression, simplified; by cancellation alone if it is rational in letters and at most one square root.
 
     >>> shortened((alpha**2 - 1) / (alpha - 1)), shortened((alpha**2 - 3) / (alpha - sqrt(3)))
     (alpha + 1, alpha + sqrt(3))
@@ -195,7 +190,7 @@ def monodromy(cycle: Cycle, base: int = 0, contraction: Expr = lam) -> Matrix:
 
 @lru_cache(maxsize=256)
 def _monodromy(cycle: Cycle, base: int, contraction: Expr) -> Matrix:
-    """The stability matrix, derived once in a process; nobody can change its entries."""
+    """`monodromy`, cached, as an immutable matrix."""
     product = eye(2)
     for i in range(base, base + len(cycle.bounces)):
         product = flight_matrix(cycle, i, contraction) * product
@@ -203,7 +198,7 @@ def _monodromy(cycle: Cycle, base: int, contraction: Expr) -> Matrix:
 
 
 def _factored(expression: Expr) -> Expr:
-    """As `factor`, which is slow where a square root is met before it is multiplied out."""
+    """The expression, factored; first written over one square root if it has one, since `factor` is slow there."""
     found = over_one_root(expression)
     return factor(expression if found is None else found)
 
@@ -234,7 +229,7 @@ def multipliers(trace: Expr, det: Expr) -> tuple[Expr, Expr]:
     return trace / 2 + half, trace / 2 - half
 
 
-def inside_unit_circle(trace: Expr, det: Expr, box: Box) -> Finding:
+def inside_unit_circle(trace: Expr, det: Expr, box: Box) -> SignFinding:
     """Are both multipliers smaller than 1 in modulus, everywhere in the box?
 
     >>> from sympy import Rational, S
@@ -244,8 +239,8 @@ def inside_unit_circle(trace: Expr, det: Expr, box: Box) -> Finding:
     return conjunction(positive(1 - trace + det, box), positive(1 + trace + det, box), positive(1 - det, box))
 
 
-def saddle(trace: Expr, det: Expr, box: Box) -> Finding:
-    """Is `0 < mu_minus < 1 < mu_plus`?
+def saddle(trace: Expr, det: Expr, box: Box) -> SignFinding:
+    """Is `0 < mu_minus < 1 < mu_plus` everywhere in the box?
 
     >>> from sympy import Rational, S
     >>> saddle(S(3), S(1), {}).outcome.name
@@ -254,23 +249,13 @@ def saddle(trace: Expr, det: Expr, box: Box) -> Finding:
     return conjunction(positive(trace - 1 - det, box), positive(det, box))
 
 
-def real_and_distinct(trace: Expr, det: Expr, box: Box) -> Finding:
-    """Are the multipliers real and different?"""
-    return positive(trace**2 - 4 * det, box)
-
-
-def complex_pair(trace: Expr, det: Expr, box: Box) -> Finding:
-    """Are the multipliers complex conjugates off the real line? Their modulus is then `sqrt(det)`."""
-    return positive(4 * det - trace**2, box)
-
-
 @cache
-def contracting_norm() -> Finding:
-    """Is there for every attracting monodromy matrix a quadratic norm in which it contracts?
+def contracting_norm() -> SignFinding:
+    """Is there, for every attracting monodromy matrix, a quadratic norm in which it contracts?
 
     For the companion matrix `M` of any trace and determinant inside Jury's triangle, `N - M.T*N*M = 1` has a positive
-    definite solution `N`; a matrix that is no multiple of the identity is similar to its companion matrix, and a
-    multiple contracts as it is. So near an attracting cycle, where `DT` is continuous, it contracts too.
+    definite solution `N`. A matrix that is no multiple of the identity is similar to its companion matrix, and a
+    multiple contracts in any norm. By continuity of `DT`, the map contracts near an attracting cycle too.
 
     >>> contracting_norm().outcome.name
     'PROVED'
@@ -313,7 +298,7 @@ def cardioid_vertical() -> Cycle:
 
 @cache
 def cuspless_vertical() -> Cycle:
-    """The same chord in the cuspless cardioid. Paper: section 5."""
+    """The chord of `cardioid_vertical` in the cuspless cardioid. Paper: section 5."""
     return Cycle("vertical", cuspless, ((0, pi / 3), (0, -pi / 3)))
 
 

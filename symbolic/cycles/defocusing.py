@@ -36,8 +36,7 @@ on every orbit off the cusp, whether or not it has exponents; the bound tends to
 by a distance that depends on `lam < 1` alone: no orbit converges to the cusp.
 
 *At `lam = 1`* the gain exceeds 1 on every chord, so by Birkhoff's theorem its mean logarithm is positive for almost
-every start; `log(c)` and `log(cos(phi))` have finite means (`symbolic.motion.collision`), so by Oseledets' theorem
-the
+every start; `log(c)` and `log(cos(phi))` have finite means (`symbolic.motion.collision`), so by Oseledets' theorem the
 exponents exist for almost every start, and `nu_plus = -nu_minus > 0`. No bound for all starts follows.
 
 *Near the cusp again and again.* For `lam < 1` let a curve have all its tangents in the cone. It runs monotonically in
@@ -48,9 +47,8 @@ and what lands on that side is such a curve again. So the starts that come as ne
 wanted, are open and dense among those whose orbit misses the cusp; their intersection is dense (Baire), and no
 compact set off the cusp attracts an open set of starts.
 
-Not shown for `0 < lam < 1`: that the limits exist, `nu_minus < 0` for every invariant measure, a natural (SRB)
-measure, transitivity, or that almost every start, and not only a dense set of them, comes near the cusp again and
-again.
+That almost every start does so, and not only a dense set of them, follows from `cusp`, and so do finitely many
+natural measures and exponents of almost every start. Not shown for `0 < lam < 1`: that there is one such measure.
 """
 
 from functools import cache
@@ -73,7 +71,7 @@ from sympy import (
     tan,
 )
 
-from symbolic.expressions.signs import Finding, all_vanish, conjunction, defect, nonnegative, positive
+from symbolic.expressions.signs import SignFinding, all_vanish, conjunction, defect, nonnegative, positive
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cardioid
 from symbolic.tables.geometry import curvature, velocity
@@ -87,7 +85,7 @@ BOUNDARY = cardioid.components[0]
 
 
 def beam_defects() -> list[Expr]:
-    """Width and curvature of a beam after a bounce, by the derivative matrix, minus what is said above: zeros.
+    """Width and curvature of a beam after a bounce, by the derivative matrix, minus the module's formulas; both are 0.
 
     >>> beam_defects()
     [0, 0]
@@ -105,10 +103,10 @@ def beam_defects() -> list[Expr]:
 
 
 def cone_defects() -> list[Expr]:
-    """With `u' = 1/d1` and `u' = 0` a beam leaves with `u*D1` equal to -1 and `-(1 + lam)`: zeros.
+    """Four expressions that are 0, so that the cone is mapped into itself and widths grow by the gain.
 
-    The gain in width over `D` of the slowest beam, `u = -1/D0`, is `(t - D0)/d1`: zero. Such a beam is `(ds, dphi) =
-    (1, 0)`, and after a bounce its `ds` is `|K0|*(t - D0)/cos(eta1)`: zero.
+    Beams with `u' = 1/d1` and `u' = 0` leave with `u*D1` equal to -1 and `-(1 + lam)`. The slowest beam, `u = -1/D0`,
+    grows in width over `D` by `(t - D0)/d1`; it is `(ds, dphi) = (1, 0)`, and then `ds` is `|K0|*(t - D0)/cos(eta1)`.
 
     >>> cone_defects()
     [0, 0, 0, 0]
@@ -128,7 +126,7 @@ def ends() -> tuple[Expr, Expr]:
 
 
 def chord_defects() -> list[Expr]:
-    """`t**2`, `t*cos(phi0)` and `t*cos(eta1)` of a chord, minus closed forms in `c0, c1, delta`: zeros.
+    """`t**2`, `t*cos(phi0)` and `t*cos(eta1)` of a chord, minus closed forms in `c0, c1, delta`; all are 0.
 
     >>> bool(all_vanish({"": chord_defects()}))
     True
@@ -148,7 +146,7 @@ def chord_defects() -> list[Expr]:
 
 
 def direction_defects() -> list[Expr]:
-    """A chord lies between the angles `delta` and `2*delta` from the tangent, as vectors do: zeros.
+    """Six expressions that are 0, so that a chord makes an angle between `delta` and `2*delta` with the tangent.
 
     In the frame of tangent and normal it is `2*sin(delta)*(c0*(cos, sin)(delta) + c1*(cos, sin)(2*delta))`; so its
     cross products with these two directions are `2*sin(delta)**2` times `c1` and `c0`, both positive.
@@ -173,7 +171,7 @@ def direction_defects() -> list[Expr]:
 
 
 def apart_defects() -> list[Expr]:
-    """Both ends of a chord are not near the cusp: zeros.
+    """Three expressions that are 0, so that the two ends of a chord are not both near the cusp.
 
     In turn: `sin(delta)**2` in `c0`, `c1` and `C`; the sum of `t*cos(phi0)` and `t*cos(eta1)` over `2*sin(delta)**2`, a
     product with `1 + 2*C`, so that `C > -1/2`; and `3*c1**2 - sin(delta)**2`, not negative for `c1 >= c0`.
@@ -191,7 +189,7 @@ def apart_defects() -> list[Expr]:
 
 
 def radius_defect() -> Expr:
-    """The radius of curvature is `4*c/3`: zero.
+    """An expression that is 0, so that the radius of curvature is `4*c/3`.
 
     >>> radius_defect()
     0
@@ -200,7 +198,7 @@ def radius_defect() -> Expr:
 
 
 def turning_defect() -> Expr:
-    """`|K|*ds` is `3/2*d(theta)`, so the whole boundary measures `3*pi`: zero.
+    """An expression that is 0, so that `|K|*ds` is `3/2*d(theta)` and the whole boundary measures `3*pi`.
 
     >>> turning_defect()
     0
@@ -210,7 +208,7 @@ def turning_defect() -> Expr:
 
 
 def excess() -> Expr:
-    """`t*(t - D0 - d1)/sin(delta)**2` in `x = c0/c1` and `C`, for `c1 = 1`.
+    """`t*(t - D0 - d1)/sin(delta)**2` on a chord (letters: module docstring), in `x = c0/c1` and `C`, for `c1 = 1`.
 
     >>> excess().factor()
     4*(-2*C*x + x**2 + 1)/3
@@ -220,7 +218,7 @@ def excess() -> Expr:
 
 
 def gain() -> Expr:
-    """`(t - D0)/d1`, by which a beam's width grows at a bounce at least.
+    """The gain `(t - D0)/d1`, the least factor by which a beam's width grows at a bounce.
 
     >>> gain().subs({x: 1, C: 0})
     2
@@ -229,7 +227,7 @@ def gain() -> Expr:
 
 
 def square_parts() -> list[tuple[Interval, tuple[Expr, ...]]]:
-    """What the excess and the gain have beyond their bounds, as sums of parts not negative for `C` in a range.
+    """The excess, and the gain minus two bounds, as sums: for each a range of `C` and terms that are nonnegative there.
 
     In turn: the excess; the gain beyond `1 + tan(delta/2)**2/2`; the gain beyond `3/2`; the two last multiplied by
     `1 + 2*x*C`, which has the sign of `cos(eta1)`, and by positive constants and powers of `1 + C`.
@@ -242,7 +240,7 @@ def square_parts() -> list[tuple[Interval, tuple[Expr, ...]]]:
 
 
 def square_defects() -> list[Expr]:
-    """The excess and what the gain has beyond its bounds, minus the sums of `square_parts`: zeros.
+    """The excess, and the gain minus its bounds, minus the sums of `square_parts`; all are 0.
 
     >>> square_defects()
     [0, 0, 0]
@@ -256,8 +254,8 @@ def square_defects() -> list[Expr]:
     return [defect(left - sum(parts)) for left, (_, parts) in zip(found, square_parts(), strict=True)]
 
 
-def signs() -> Finding:
-    """The inequalities of the proof: parts of sums are not negative, and the smaller bound of the gain is the first.
+def signs() -> SignFinding:
+    """Are the inequalities of the proof true: no term of a sum is negative, and the first bound of the gain is smaller?
 
     The first is smaller than 3/2 because `delta/2` is `(1 - lam)*pi/8 <= pi/8` there, and `tan(pi/8) < 1`.
 
@@ -269,8 +267,8 @@ def signs() -> Finding:
 
 
 @cache
-def expands() -> Finding:
-    """Every beam of the cone stays in it and widens by the gain, and the gain keeps off 1: identities and signs."""
+def expands() -> SignFinding:
+    """Is it proved that every beam of the cone stays in the cone and widens by the gain, which has a bound above 1?"""
     steps = {
         "a beam's width and curvature after a bounce": beam_defects(),
         "the cone goes into itself": cone_defects(),
@@ -284,7 +282,7 @@ def expands() -> Finding:
 
 
 def away() -> Expr:
-    """What `max(c0, c1)` is at least on every flight but the first: one of two bounces keeps off the cusp.
+    """A lower bound of `max(c0, c1)` on every flight but the first, so that one of its ends is away from the cusp.
 
     >>> away().subs(lam, 0)
     sqrt(6)/6
@@ -293,7 +291,7 @@ def away() -> Expr:
 
 
 def least_stretch(bounces: int) -> Expr:
-    """What `|D(T**n) (1, 0)|` is at least after `n >= 2` bounces, on every orbit of the cardioid off its cusp.
+    """A lower bound of `|D(T**n) (1, 0)|` after `n >= 2` bounces, on every orbit of the cardioid off its cusp.
 
     >>> least_stretch(2).subs(lam, 0), least_stretch(2).subs(lam, 1)
     (1/16, 0)
@@ -304,7 +302,7 @@ def least_stretch(bounces: int) -> Expr:
 
 
 def least_exponent() -> Expr:
-    """What the lower limit of `log|D(T**n) (1, 0)|/n` is at least, on every orbit of the cardioid off its cusp.
+    """A lower bound of the lower limit of `log|D(T**n) (1, 0)|/n`, on every orbit of the cardioid off its cusp.
 
     >>> least_exponent().subs(lam, 0).n(4), least_exponent().subs(lam, 1)
     (0.08230, 0)

@@ -7,11 +7,10 @@ zero and the multiplier is no root of unity up to the fourth, invariant curves s
 [SiegelMoser1971].
 Everything here is truncated power series over whatever numbers are put in, exact or balls.
 
-The flip of the horizontal orbit of the cuspless cardioid when its wall is bent: the normal form in jets of the wall.
-
+The module also has the normal form of the flip of the cuspless cardioid's horizontal orbit when its wall is bent.
 Paper: section 5.1, "presumably it could be rendered stable if the billiard table were modified". Near `y = 0` let the
-wall be `x = -1/4 + a*y^2 + b*y^4` and the arc `x = 2 - A*y^2 - B*y^4`. By the mirror symmetry the return map is odd,
-`x -> M x + C(x)` with `C` cubic, so on the eigendirection of -1, with right and left eigenvectors `q` and `p`,
+wall be `x = -1/4 + a*y^2 + b*y^4` and the arc `x = 2 - A*y^2 - B*y^4`. By the mirror symmetry the return map is odd: `x
+-> M x + C(x)` with `C` cubic, so on the eigendirection of -1, with right and left eigenvectors `q` and `p`,
 
     xi -> -xi + c*xi^3,    c = p C(q)/(p q),
 
@@ -33,11 +32,11 @@ from symbolic.tables.table import alpha, lam, theta
 Series = dict[tuple[int, int], Any]  # the coefficient of x^i y^j at (i, j)
 Map = tuple[Series, Series]
 QUARTIC, CUBIC = 4, 3
-BINOMIAL = (1, 2), (-1, 8), (1, 16), (-5, 128)  # sqrt(1 + u)
+BINOMIAL = (1, 2), (-1, 8), (1, 16), (-5, 128)  # coefficients of u, u^2, ... in sqrt(1 + u), as fractions
 
 
 def times(f: Series, g: Series, order: int) -> Series:
-    """The product up to `order`.
+    """The product of two series, without terms of degree above `order`.
 
     >>> times({(1, 0): 2}, {(0, 1): 3, (1, 0): 1}, 2)
     {(1, 1): 6, (2, 0): 2}
@@ -51,12 +50,12 @@ def times(f: Series, g: Series, order: int) -> Series:
 
 
 def plus(f: Series, g: Series, factor: Any = 1) -> Series:
-    """`f + factor*g`."""
+    """The series `f + factor*g`."""
     return {at: f.get(at, 0) + factor * g.get(at, 0) for at in {**f, **g}}
 
 
 def powers(f: Series, order: int) -> list[Series]:
-    """`1, f, f^2, ...` up to `order`."""
+    """The powers `1, f, ..., f^order`, without terms of degree above `order`."""
     found: list[Series] = [{(0, 0): 1}]
     for _ in range(order):
         found.append(times(found[-1], f, order))
@@ -69,10 +68,10 @@ def chord(
     root: Callable[[Any], Any],
     weights: Sequence[Any] = (1, 1),
 ) -> Series:
-    """The length of the chord, second to fourth order; the ends are Taylor coefficients of `x` and `y` there.
+    """Terms of degree 2 to 4 of a chord's length; the ends are given by Taylor coefficients of `x` and of `y`.
 
-    At a cycle the first order cancels against the neighbouring chord, so it is left out. `weights` are factors of the
-    squares of the two coordinates, for coordinates of different units.
+    At a cycle the first order cancels against the neighbouring chord, so it is left out. `root` is the square root of
+    the numbers used; `weights` multiply the squares of the coordinates, where these have different units.
     """
     square: Series = {}
     for from_here, to_there, weight in zip(start, end, weights, strict=True):
@@ -87,7 +86,7 @@ def chord(
 
 
 def bounce(H: Series) -> Map:
-    """`(x, p) -> (y, p')` to third order, from the length of the chord that is flown."""
+    """The map `(x, p) -> (y, p')` to third order, from the terms `H` of a chord's length (as `chord` gives them)."""
     x, p = {(1, 0): 1}, {(0, 1): 1}
     by_start = {(i - 1, j): i * c for (i, j), c in H.items() if i}
     by_end = {(i, j - 1): j * c for (i, j), c in H.items() if j}
@@ -98,7 +97,7 @@ def bounce(H: Series) -> Map:
 
 
 def put(f: Series, x: Series, y: Series) -> Series:
-    """`f(x, y)` with series for both, up to third order."""
+    """The series `f(x, y)` with series in the place of `x` and `y`, up to third order."""
     found: Series = {}
     along, across = powers(x, CUBIC), powers(y, CUBIC)
     for (i, j), c in f.items():
@@ -108,7 +107,7 @@ def put(f: Series, x: Series, y: Series) -> Series:
 
 
 def composed(maps: Sequence[Map]) -> Map:
-    """The maps, the first one first."""
+    """The composition of maps to third order; the first in the list acts first."""
     x, p = maps[0]
     for following in maps[1:]:
         x, p = put(following[0], x, p), put(following[1], x, p)
@@ -150,12 +149,12 @@ def egg_diameter() -> tuple[Expr, Expr, Expr]:
 
 
 def _number(expression: Expr, a: Any) -> Any:
-    """A polynomial of degree 1 in alpha, as an element of the field."""
+    """The polynomial `expression`, of degree 1 in alpha, as an element of the field of `a`, which stands for alpha."""
     parameter = Symbol("alpha")
     return a * int(expression.coeff(parameter, 1)) + int(expression.coeff(parameter, 0))
 
 
-a, b = symbols("a b", real=True)  # jets of the wall
+a, b = symbols("a b", real=True)  # of the wall: x = -1/4 + a*y^2 + b*y^4
 height, exit_angle = symbols("height exit_angle", real=True)  # where the particle leaves the wall
 RING = QQ[a, b, lam, height, exit_angle]
 LENGTH = Rational(9, 4)
@@ -163,7 +162,7 @@ Odd = tuple[Expr, Expr]
 
 
 def arc_jets() -> tuple[Expr, Expr]:
-    """`A` and `B` of the arc at `theta = 0`.
+    """`A` and `B` in `x = 2 - A*y**2 - B*y**4`, the cardioid near `theta = 0`.
 
     >>> arc_jets()
     (3/8, 7/128)
@@ -176,12 +175,12 @@ def arc_jets() -> tuple[Expr, Expr]:
 
 
 def total(*parts: Odd) -> Odd:
-    """A sum, degree by degree."""
+    """The sum of odd quantities, given by their coefficients of degree 1 and 3."""
     return sum((part[0] for part in parts), RING(0)), sum((part[1] for part in parts), RING(0))
 
 
 def jet_times(factor: Expr, part: Odd) -> Odd:
-    """A multiple."""
+    """An odd quantity times a number."""
     return factor * part[0], factor * part[1]
 
 
@@ -196,7 +195,7 @@ def slope(jets: tuple[Expr, Expr], y: Odd) -> Odd:
 
 
 def fly(y: Odd, phi: Odd, leaves: tuple[Expr, Expr], lands: tuple[Expr, Expr]) -> tuple[Odd, Odd]:
-    """From one wall to the opposite one: where a particle lands, and its incidence angle with the exit's sign."""
+    """The height where a flight lands on the opposite wall, and its incidence angle with the sign of the exit angle."""
     direction = total(phi, jet_times(RING(-1), arctangent(slope(leaves, y))))
     steep = arctangent(direction, -1)
     far = y[0] + RING.from_sympy(LENGTH) * steep[0]
@@ -207,7 +206,7 @@ def fly(y: Odd, phi: Odd, leaves: tuple[Expr, Expr], lands: tuple[Expr, Expr]) -
 
 @cache
 def return_map() -> tuple[Matrix, Matrix]:
-    """`M` and the cubic terms of the return map to the wall, in `height` and `exit_angle`.
+    """The linear part `M` and the cubic terms of the return map to the wall, in `height` and `exit_angle`.
 
     >>> M, _ = return_map()
     >>> M.subs(a, 0).trace().expand()
@@ -228,7 +227,7 @@ def return_map() -> tuple[Matrix, Matrix]:
 
 @cache
 def coefficient() -> tuple[Expr, Expr]:
-    """`c = c0 + c1*b` at the flip with a wall that is flat at its centre (`a = 0`, so `lambda_c` stays), as `(c0, c1)`.
+    """The coefficient `c = c0 + c1*b` of the flip as `(c0, c1)`; the wall is flat at its centre, `a = 0`.
 
     Here `q` has height 1: `xi` is the height at the wall.
 
@@ -246,7 +245,7 @@ def coefficient() -> tuple[Expr, Expr]:
 
 
 def least_bend() -> Expr:
-    """The `b` beyond which the period-4 orbit is born stable; the wall's curvature is `-12*b*s^2` near its centre.
+    """The `b` above which the period-4 orbit is born stable; the wall's curvature is `-12*b*s^2` near its centre.
 
     >>> least_bend()
     541/9801

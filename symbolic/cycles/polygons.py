@@ -1,4 +1,4 @@
-"""Cycles that are one bounce seen q times: regular polygons in a table with rotational symmetry.
+"""Cycles whose bounces are turned into one another: regular polygons in a table with rotational symmetry.
 
 Where a turn by `2*pi*p/q` maps the table to itself, a cycle may turn by that angle at each bounce.
 Its chords make the angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the
@@ -9,14 +9,12 @@ radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lan
 
 The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
 
-Facts on the egg as polynomials in `C = cos(K*theta)`. Paper: section 6.
-
-Tables with straight sides have laws of their own. With `turn` the angle from the normal of one side to that of the
-next, the exit angle changes by an affine map, so that one exponent is `log(lam)` and the word of a cycle, its sequence
-of sides, gives its angles. Where the particle lands is stretched by `cos(phi0)/cos(eta1)`, at least one on average
-round a cycle: none attracts, and none is neutral but that along the common normal of parallel sides. On the square
-[DelMagnoLopesDiasDuarteGaivaoPinheiro2012] find a parabolic attractor beside a chaotic one, on the equilateral
-triangle [ArroyoMarkarianSanders2012] strange attractors.
+Some facts on the egg are polynomials in `C = cos(K*theta)`. Paper: section 6. On tables with straight sides cycles are
+simpler. With `turn` the angle from the normal of one side to that of the next, the exit angle changes by an affine map,
+so that one exponent is `log(lam)` and the word of a cycle, its sequence of sides, gives its angles. Where the particle
+lands is stretched by `cos(phi0)/cos(eta1)`, at least one on average round a cycle: none attracts, and none is neutral
+but that along the common normal of parallel sides. On the square [DelMagnoLopesDiasDuarteGaivaoPinheiro2012] find a
+parabolic attractor beside a chaotic one, on the equilateral triangle [ArroyoMarkarianSanders2012] strange attractors.
 """
 
 from collections.abc import Sequence
@@ -100,10 +98,11 @@ def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
 
 
 def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
-    """The bounce, a polar angle, of the polygon that is at the flat point `pi/K` at `lam = 1`; for `lam >= lambda_c`.
+    """The polar angle of one bounce of the polygon, for `lambda_c <= lam <= 1`: the flat point `pi/K` at `lam = 1`.
 
-    `rho'/rho = T` is `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. The polygon turns
-    counterclockwise as `lam` falls, and so does the particle; its mirror image turns and runs clockwise.
+    The polygon needs the slope `rho'/rho = T = tan(required_tilt(p, q))`: with `tan(psi) = T/K` that is
+    `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))`. The polygon turns counterclockwise as `lam` falls, and so does
+    the particle; its mirror image turns and runs clockwise.
 
     >>> near_flat().subs(lam, 1)
     pi/3
@@ -120,7 +119,7 @@ def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: E
 
 
 def polygon_identities() -> dict[str, Expr]:
-    """What every polygon in a polar curve `rho(theta)` obeys, as expressions that vanish identically.
+    """Expressions that vanish identically for every polygon in a polar curve `rho(theta)`, by what they prove.
 
     With `tan(delta) = rho'/rho`, and the turn `pi - 2*gamma` from bounce to bounce. The last one says on which side
     of the fold a bounce lies: `1 - trace + det` is the product of the multipliers' distances from 1.
@@ -229,7 +228,7 @@ def turning_polynomial(K: int = 3) -> Expr:
 
 
 def squared_speed_polynomial(K: int = 3) -> Expr:
-    """`rho**2 + rho'**2`.
+    """`rho**2 + rho'**2` of the egg, the square of its speed, as a polynomial in `COSINE`.
 
     >>> squared_speed_polynomial()
     -8*C**2*alpha**2 + 2*C*alpha + 9*alpha**2 + 1
@@ -274,9 +273,8 @@ def centre_far_inside() -> Expr:
 def slap_critical_cosines(shape: Expr) -> list[Expr]:
     """The values in `-1 < C < 1` at which the slap map of the egg with `alpha = shape` has `T0' = 0`.
 
-    `t*K0 + 1 = 0` says that the centre of curvature `e` lies on the boundary, `|e|**4 = |e|**3 +
-    alpha*Re(e**3)`. That is a polynomial in `C`, whose
-    roots Sturm counts; squared, it needs `|e|**4 - alpha*Re(e**3) > 0` at a root.
+    There the centre of curvature `e` lies on the boundary, `|e|**4 = |e|**3 + alpha*Re(e**3)`. Sturm's theorem counts
+    the roots of the squared equation, a polynomial in `C`; a root counts if `|e|**4 - alpha*Re(e**3) > 0` there.
     """
     C = COSINE
     N, modulus, cube = (polynomial.subs(alpha, shape) for polynomial in _centre_of_curvature())
@@ -286,7 +284,7 @@ def slap_critical_cosines(shape: Expr) -> list[Expr]:
 
 
 def slap_critical_points(shape: Expr) -> int:
-    """How many `theta` have `T0' = 0` in the egg with `alpha = shape`: six for each such cosine.
+    """The number of `theta` with `T0' = 0`, for the slap map `T0` of the egg with `alpha = shape`: six for each cosine.
 
     >>> from sympy import Rational
     >>> slap_critical_points(Rational(2, 25)), slap_critical_points(Rational(1, 20))
@@ -307,8 +305,8 @@ def next_exit_angle(turn: Expr, exit_angle: Expr) -> Expr:
 def exit_angles(turns: Sequence[Expr]) -> list[Expr]:
     """The exit angles of the cycle that visits sides with these turns from each to the next, for `lam < 1`.
 
-    A word has one such sequence. It is that of a cycle where every angle of incidence, `-angle/lam`, is less than a
-    right angle and the flights hit these sides first, which is not said here.
+    The sequence is unique. It belongs to a cycle if every angle of incidence, `-angle/lam`, is less than a right angle
+    and the flights hit these sides first, which is not checked here.
 
     >>> [factor(angle) for angle in exit_angles([2 * pi / 3] * 3)][0]
     pi*lam/(3*(lam + 1))
@@ -325,7 +323,7 @@ def exit_angles(turns: Sequence[Expr]) -> list[Expr]:
 
 
 def straight_multipliers(angles: Sequence[Expr]) -> tuple[Expr, Expr]:
-    """The multipliers of a cycle between straight sides: of the angle, and of the place, at least 1 in modulus.
+    """The multipliers of a cycle between straight sides: of the angle, and of the position, at least 1 in modulus.
 
     Between sides the derivative matrix is triangular, with `-cos(phi0)/cos(eta1)` and `-lam`. An exit angle is `lam`
     times an angle of incidence, whose cosine is smaller unless both vanish.

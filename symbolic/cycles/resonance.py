@@ -1,4 +1,4 @@
-"""What the elastic egg's triangle at the flat points does where its linear part decides nothing: exact in alpha.
+"""The normal form of the elastic egg's triangle at the flat points, exact in alpha: stability beyond linear terms.
 
 Turned back by a third of a turn, one flight of the triangle is a map of the plane to itself that preserves area, with
 the multipliers `mu = A + T` and `A - T`, `T**2 = A**2 - 1`. Its normal form is computed in the rational functions of
@@ -20,31 +20,31 @@ SHAPE = Symbol("alpha")
 
 
 @dataclass(frozen=True)
-class Pair:
+class QuadraticNumber:
     """`a + b*T` with `T**2 = square`; `T` is imaginary where the triangle is elliptic."""
 
     a: Any
     b: Any
     square: Any
 
-    def _of(self, other: Any) -> "Pair":
-        return other if isinstance(other, Pair) else Pair(other, 0 * self.square, self.square)
+    def _of(self, other: Any) -> "QuadraticNumber":
+        return other if isinstance(other, QuadraticNumber) else QuadraticNumber(other, 0 * self.square, self.square)
 
-    def __add__(self, other: Any) -> "Pair":
+    def __add__(self, other: Any) -> "QuadraticNumber":
         y = self._of(other)
-        return Pair(self.a + y.a, self.b + y.b, self.square)
+        return QuadraticNumber(self.a + y.a, self.b + y.b, self.square)
 
-    def __sub__(self, other: Any) -> "Pair":
+    def __sub__(self, other: Any) -> "QuadraticNumber":
         return self + self._of(other) * -1
 
-    def __mul__(self, other: Any) -> "Pair":
+    def __mul__(self, other: Any) -> "QuadraticNumber":
         y = self._of(other)
-        return Pair(self.a * y.a + self.b * y.b * self.square, self.a * y.b + self.b * y.a, self.square)
+        return QuadraticNumber(self.a * y.a + self.b * y.b * self.square, self.a * y.b + self.b * y.a, self.square)
 
-    def __truediv__(self, other: Any) -> "Pair":
+    def __truediv__(self, other: Any) -> "QuadraticNumber":
         y = self._of(other)
         norm = y.a * y.a - y.b * y.b * self.square
-        return self * Pair(y.a / norm, -y.b / norm, self.square)
+        return self * QuadraticNumber(y.a / norm, -y.b / norm, self.square)
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -52,14 +52,14 @@ class Pair:
         return bool(self.a != 0 or self.b != 0)
 
     @property
-    def conjugate(self) -> "Pair":
+    def conjugate(self) -> "QuadraticNumber":
         """`a - b*T`."""
-        return Pair(self.a, -self.b, self.square)
+        return QuadraticNumber(self.a, -self.b, self.square)
 
 
 @dataclass(frozen=True)
 class Resonances:
-    """Of one flight of the triangle: `B`, its trace, and the coefficients of its normal form.
+    """One flight of the triangle: its matrix `B`, the trace, and the coefficients of its normal form.
 
     Up to third order the map is `z -> mu*z*(1 + twist*T/B*|z|**2)`, with `third*conj(z)**2` in addition where
     `mu**3 = 1` and with `fourth*conj(z)**3` where `mu**4 = 1`. `drift` is the part of the cubic coefficient that area
@@ -70,12 +70,12 @@ class Resonances:
     trace: Any
     twist: Any
     drift: Any
-    third: Pair
-    fourth: Pair
+    third: QuadraticNumber
+    fourth: QuadraticNumber
 
     @property
     def square(self) -> Any:
-        """`T**2`, which is `trace**2/4 - 1`."""
+        """The square of the module's `T`: `trace**2/4 - 1`."""
         return self.third.square
 
 
@@ -95,7 +95,7 @@ def flat_triangle() -> tuple[Expr, Expr, Expr]:
 
 @cache
 def at_shape(shape: Any) -> Resonances:
-    """The same at one rational shape, with the coefficients of the third and the fourth root of unity.
+    """The normal form at one rational `alpha`, with the coefficients of third and fourth roots of unity.
 
     >>> from sympy import Rational
     >>> at_shape(Rational(1, 13)).trace
@@ -105,13 +105,13 @@ def at_shape(shape: Any) -> Resonances:
 
 
 def resonances(numbers: Any, a: Any) -> Resonances:
-    """The normal form of one flight, over a field that `a`, the shape, lies in."""
+    """The normal form of one flight, over the field `numbers`, which contains the shape `a`."""
     x, p = bounce(chord_between_flats(numbers, a))
     A, B = x[1, 0], x[0, 1]
     if p[0, 1] != A:
         raise ArithmeticError("the two ends of the flight differ, though a mirror exchanges them")
     square = A * A - 1
-    one, T = Pair(numbers(1), numbers(0), square), Pair(numbers(0), numbers(1), square)
+    one, T = QuadraticNumber(numbers(1), numbers(0), square), QuadraticNumber(numbers(0), numbers(1), square)
     half = one / 2
     # z = x + (B/T)*p turns by mu = A + T; its conjugate is w, and x = (z + w)/2, p = T*(z - w)/(2*B)
     here = {(1, 0): half, (0, 1): half}, {(1, 0): T * half / B, (0, 1): T * half / B * -1}
@@ -125,10 +125,10 @@ def resonances(numbers: Any, a: Any) -> Resonances:
 
 
 def chord_between_flats(numbers: Any, a: Any) -> Series:
-    """The chord from one flat point to the next, in boundary parameters `sqrt(3)*x` from there, without a factor.
+    """The length, over `sqrt(3)`, of the chord between points `sqrt(3)*x` radians from two neighbouring flat points.
 
-    Seen from the middle of the chord the flat points lie 60 degrees to either side, `sin = sqrt(3)*along` and `cos =
-    across`, with `along` and `across` rational series; the factor of the length that is left out is `sqrt(3)`.
+    Seen from the middle of the chord the flat points lie 60 degrees to either side, `sin = sqrt(3)*along` and
+    `cos = across`, with `along` and `across` rational series.
     """
     radius = [(numbers(1) if k == 0 else numbers(0)) - a * c for k, c in enumerate(_cosines(numbers, 3))]
     cos_d, sin_d = _cosines(numbers, 1), _sines(numbers)
@@ -157,7 +157,7 @@ def _product(f: list[Any], g: list[Any]) -> list[Any]:
     return [sum((f[i] * g[k - i] for i in range(k + 1)), 0 * f[0]) for k in range(QUARTIC + 1)]
 
 
-def _lifted(f: Series, one: Pair) -> Series:
+def _lifted(f: Series, one: QuadraticNumber) -> Series:
     return {at: one * c for at, c in f.items()}
 
 
@@ -166,8 +166,8 @@ def mirrored(f: Series) -> Series:
     return {(j, i): c.conjugate for (i, j), c in f.items()}
 
 
-def straightened(map: Map, mu: Pair) -> Map:
-    """The map in coordinates without those quadratic terms that can be removed.
+def straightened(map: Map, mu: QuadraticNumber) -> Map:
+    """The map in coordinates in which all quadratic terms vanish that can be removed.
 
     A term `z**i*w**j` stays where `mu**i*conj(mu)**j = mu`: of the quadratic ones only `w**2`, when `mu**3 = 1`.
     """
@@ -186,7 +186,7 @@ def straightened(map: Map, mu: Pair) -> Map:
     return composed([change, map, back])
 
 
-def _power(mu: Pair, n: int) -> Pair:
+def _power(mu: QuadraticNumber, n: int) -> QuadraticNumber:
     found = mu * 0 + 1
     for _ in range(abs(n)):
         found = found * (mu if n > 0 else mu.conjugate)

@@ -1,4 +1,4 @@
-"""Every return to the arc of the cuspless cardioid stretches, for `1/10 <= lam < 1`: what has to be positive.
+"""Every return to the arc of the cuspless cardioid stretches, for `1/10 <= lam < 1`: a proof from inequalities.
 
 Paper: section 5. In the notation of `defocusing` and `splitting` a beam leaves the arc with curvature `-y/D` and
 `dphi = (1 - y)*|K|*ds`, and the cone is `1 <= y <= 1 + lam`. A bounce on the wall may narrow beams; the form
@@ -55,19 +55,19 @@ from sympy import Expr, Interval, Matrix, Rational, S, Symbol, cos, symbols
 
 from symbolic.cycles.defocusing import C, expands, half, x
 from symbolic.cycles.splitting import c, clear, share_defects, splits
-from symbolic.expressions.signs import Finding, all_vanish, conjunction, defect, positive
+from symbolic.expressions.signs import SignFinding, all_vanish, conjunction, defect, positive
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
 
 B, EXCESS = Rational(11, 20), Rational(1, 20)
-LOWEST, HIGHEST = Rational(1, 10), Rational(3, 5)  # beyond, widths grow
+LOWEST, HIGHEST = Rational(1, 10), Rational(3, 5)  # for larger `lam` widths grow
 leaves = Symbol("leaves", real=True)  # the exit angle at the arc, with the sign of three halves of theta
 A = 1 + lam - B
 y, D0, d, t1, cos_phi1, cos_eta2, K2 = symbols("y D0 d t1 cos_phi1 cos_eta2 K2", nonzero=True)
 
 
 def form(vector: Matrix, bend: Expr) -> Expr:
-    """`L` of a vector `(ds, dphi)` where the curvature is `bend`, negative on the arc.
+    """The linear form `L` on a tangent vector `(ds, dphi)`, where `bend` is the curvature, negative on the arc.
 
     >>> form(Matrix([1, 0]), -1)
     9/20
@@ -76,7 +76,9 @@ def form(vector: Matrix, bend: Expr) -> Expr:
 
 
 def return_defects() -> list[Expr]:
-    """What either return makes of the form, from the derivative matrices, minus the two formulas: zeros.
+    """The form `L = (1 - B)*|K|*ds - dphi` after a return, from the derivative matrices, minus its formula; both are 0.
+
+    The first is for a return along the arc, the second for one by way of the wall.
 
     >>> return_defects()
     [0, 0]
@@ -91,17 +93,17 @@ def return_defects() -> list[Expr]:
 
 
 def along_arc_form() -> Expr:
-    """The form after a return along the arc, where it was `y - B`."""
+    """The form `L` of the module docstring after a return along the arc, if it was `y - B` before."""
     return A * (t * y - D0) / d - lam * y
 
 
 def by_wall_form() -> Expr:
-    """The form after a return by way of the wall, where it was `y - B`."""
+    """The form `L` of the module docstring after a return by way of the wall, if it was `y - B` before."""
     return A * (cos_phi1 / cos_eta1 * (t * y - D0) + lam * y * t1) / d - lam**2 * y
 
 
 def end_defects() -> list[Expr]:
-    """The growth beyond 1 at either end of the cone, on either way, minus what is said above: zeros.
+    """Growth of `L`, minus 1, at either end of the cone for either return, minus the module's formulas; all are 0.
 
     >>> end_defects()
     [0, 0, 0, 0]
@@ -128,11 +130,11 @@ def end_defects() -> list[Expr]:
 
 
 def quadratic() -> Expr:
-    """`q`, in `x` and `C`."""
+    """The polynomial `q` of the module's text, in `x`, `C` and `lam`."""
     return A * (x**2 + 1 - 2 * x * C) + 3 * A * lam * (x**2 + 1 + 2 * x * C) - 2 * lam * (1 + lam) * (1 + 2 * x * C)
 
 
-def along_arc() -> Finding:
+def along_arc() -> SignFinding:
     """Is `q - 2*A*EXCESS*(1 + 2*x*C) = a*x**2 - 2*b*C*x + e` positive for `C**2 <= 1/2 + 4*lam/5`, `x >= 0` if `C < 0`?
 
     It is if `a`, `b` and `e` are positive and `a*e > b**2*(1/2 + 4*lam/5)`.
@@ -147,7 +149,7 @@ def along_arc() -> Finding:
 
 
 def margins() -> tuple[Expr, Expr]:
-    """What has to be positive by way of the wall, times `cos(eta)**2`: in `theta0/2`, the exit angle and `lam`.
+    """Two functions of `half`, `leaves` and `lam`, times `cos(eta)**2`, that must be positive for returns by the wall.
 
     >>> [margin.subs({half: 0, leaves: 0, lam: Rational(1, 10)}) for margin in margins()]
     [7/480, 77/4800]
@@ -164,8 +166,8 @@ def margins() -> tuple[Expr, Expr]:
 
 
 @cache
-def returns() -> Finding:
-    """The identities and the way along the arc; the margins by way of the wall are left to balls."""
+def returns() -> SignFinding:
+    """Are the identities and the inequality along the arc proved? The `margins` are left to ball arithmetic."""
     steps = {
         "a form of beams after a return": return_defects(),
         "its growth at both ends of the cone": end_defects(),

@@ -68,7 +68,7 @@ from sympy import (
 )
 
 from symbolic.cycles.defocusing import BOUNDARY, expands, half
-from symbolic.expressions.signs import Finding, all_vanish, conjunction, defect
+from symbolic.expressions.signs import SignFinding, all_vanish, conjunction, defect
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables import cuspless
 from symbolic.tables.geometry import curvature
@@ -81,7 +81,7 @@ WALL_X = cuspless.components[1].point[0]
 
 
 def arc_defect() -> Expr:
-    """`t*(2*t - 3*D0) - 8*sin(delta)**2*c1**2` from the closed forms of `t**2` and `t*cos(phi0)`: zero.
+    """`t*(2*t - 3*D0) - 8*sin(delta)**2*c1**2` from the closed forms of `t**2` and `t*cos(phi0)`; it is 0.
 
     >>> arc_defect()
     0
@@ -92,7 +92,7 @@ def arc_defect() -> Expr:
 
 
 def wall_defect() -> Expr:
-    """`(t - D)*cos(eta)` on a chord between arc and wall, minus its form as a sum of terms that are not negative: zero.
+    """`(t - D)*cos(eta)` on a chord between arc and wall, minus its form as a sum of nonnegative terms; it is 0.
 
     >>> bool(all_vanish({"": [wall_defect()]}))
     True
@@ -106,7 +106,7 @@ def wall_defect() -> Expr:
 
 
 def angle_defect() -> Expr:
-    """The cosine of the angle at the arc is that of `tau + eta`: zero.
+    """The cosine of a chord's angle to the normal at the arc, minus that of `tau + eta`; it is 0.
 
     >>> angle_defect()
     0
@@ -116,7 +116,7 @@ def angle_defect() -> Expr:
 
 
 def clear() -> Expr:
-    """How far the circle of diameter `1/|K|` that touches the arc at `c` stays from the wall.
+    """The distance from the wall of the circle of diameter `1/|K|` that touches the arc at `c`.
 
     >>> clear().expand()
     4*c**4/3 - 2*c/3 + 1/4
@@ -125,7 +125,7 @@ def clear() -> Expr:
 
 
 def clear_defects() -> list[Expr]:
-    """The distance grows with `c` from `c = 1/2`, the join, on: its slope is a product of factors that do. Zeros.
+    """The slope of `clear` minus a product that is positive for `c > 1/2`, and `clear` at the join, `c = 1/2`; both 0.
 
     >>> clear_defects()
     [0, 0]
@@ -135,7 +135,7 @@ def clear_defects() -> list[Expr]:
 
 
 def radius_defects() -> list[Expr]:
-    """`rho^2 = (16 - s^2)/9` and `d^2 rho/d s^2 = -16/(81*rho^3) < 0` on the arc, as [Wojtkowski1986] asks: zeros.
+    """Two expressions that are 0, so that on the arc `rho^2 = (16 - s^2)/9` and `d^2 rho/d s^2 < 0`. [Wojtkowski1986]
 
     >>> radius_defects()
     [0, 0]
@@ -147,7 +147,7 @@ def radius_defects() -> list[Expr]:
 
 
 def clearance(contraction: Expr = lam) -> Expr:
-    """What `t - D` is at least on a chord between arc and wall, when exit angles are at most `lam*pi/2`.
+    """A lower bound of `t - D` on a chord `t` between arc and wall (module docstring), for exits within `lam*pi/2`.
 
     >>> clearance(0), clearance(1)
     (1 - sqrt(3)/3, 0)
@@ -156,7 +156,7 @@ def clearance(contraction: Expr = lam) -> Expr:
 
 
 def passage_defects() -> list[Expr]:
-    """The two formulas for `y1`, from the derivative matrices, for a chord of the arc and for one by the wall: zeros.
+    """`y1` from the derivative matrices minus its formula, for a chord of the arc and for one by the wall; both are 0.
 
     >>> passage_defects()
     [0, 0]
@@ -179,7 +179,7 @@ def passage_defects() -> list[Expr]:
 
 
 def width_defects() -> list[Expr]:
-    """The growth by way of the wall from the derivative matrices, at `y`, and at `y = 1` as written above: zeros.
+    """Growth of width by way of the wall, from the derivative matrices, minus its formula, at any `y` and at 1; both 0.
 
     >>> width_defects()
     [0, 0]
@@ -196,9 +196,7 @@ def width_defects() -> list[Expr]:
 
 
 def share_defects() -> list[Expr]:
-    """The circle's distance from the wall as a share of the point's, `X = x + 1/4`, and the share 11/27 at `c = 1`.
-
-    Minus what is said above: zeros.
+    """A point's distance `X = x + 1/4` from the wall, and its circle's, minus the module's formulas; both are 0.
 
     >>> share_defects()
     [0, 0]
@@ -213,14 +211,14 @@ def share_defects() -> list[Expr]:
 
 
 def smaller(left: Expr, right: Expr) -> Expr:
-    """The smaller of two numbers; of two formulas in `lam`, the formula that says so."""
+    """The smaller of two numbers; for formulas in `lam` an unevaluated `Min`."""
     if left.free_symbols | right.free_symbols:
         return Min(left, right, evaluate=False)
     return left if left.n(20) < right.n(20) else right
 
 
 def least_rate(contraction: Expr = lam) -> Expr:
-    """How fast every orbit of the cuspless cardioid stretches at least, for each bounce, when `lam > 16/27`.
+    """A lower bound of the rate per bounce at which every orbit of the cuspless cardioid stretches, for `lam > 16/27`.
 
     >>> least_rate(Rational(4, 5)).n(3)
     0.00155
@@ -231,7 +229,7 @@ def least_rate(contraction: Expr = lam) -> Expr:
 
 
 def spread_defect() -> Expr:
-    """The projective diameter of an image `[y_low, y_high]` of the cone is that of the two ratios below: zero.
+    """The exponential of the projective diameter of the cone's image, minus the product of two ratios; it is 0.
 
     >>> spread_defect()
     0
@@ -259,7 +257,7 @@ def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
 
 
 def rate(contraction: Expr = lam, wall: bool = True) -> Expr:
-    """What is left of the cone's size after a return to the arc, at most: `tanh` of a quarter of the larger diameter.
+    """Bound of the factor by which a return to the arc shrinks the cone: `tanh` of a quarter of the larger diameter.
 
     >>> rate(Rational(1, 2)).n(3), rate(Rational(1, 2), wall=False).n(3)
     (0.860, 0.805)
@@ -281,8 +279,8 @@ def grazing() -> Matrix:
 
 
 @cache
-def splits() -> Finding:
-    """The cones of both tables are mapped strictly into themselves: each step is an identity."""
+def splits() -> SignFinding:
+    """Is it proved that bounces of the cardioid and of the cuspless cardioid map the cone strictly into itself?"""
     steps = {
         "the cone's image on either way": [*passage_defects(), spread_defect()],
         "2*t >= 3*D0 on chords of the arc": [arc_defect()],

@@ -8,14 +8,12 @@ whatever the table. All the thresholds of the paper's period-2 orbits follow fro
     |mu| < 1    exactly when  -((1-lam)/(1+lam))**2 < P < 1,
     mu complex  exactly when  0 < P < 4*lam/(1+lam)**2     (then |mu| = lam).
 
-The closed thresholds of the paper, derived from the stability numbers of its period-2 cycles.
+The paper's thresholds in closed form are derived from the stability numbers of its period-2 cycles. Each is written so
+that no digit cancels and nothing is 0/0 in the paper's range. Paper: eqs. for lambda_+-(a) (section 3.3), lambda_c
+(5.1), alpha-tilde and alpha-hat (6.3).
 
-Each is written so that no digit cancels and nothing is 0/0 in the paper's range. Paper: eqs. for
-lambda_+-(a) (section 3.3), lambda_c (5.1), alpha-tilde and alpha-hat (6.3).
-
-The determinant of a cycle's monodromy matrix, and when it can be 1: what forbids Neimark-Sacker bifurcations.
-
-Around a cycle the cosines of exit angles do not telescope against those of incidence: with `phi = -lam*eta`
+The determinant of a cycle's monodromy matrix shows where Neimark-Sacker bifurcations are impossible. Around a cycle the
+cosines of exit angles do not telescope against those of incidence: with `phi = -lam*eta`
 
     det M = prod lam*cos(lam*eta)/cos(eta) = prod f(lam*eta)/f(eta),    f(x) = x*cos(x),
 
@@ -35,7 +33,7 @@ from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt
 
 from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter, shortened
 from symbolic.cycles.polygons import half_turn
-from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive, vanishes
+from symbolic.expressions.signs import Box, SignFinding, conjunction, nonnegative, positive, vanishes
 from symbolic.motion.collision import area_factor, derivative_matrix
 from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
 
@@ -77,29 +75,39 @@ def trace_of(P: Expr, contraction: Expr = lam) -> Expr:
     return (1 + contraction) ** 2 * P - 2 * contraction
 
 
-def flip_contraction(P: Expr) -> Expr:
+def flip_contraction(P: Expr) -> Expr | None:
     """The contraction at which a multiplier is -1, for `-1 <= P < 0`; below it the cycle is stable.
 
+    None for a number outside of this range, where no contraction in [0, 1] makes a multiplier -1.
+
     >>> from sympy import Rational
-    >>> flip_contraction(Rational(-1, 4))
-    1/3
+    >>> flip_contraction(Rational(-1, 4)), flip_contraction(Rational(361, 121))
+    (1/3, None)
     """
+    P = S(P)
+    if P.is_number and (P.is_nonnegative or (P + 1).is_negative):
+        return None
     r = sqrt(-P)
     return (1 - r) / (1 + r)
 
 
-def focus_contraction(P: Expr) -> Expr:
+def focus_contraction(P: Expr) -> Expr | None:
     """The contraction above which the multipliers are complex, for `0 <= P <= 1`.
 
+    None for a number outside of this range: then the multipliers are real at every contraction in [0, 1].
+
     >>> from sympy import Rational
-    >>> focus_contraction(Rational(3, 4))
-    1/3
+    >>> focus_contraction(Rational(3, 4)), focus_contraction(S(25))
+    (1/3, None)
     """
+    P = S(P)
+    if P.is_number and (P.is_negative or (P - 1).is_positive):
+        return None
     r = sqrt(1 - P)
     return (1 - r) / (1 + r)
 
 
-def stable_while_nonnegative(P: Expr, box: Box) -> Finding:
+def stable_while_nonnegative(P: Expr, box: Box) -> SignFinding:
     """Are both multipliers inside the unit circle because `0 <= P < 1` and `lam < 1` on the box?
 
     `1 - trace + det = (1+lam)**2*(1 - P)` and `1 + trace + det = (1+lam)**2*P + (1-lam)**2`.
@@ -126,17 +134,19 @@ def lambda_minus() -> Expr:
 
 
 def lambda_plus() -> Expr:
-    """The other root of `P_2`: `((w+1)/(w-1))**2` with `w = sqrt(a**2-1)`, never below 1."""
+    """The other root of the paper's `P_2`, 1 over `lambda_minus`: `((w+1)/(w-1))**2`, `w = sqrt(a**2-1)`."""
     return 1 / lambda_minus()
 
 
 def lambda_c() -> Expr:
-    """The period doubling of the cuspless cardioid's horizontal orbit.
+    """The contraction at which the cuspless cardioid's horizontal orbit doubles its period.
 
     >>> lambda_c()
     (1 - sqrt(11)/4)/(sqrt(11)/4 + 1)
     """
-    return flip_contraction(stability_number(cuspless_horizontal()))
+    found = flip_contraction(stability_number(cuspless_horizontal()))
+    assert found is not None
+    return found
 
 
 @lru_cache(maxsize=64, typed=True)
@@ -165,7 +175,7 @@ def shape_of_tilt(W: Expr, K: int | Expr = 3) -> Expr:
 def alpha_tilde(K: int | Expr = 3) -> Expr:
     """The shape at which the diameters of an egg with odd `K` double their period (`mu = -1`).
 
-    `P = -((1-lam)/(1+lam))**2`, so `W**2 = 1 - P = 2*(1+lam**2)/(1+lam)**2`.
+    There `P = -((1-lam)/(1+lam))**2`, so the `W` of `tilt` has `W**2 = 1 - P = 2*(1+lam**2)/(1+lam)**2`.
 
     >>> alpha_tilde().subs(lam, 1)
     2/(18 + 2*sqrt(82))
@@ -178,7 +188,7 @@ def alpha_tilde(K: int | Expr = 3) -> Expr:
 def alpha_hat(K: int | Expr = 3) -> Expr:
     """The shape above which the multipliers on the diameters of an egg with odd `K` are complex.
 
-    `P = 4*lam/(1+lam)**2`, so `W = (1-lam)/(1+lam)`. The paper's form is 0/0 at `lam = 1`.
+    There `P = 4*lam/(1+lam)**2`, so the `W` of `tilt` is `(1-lam)/(1+lam)`. The paper's form is 0/0 at `lam = 1`.
 
     >>> alpha_hat().subs(lam, 1)
     0
@@ -189,7 +199,7 @@ def alpha_hat(K: int | Expr = 3) -> Expr:
 
 
 def complex_up_to(K: int | Expr = 3) -> Expr:
-    """The shape at which `P` vanishes and the complex region ends: `alpha-tilde(1)`.
+    """The shape at which the stability number of an egg's diameters is 0 and above which multipliers are real again.
 
     >>> complex_up_to()
     1/(9 + sqrt(82))
@@ -202,7 +212,7 @@ def even_stability_numbers(K: int | Expr) -> tuple[Expr, Expr]:
 
     Both are squares, so no diameter ever doubles its period. Vertex to vertex `P > 1` for every
     `alpha > 0`: unstable whatever the contraction. Flat to flat `P <= 1` over the whole convex range:
-    stable for `lam < 1`, a focus where `P < 4*lam/(1+lam)**2`, superstable in direction where
+    stable for `lam < 1`, a focus where `P < 4*lam/(1+lam)**2`, with the double multiplier `-lam` where
     `alpha = 1/(1 + 2*K**2)` and `P = 0`.
 
     >>> even_stability_numbers(4)
@@ -214,7 +224,7 @@ def even_stability_numbers(K: int | Expr) -> tuple[Expr, Expr]:
 
 
 def flux(x: Expr) -> Expr:
-    """`f(x) = x*cos(x)`, whose ratio over a reflection is the factor of area.
+    """`f(x) = x*cos(x)`: a reflection multiplies areas by `f(lam*eta)/f(eta)`.
 
     >>> from symbolic.tables.table import lam
     >>> simplify(flux(lam * eta) / flux(eta) - area_factor())
@@ -229,7 +239,7 @@ def flux_slope(x: Expr) -> Expr:
 
 
 def cycle_determinant(angles: list[Expr]) -> Expr:
-    """`det M` of a cycle with these incidence angles.
+    """`det M` of a cycle with these incidence angles, in radians.
 
     >>> from sympy import S
     >>> cycle_determinant([S.Zero, S.Zero])

@@ -1,4 +1,4 @@
-"""What expressions are: signs proved, and text generated that every number system reads."""
+"""Expressions: proofs of their signs and identities, and code generated from them for every number system."""
 
 import lazy_loader
 

@@ -1,8 +1,8 @@
-"""Signs over an interval, proved in integers: for expressions that Sturm and Bernstein are too slow for or cannot read.
+"""Signs of expressions over an interval or a box, proved in integer arithmetic.
 
-A number is enclosed by two integers, its bounds times `2**BITS`, and every operation rounds outwards. An interval on
-which the sign is not seen is halved, until it is seen everywhere, a point refutes it, or a given number of operations
-is spent. The time grows with the number of distinct subexpressions, not with what they would be multiplied out.
+This serves where Sturm's theorem or Bernstein coefficients are too slow or do not apply. A number is enclosed by two
+integers, its bounds times `2**BITS`, and every operation rounds outwards. An interval is halved until the sign is known
+everywhere, a point refutes it, or the allowed operations are spent. Time grows with the distinct subexpressions.
 """
 
 from collections import deque
@@ -11,24 +11,44 @@ from functools import cache
 from itertools import product
 from math import isqrt
 
-from sympy import Abs, Add, Expr, Mul, Pow, Rational, S, Symbol, atan, cos, cosh, exp, log, pi, sin, sinh, tan, tanh
+from sympy import (
+    Abs,
+    Add,
+    Expr,
+    Mul,
+    Pow,
+    Rational,
+    S,
+    Symbol,
+    atan,
+    cos,
+    cosh,
+    exp,
+    log,
+    pi,
+    sign,
+    sin,
+    sinh,
+    tan,
+    tanh,
+)
 
-from symbolic.expressions.signs import Finding, Outcome
+from symbolic.expressions.signs import Outcome, SignFinding
 
 BITS = 96
 ONE = 1 << BITS
 GUARD = 64  # further bits of pi and log(2), which are multiplied by whole numbers
-LARGEST = 1 << 12  # modulus of what exp is taken of
+LARGEST = 1 << 12  # largest modulus of an argument of exp
 WORK = 150_000  # operations on intervals: about a second
 Bounds = tuple[int, int]
 
 
 class UnboundedError(Exception):
-    """An operation has no finite enclosure here: a pole, a root of what may be negative, a word that is not known."""
+    """An operation has no finite enclosure: a pole, a root of a number that may be negative, or an unknown function."""
 
 
-def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: int = WORK) -> Finding:
-    """Is `expression` > 0 for all `x` with `low <= x <= high`? A refutation holds a rational point.
+def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: int = WORK) -> SignFinding:
+    """Is `expression` > 0 for all `x` with `low <= x <= high`? At most `work` operations; a refutation has a point.
 
     >>> x = Symbol("x")
     >>> sign_on(2 + cos(cos(x)) / (3 + sin(x)), x, S(-4), S(4)).outcome.name
@@ -39,8 +59,8 @@ def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: in
     return sign_in(expression, {x: (low, high)}, work)
 
 
-def sign_in(expression: Expr, box: Mapping[Symbol, tuple[Rational, Rational]], work: int = WORK) -> Finding:
-    """Is `expression` > 0 in the whole box? The widest side is halved until it is seen, or refuted at a point.
+def sign_in(expression: Expr, box: Mapping[Symbol, tuple[Rational, Rational]], work: int = WORK) -> SignFinding:
+    """Is `expression` > 0 in the whole box? The widest side is halved until each part is proved or a point refutes it.
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> sign_in(2 - cos(x) * y, {x: (S(-4), S(4)), y: (S(-1), S(1))}).outcome.name
@@ -54,10 +74,10 @@ def sign_in(expression: Expr, box: Mapping[Symbol, tuple[Rational, Rational]], w
             return _refuted(names, corner)
     while boxes:
         spent += 2 * len(steps)
-        here = boxes.pop() if len(names) == 1 else boxes.popleft()  # where zeros fill curves, the larger boxes first
+        here = boxes.pop() if len(names) == 1 else boxes.popleft()  # in several variables, larger boxes first
         widest = max(range(len(here)), key=lambda i: here[i][1] - here[i][0])
         if spent > work or here[widest][1] - here[widest][0] < 1 << BITS // 2:
-            return Finding(Outcome.UNKNOWN, f"no sign was proved with {work} operations on intervals")
+            return SignFinding(Outcome.UNKNOWN, f"no sign was proved with {work} operations on intervals")
         if _value(steps, *here)[0] > 0:
             continue
         middles = [(lower + upper) // 2 for lower, upper in here]
@@ -66,17 +86,17 @@ def sign_in(expression: Expr, box: Mapping[Symbol, tuple[Rational, Rational]], w
         (lower, upper), middle = here[widest], middles[widest]
         boxes += [(*here[:widest], half, *here[widest + 1 :]) for half in ((lower, middle), (middle, upper))]
     ranges = ", ".join(f"{x} from {low} to {high}" for x, (low, high) in box.items())
-    return Finding(Outcome.PROVED, f"enclosures: positive for {ranges}")
+    return SignFinding(Outcome.PROVED, f"enclosures: positive for {ranges}")
 
 
-def _refuted(names: Sequence[Symbol], point: Sequence[Rational]) -> Finding:
+def _refuted(names: Sequence[Symbol], point: Sequence[Rational]) -> SignFinding:
     at = tuple(zip(names, point, strict=True))
     where = ", ".join(f"{x} = {value}" for x, value in at)
-    return Finding(Outcome.REFUTED, f"at {where} the value is negative or 0", at)
+    return SignFinding(Outcome.REFUTED, f"at {where} the value is negative or 0", at)
 
 
 def pole(expression: Expr, x: Symbol, low: Rational, high: Rational) -> Expr | None:
-    """A divisor within `expression` that has a zero between `low` and `high`, shown by its change of sign or a 0.
+    """A divisor in `expression` that is proved to have a zero between `low` and `high`; None if none is found.
 
     None proves nothing: a divisor may touch 0 without a change of sign.
 
@@ -96,7 +116,7 @@ def pole(expression: Expr, x: Symbol, low: Rational, high: Rational) -> Expr | N
     return None
 
 
-PARTS = 256  # of an interval over which a root is integrated
+PARTS = 256  # parts of an interval over which a root is integrated
 
 
 def root_integral(square: Expr, x: Symbol, low: Expr, high: Expr) -> Rational:
@@ -121,8 +141,30 @@ EVERYTHING: Bounds = (-(1 << 4096), 1 << 4096)
 Step = tuple[Callable[..., Bounds], tuple[int, ...]]
 
 
-def _steps(expression: Expr, *names: Symbol) -> list[Step]:
-    """The distinct subexpressions, operands first; the first are the variables themselves."""
+class Enclosures:
+    """A function from bounds of variables to the bounds of several expressions in them.
+
+    Bounds are pairs of integers, in units of `2**-BITS`; `work` is the number of operations in one call.
+
+    >>> x = Symbol("x")
+    >>> low, high = Enclosures((x**2, 1 / x), x)((ONE, 2 * ONE))[0]
+    >>> low == ONE, high == 4 * ONE
+    (True, True)
+    """
+
+    def __init__(self, expressions: Sequence[Expr], *names: Symbol) -> None:
+        self._count = len(expressions)
+        self._steps = _steps(expressions, *names)
+        self.work = len(self._steps)
+
+    def __call__(self, *here: Bounds) -> tuple[Bounds, ...]:
+        """The bounds of the expressions; `EVERYTHING` for all of them if an operation has no finite bounds."""
+        return _values(self._steps, self._count, *here)
+
+
+def _steps(expressions: Expr | Sequence[Expr], *names: Symbol) -> list[Step]:
+    """The steps of an evaluation: first the variables, then each distinct subexpression after its operands."""
+    wanted = [expressions] if isinstance(expressions, Expr) else expressions
     at: dict[Expr, int] = {x: i for i, x in enumerate(names)}
     steps: list[Step] = [(lambda: (0, 0), ()) for _ in names]
 
@@ -134,12 +176,13 @@ def _steps(expression: Expr, *names: Symbol) -> list[Step]:
             at[e] = len(steps) - 1
         return at[e]
 
-    steps.append((lambda value: value, (place(expression),)))
+    places = [place(expression) for expression in wanted]
+    steps += [(lambda value: value, (at_end,)) for at_end in places]
     return steps
 
 
 def _reading(e: Expr) -> tuple[tuple[Expr, ...], Callable[..., Bounds]]:
-    """The operands of a subexpression, and the operation on their enclosures."""
+    """The operands of a subexpression, and the operation on their bounds; `UnboundedError` for an unknown function."""
     if isinstance(e, Rational):
         bounds = _rational(e)
         return (), lambda: bounds
@@ -159,14 +202,18 @@ def _reading(e: Expr) -> tuple[tuple[Expr, ...], Callable[..., Bounds]]:
 
 
 def _value(steps: list[Step], *here: Bounds) -> Bounds:
-    """The enclosure over `here`; everything where an operation has no finite one."""
+    """The bounds of one expression over `here`; `EVERYTHING` if an operation has no finite bounds."""
+    return _values(steps, 1, *here)[0]
+
+
+def _values(steps: list[Step], count: int, *here: Bounds) -> tuple[Bounds, ...]:
     known = list(here)
     try:
         for function, operands in steps[len(here) :]:
             known.append(function(*[known[i] for i in operands]))
     except UnboundedError:
-        return EVERYTHING
-    return known[-1]
+        return (EVERYTHING,) * count
+    return tuple(known[-count:])
 
 
 # ---- operations, rounded outwards
@@ -227,7 +274,7 @@ def _abs(a: Bounds) -> Bounds:
 
 
 def _turn(a: Bounds, quarters: int) -> Bounds:
-    """`cos(x - quarters*pi/2)`: Taylor at the middle, and its two first derivatives for the width."""
+    """Bounds of `cos(x - quarters*pi/2)`: Taylor's sum at the middle of `a`, and two derivatives for its width."""
     middle, radius = (a[0] + a[1]) // 2, (a[1] - a[0]) // 2 + 1
     if radius > 2 * ONE:
         return -ONE, ONE
@@ -252,16 +299,20 @@ def _series(x: int, first: int) -> int:
     total = term = x if first else ONE
     for k in range(first + 2, 2 * TERMS, 2):
         term = -(term * square >> BITS) // (k * (k - 1))
+        if not term:
+            break
         total += term
     return total
 
 
 def _exp(a: Bounds) -> Bounds:
-    """Monotone, so the ends decide: `2**k` times Taylor's sum of what is left, all of whose terms are added."""
-    if max(-a[0], a[1]) > LARGEST * ONE:
+    """Bounds of `exp(x)`, from the ends of `a`: `2**k` times Taylor's sum for the remainder, with positive terms."""
+    if a[1] > LARGEST * ONE:
         raise UnboundedError("the exponential of a large number")
 
     def at(x: int, upwards: bool) -> int:
+        if x < -LARGEST * ONE:
+            return int(upwards)
         low, high = _log2()
         k = (x << GUARD) // low
         rest = ((x << GUARD) - k * (low if upwards == (k >= 0) else high) >> GUARD) + upwards
@@ -295,7 +346,7 @@ def _log(a: Bounds) -> Bounds:
 
 
 def _atan(a: Bounds) -> Bounds:
-    """Monotone: `atan(x) = 8*atan(y)` with `y` three times half the angle, and Taylor's sum for `|y| < 0.2`."""
+    """Bounds of `atan(x)`, from the ends of `a`: three halvings give `atan(x) = 8*atan(y)`, a Taylor sum `atan(y)`."""
 
     def at(x: int) -> int:
         for _ in range(3):
@@ -311,7 +362,7 @@ def _atan(a: Bounds) -> Bounds:
 
 
 def _hyperbolic(a: Bounds, sign: int) -> Bounds:
-    """Half of `exp(x) + sign*exp(-x)`, at the ends of what is monotone."""
+    """Bounds of `(exp(x) + sign*exp(-x))/2`, `sinh` or `cosh`, from the ends of a range where it is monotone."""
 
     def at(x: int) -> Bounds:
         up, down = _exp((x, x)), _exp((-x, -x))
@@ -319,6 +370,18 @@ def _hyperbolic(a: Bounds, sign: int) -> Bounds:
 
     if sign > 0:
         a = _abs(a)
+    return at(a[0])[0], at(a[1])[1]
+
+
+def _tanh(a: Bounds) -> Bounds:
+    """Bounds of `tanh(x) = 1 - 2/(exp(2*x) + 1)`, from the ends of `a`, for `-x` where `x < 0`."""
+
+    def at(x: int) -> Bounds:
+        small = _exp((-2 * abs(x), -2 * abs(x)))
+        low, high = _inverse((small[0] + ONE, small[1] + ONE))
+        found = 2 * low - ONE, 2 * high - ONE
+        return found if x >= 0 else (-found[1], -found[0])
+
     return at(a[0])[0], at(a[1])[1]
 
 
@@ -334,15 +397,16 @@ FUNCTIONS: dict[type[Expr], Callable[[Bounds], Bounds]] = {
     log: _log,
     atan: _atan,
     Abs: _abs,
+    sign: lambda x: (ONE if x[0] > 0 else -ONE, -ONE if x[1] < 0 else ONE),
     sinh: lambda x: _hyperbolic(x, -1),
     cosh: lambda x: _hyperbolic(x, 1),
-    tanh: lambda x: _quotient(_hyperbolic(x, -1), _hyperbolic(x, 1)),
+    tanh: _tanh,
 }
 
 
 @cache
 def _pi() -> Bounds:
-    """Pi times `2**(BITS + GUARD)` by Machin's formula."""
+    """Bounds of pi times `2**(BITS + GUARD)`, by Machin's formula."""
     one, total = 1 << BITS + GUARD + 32, 0
     for factor, inverse in ((16, 5), (-4, 239)):
         power, n = one // inverse, 1
@@ -355,7 +419,7 @@ def _pi() -> Bounds:
 
 @cache
 def _log2() -> Bounds:
-    """`log(2) = 2*artanh(1/3)` times `2**(BITS + GUARD)`."""
+    """Bounds of `log(2) = 2*artanh(1/3)` times `2**(BITS + GUARD)`."""
     power, total, n = (1 << BITS + GUARD + 32) // 3, 0, 1
     while power:
         total += 2 * (power // n)

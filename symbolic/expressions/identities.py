@@ -35,16 +35,16 @@ from sympy.polys.fields import field
 from sympy.polys.polyerrors import PolynomialError
 from sympy.polys.rings import PolyElement, ring
 
-Element = tuple[Any, Any]  # `p + q*r` by `p` and `q`
+Element = tuple[Any, Any]  # the pair (p, q) for `p + q*r`
 
 
 def is_zero_in_ring(expression: Expr) -> bool | None:
     """Is a rational function of letters, sines, cosines and square roots 0? None where that is not decided.
 
-    A letter `x` in the angles enters by the sine and cosine of its smallest share `g*x`, of which every angle has whole
-    multiples; they and the letters obey no relation but `s**2 + c**2 = 1`, so without roots the answer is right both
-    ways. A root, and `I`, is one more generator whose square is known; roots may obey relations besides, so what is not
-    0 by these alone is not decided.
+    With `g` the common divisor of the multiples of a letter `x` in the angles, sine and cosine of `g*x` are generators.
+    They and the letters satisfy no relation but `s**2 + c**2 = 1`, so that without roots both answers are proved. Each
+    root, and `I`, is one more generator with a known square; roots may satisfy further relations, so that a result that
+    is not 0 decides nothing.
 
     >>> x, y = symbols("x y")
     >>> is_zero_in_ring(sin(x + 2 * y) ** 2 + cos(2 * y + x) ** 2 - 1), is_zero_in_ring(tan(x) - sin(x))
@@ -55,7 +55,7 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
     """
     angles = {f.args[0] for f in expression.atoms(sin, cos, tan)}
     words = (Add, Mul, Pow, Rational, Symbol, sin, cos, tan)
-    roots: dict[Expr, Expr] = {}  # by what is under them
+    roots: dict[Expr, Expr] = {}  # generators by their radicands
     for node in preorder_traversal(expression):
         if node is S.ImaginaryUnit or _is_root(node):
             roots.setdefault(S.NegativeOne if node is S.ImaginaryUnit else node.base, Dummy("root"))
@@ -75,7 +75,7 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
     squares = [(own.gens.index(generator[s]), own.one - generator[c] ** 2) for c, s in circle.values()]
 
     def reduced(p: PolyElement) -> PolyElement:
-        """`p` at most linear in each root and each sine."""
+        """`p` reduced until it is at most linear in each root and each sine."""
         for place, square in squares:
             found: dict[int, dict[tuple[int, ...], Any]] = {}
             for powers, coefficient in p.terms():
@@ -139,7 +139,7 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
 
 
 def over_one_root(expression: Expr) -> Expr | None:
-    """A rational function of letters and of one square root `r` as `p + q*r`, both cancelled; None for any other.
+    """A rational function of letters and one square root `r` as `p + q*r`, in lowest terms; None for other expressions.
 
     The field of rational functions is extended by `r`, whose square is known; `1/(p + q*r)` is the conjugate over
     the norm.
@@ -195,7 +195,7 @@ def over_one_root(expression: Expr) -> Expr | None:
 
 
 def reduced_numerator(expression: Expr) -> Expr:
-    """The numerator of `expression` in lowest powers of its sines and square roots.
+    """The numerator of `expression`, expanded, with powers of its sines and square roots reduced by their squares.
 
     >>> from sympy import sqrt
     >>> reduced_numerator(1 / sqrt(2) - sqrt(2) / 2)

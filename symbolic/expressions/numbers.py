@@ -1,6 +1,6 @@
-"""What a number system is: the meaning of the closed vocabulary for one kind of number.
+"""Protocols of number systems: each defines the words of the closed vocabulary for one kind of number.
 
-Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.program`) speak the same words: `+ - *
+Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.program`) use the same words: `+ - *
 /`, `q(p, n)` for a rational, `pi`, and elementary functions. A `NumberSystem[N]` gives them a meaning for numbers of
 type `N`: floats, arrays, LLVM vectors, mpmath numbers, balls, jets. Checked by mypy, never at run time; imports
 nothing.
@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 class Number(Protocol):
-    """What generated text does with a number besides calling functions."""
+    """The operations on numbers that generated text uses besides calls of functions."""
 
     def __add__(self, other: Self, /) -> Self: ...
     def __sub__(self, other: Self, /) -> Self: ...
@@ -25,7 +25,7 @@ R = TypeVar("R", bound=Number)
 
 
 class Real(Number, Protocol):
-    """A number with an order. A comparison gives a mask of its number system, which Python's types cannot say."""
+    """A number with an order. A comparison gives a mask of its number system, which Python's types cannot express."""
 
     def __abs__(self) -> Self: ...
     def __lt__(self, other: Self, /) -> Any: ...
@@ -34,14 +34,14 @@ class Real(Number, Protocol):
 
 
 class Mask(Protocol):
-    """Where a comparison holds: a truth value, or one for each lane or element."""
+    """The result of a comparison: a truth value, or one for each lane or element."""
 
     def __and__(self, other: Self, /) -> Self: ...
     def __or__(self, other: Self, /) -> Self: ...
 
 
 class NumberSystem(Protocol[T]):
-    """The words that every number system knows."""
+    """The constants and functions that every number system defines."""
 
     @property
     def pi(self) -> T: ...

@@ -1,7 +1,7 @@
-"""A generated function in parts: what depends on some of its arguments alone, and what is left to do with that.
+"""Splits a generated function: what depends on some of its arguments alone, and the rest.
 
-The parts have the assignments of the function, each as it is and in the order it had: so numbers of every kind come
-out with the same bits as from the whole.
+The parts contain the function's own assignments, unchanged and in order, so that numbers of every kind get the same
+bits as from the whole function.
 """
 
 import ast
@@ -13,9 +13,9 @@ from symbolic.expressions.text import VOCABULARY, Kernel
 
 @cache
 def parted(kernel: Kernel, *groups: tuple[str, ...]) -> tuple[Kernel, ...]:
-    """For each group of arguments the function of these alone, then that of all arguments and of what these give.
+    """A kernel cut into several: for each group of arguments what depends on it alone, and last a kernel for the rest.
 
-    What two groups have is left to the first.
+    The last kernel takes all arguments, then the results of the others. What two groups share is computed by the first.
 
     >>> from sympy import cos, sin, symbols
     >>> from symbolic.expressions.text import kernel

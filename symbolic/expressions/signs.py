@@ -1,13 +1,11 @@
-"""Proofs that an expression vanishes identically.
+"""Proofs that an expression vanishes identically, and of the sign of a polynomial over a box of parameters.
 
-`symbolic.expressions.identities` reduces it to 0; a failed reduction refutes nothing.
+`symbolic.expressions.identities` reduces an expression to 0; a failed reduction refutes nothing.
 
-Proofs of the sign of a polynomial over a whole box of parameters, in exact arithmetic.
-
-One variable: Sturm's theorem counts the roots. Several: map the open box to the positive orthant
-by `x = (low + high*u)/(1 + u)`; if no coefficient in `u` is negative the polynomial is positive
-in the box (the Bernstein criterion), else the box is halved. Faces that belong to the box are
-judged by the same rule, one variable fewer, so ends of ranges are never lost and never assumed.
+Signs are decided in exact arithmetic. In one variable Sturm's theorem counts the roots. In several, map the open box to
+the positive orthant by `x = (low + high*u)/(1 + u)`; if no coefficient in `u` is negative the polynomial is positive in
+the box (the Bernstein criterion), else the box is halved. Faces that belong to the box are proved in the same way, with
+one variable fewer, so that open and closed ends are told apart.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -64,7 +62,7 @@ def vanishes(expression: Expr) -> bool:
 
 
 def defect(expression: Expr) -> Expr:
-    """0 for an expression that is proved to vanish; another as short as `simplify` makes it.
+    """0 if the expression is proved to vanish; otherwise the expression, simplified.
 
     >>> from sympy import cos, sin
     >>> from symbolic.tables.table import theta
@@ -86,7 +84,7 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class SignFinding:
     """An outcome with its reason in one sentence; a refutation holds its witness in `at`, values of the parameters."""
 
     outcome: Outcome
@@ -97,17 +95,17 @@ class Finding:
         return self.outcome is Outcome.PROVED
 
 
-def conjunction(*findings: Finding) -> Finding:
-    """All of them: refuted when one is, proved when every one is."""
+def conjunction(*findings: SignFinding) -> SignFinding:
+    """The finding that all of these hold: refuted when one is refuted, proved when every one is proved."""
     for wanted in (Outcome.REFUTED, Outcome.UNKNOWN):
         for finding in findings:
             if finding.outcome is wanted:
                 return finding
-    return Finding(Outcome.PROVED, "; ".join(dict.fromkeys(f.reason for f in findings)))
+    return SignFinding(Outcome.PROVED, "; ".join(dict.fromkeys(f.reason for f in findings)))
 
 
-def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> Finding:
-    """Are the defects of every named step zeros? Names the steps, or those that are not reduced to 0.
+def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> SignFinding:
+    """Do all expressions of every named step vanish? The reason names the steps, or those not reduced to 0.
 
     >>> x = Symbol("x")
     >>> all_vanish({"a square": [(x + 1) ** 2 - x**2 - 2 * x - 1]}).reason, all_vanish({"a guess": [x]}).reason
@@ -115,11 +113,11 @@ def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> Finding:
     """
     failed = [name for name, defects in steps.items() if not all(map(vanishes, defects))]
     if failed:
-        return Finding(Outcome.UNKNOWN, f"not reduced to 0: {', '.join(failed)}")
-    return Finding(Outcome.PROVED, "; ".join(steps))
+        return SignFinding(Outcome.UNKNOWN, f"not reduced to 0: {', '.join(failed)}")
+    return SignFinding(Outcome.PROVED, "; ".join(steps))
 
 
-def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
+def positive(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
     """Is the rational function `expression` > 0 everywhere in `box`? (Its poles must lie outside.)
 
     >>> x, y = Symbol("x"), Symbol("y")
@@ -134,7 +132,7 @@ def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
         if sign.outcome is not Outcome.PROVED:
             sign = positive(-denominator, box, depth)
             if sign.outcome is not Outcome.PROVED:
-                return Finding(Outcome.UNKNOWN, f"the sign of the denominator {denominator} is open")
+                return SignFinding(Outcome.UNKNOWN, f"the sign of the denominator {denominator} is open")
             numerator = -numerator
     elif denominator.is_negative:
         numerator = -numerator
@@ -147,10 +145,10 @@ def positive(expression: Expr, box: Box, depth: int = 12) -> Finding:
     finding = _positive(expand(numerator), dict(box), depth)
     if finding is not None:
         return finding if finding else placed(finding, box)
-    return Finding(Outcome.UNKNOWN, f"no certificate for {expression} > 0 within {depth} halvings")
+    return SignFinding(Outcome.UNKNOWN, f"no certificate for {expression} > 0 within {depth} halvings")
 
 
-def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
+def nonnegative(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
     """Is `expression >= 0` in `box`? Proved in the interior, and so by continuity on the closure.
 
     >>> x = Symbol("x")
@@ -159,7 +157,7 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
     """
     kept = S.One
     if expression.is_nonnegative:
-        return Finding(Outcome.PROVED, f"{expression} >= 0")
+        return SignFinding(Outcome.PROVED, f"{expression} >= 0")
     constant, factors = _factors(expression)
     for factor, power in factors:
         kept *= factor ** (power % 2)
@@ -169,13 +167,13 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> Finding:
         used = {x: inside[x] for x in sorted(kept.free_symbols, key=str)}
         negative = _witness(constant * kept, used, strictly=True)
         if negative is None:
-            return Finding(Outcome.UNKNOWN, f"no certificate for {expression} >= 0 within {depth} halvings")
+            return SignFinding(Outcome.UNKNOWN, f"no certificate for {expression} >= 0 within {depth} halvings")
         return negative
     return finding
 
 
-def placed(finding: Finding, box: Box) -> Finding:
-    """A refutation whose witness has a value for every parameter of the box, any value for one that plays no part.
+def placed(finding: SignFinding, box: Box) -> SignFinding:
+    """The refutation, with any values of those parameters of the box that its witness does not contain added to it.
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> positive(x, {x: Interval(-1, 1), y: Interval(3, 4)}).at
@@ -192,14 +190,14 @@ def _factors(expression: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
     return constant, list(factors)
 
 
-def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> SignFinding | None:
     used = sorted(p.free_symbols, key=str)
     box = {x: box[x] for x in used}
     witness = _witness(p, box)
     if witness is not None:
         return witness
     if not used:
-        return Finding(Outcome.PROVED, f"{p} > 0") if p.is_positive else None
+        return SignFinding(Outcome.PROVED, f"{p} > 0") if p.is_positive else None
     if not p.is_polynomial(*used):
         return None
     if len(used) == 1:
@@ -217,7 +215,7 @@ def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | Non
     return conjunction(interior, *(face for face in faces if face is not None))
 
 
-def _face(p: Expr, x: Symbol, end: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+def _face(p: Expr, x: Symbol, end: Expr, box: dict[Symbol, Interval], depth: int) -> SignFinding | None:
     """The finding on one face of the box; a witness there has the value `end` of `x`."""
     face = _positive(expand(p.subs(x, end)), box, depth)
     return face if face is None or face else replace(face, at=(*face.at, (x, end)))
@@ -238,8 +236,8 @@ def _samples(interval: Interval) -> list[Expr]:
     return _ends(interval) + inside
 
 
-def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Finding | None:
-    """A rational point of the box where `p <= 0`, or `p < 0`, if one of a few is."""
+def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> SignFinding | None:
+    """A refutation of `p > 0` by a point of the box with `p <= 0`; if `strictly`, of `p >= 0`. Few points are tried."""
     points: list[dict[Symbol, Expr]] = [{}]
     for x, interval in box.items():
         points = [{**point, x: value} for point in points for value in _samples(interval)]
@@ -249,12 +247,12 @@ def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Fi
         if value.is_negative or (value.is_nonpositive and not strictly):
             where = ", ".join(f"{x} = {v}" for x, v in point.items())
             reason = f"at {where} the value is {value}" if where else f"the value is {value}"
-            return Finding(Outcome.REFUTED, reason, tuple(point.items()))
+            return SignFinding(Outcome.REFUTED, reason, tuple(point.items()))
     return None
 
 
 def _evaluator(p: Expr, used: tuple[Symbol, ...]) -> Callable[[dict[Symbol, Expr]], Expr]:
-    """The values of `p` at given points: by its terms where they and the point are rational, else by substitution."""
+    """A function that gives `p` at a point: from its terms if they and the point are rational, else by substitution."""
 
     def substituted(point: dict[Symbol, Expr]) -> Expr:
         return p.subs(point)
@@ -273,8 +271,8 @@ def _evaluator(p: Expr, used: tuple[Symbol, ...]) -> Callable[[dict[Symbol, Expr
     return value
 
 
-def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
-    """The verdict of Sturm's theorem; None where it does not apply, at irrational ends and coefficients."""
+def _sturm(p: Expr, x: Symbol, interval: Interval) -> SignFinding | None:
+    """Is the polynomial positive, by Sturm's theorem? None where that does not apply: irrational ends, coefficients."""
     poly = Poly(p, x).sqf_part()
     try:
         roots = poly.count_roots(interval.start, interval.end)
@@ -287,23 +285,26 @@ def _sturm(p: Expr, x: Symbol, interval: Interval) -> Finding | None:
     if roots == 0 and not p.subs(x, _samples(interval)[-1]).is_positive:  # one sample fixes the sign
         return None
     if roots == 0:
-        return Finding(Outcome.PROVED, f"Sturm: {poly.as_expr()} has no root for {where}")
-    root = next(r for r in poly.real_roots() if r in interval)
-    return Finding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}", ((x, root),))
+        return SignFinding(Outcome.PROVED, f"Sturm: {poly.as_expr()} has no root for {where}")
+    try:
+        root = next(r for r in poly.real_roots() if r in interval)
+    except NotImplementedError:  # for coefficients such as pi
+        return None
+    return SignFinding(Outcome.REFUTED, f"Sturm: {poly.as_expr()} has {roots} root(s) for {where}", ((x, root),))
 
 
-def _orthant(p: Expr, box: dict[Symbol, Interval]) -> Finding | None:
+def _orthant(p: Expr, box: dict[Symbol, Interval]) -> SignFinding | None:
     lines = any(r.start is -oo and r.end is oo for r in box.values())
     if not lines and all(c.is_nonnegative for c in bernstein(p, box)):
         where = ", ".join(f"{x} in {interval_text(r)}" for x, r in box.items())
-        return Finding(Outcome.PROVED, f"Bernstein: {p} > 0 for {where}")
+        return SignFinding(Outcome.PROVED, f"Bernstein: {p} > 0 for {where}")
     return None
 
 
 def bernstein(p: Expr, box: Box) -> list[Expr]:
-    """The coefficients of the polynomial `p` on the orthant that the open `box` is mapped to.
+    """The coefficients of the polynomial `p` in variables that map the positive orthant to the open `box`.
 
-    None negative: positive in the open box. All of one sign, none vanishing: of that sign on the
+    If none is negative, `p` is positive in the open box. If all have one sign and none is 0, `p` has that sign on the
     closed box.
 
     >>> x = Symbol("x")
@@ -345,7 +346,7 @@ def _image(low: Any, high: Any, one: Any, power: int, degree: int) -> list[Any]:
 
 
 def _size(interval: Interval) -> tuple[bool, bool, Expr]:
-    """Lines before half-lines before long intervals before short ones."""
+    """Sort key of an interval: greatest for a line, then for half-lines, then for long intervals."""
     infinite = interval.measure is oo
     return interval.start is -oo and interval.end is oo, infinite, S.Zero if infinite else interval.measure
 
@@ -357,7 +358,7 @@ def _middle(interval: Interval) -> Expr:
     return low + 1 if high is oo else (low + high) / 2
 
 
-def _halved(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
+def _halved(p: Expr, box: dict[Symbol, Interval], depth: int) -> SignFinding | None:
     x = max(box, key=lambda y: _size(box[y]))
     middle = _middle(box[x])
     low, high = box[x].start, box[x].end
@@ -369,11 +370,11 @@ def _halved(p: Expr, box: dict[Symbol, Interval], depth: int) -> Finding | None:
             return finding
         findings.append(finding)
     where = ", ".join(f"{y} in {interval_text(r)}" for y, r in box.items())
-    return Finding(Outcome.PROVED, f"Bernstein, by halving: {p} > 0 for {where}")
+    return SignFinding(Outcome.PROVED, f"Bernstein, by halving: {p} > 0 for {where}")
 
 
 def interval_text(interval: Interval) -> str:
-    """A real interval as mathematicians print it.
+    """A real interval in mathematical notation.
 
     >>> interval_text(Interval(0, Rational(1, 10)))
     '[0, 1/10]'

@@ -1,4 +1,4 @@
-"""Expressions in words of a closed vocabulary, so that floats, mpmath and balls run the same formula.
+"""Code of expressions in a closed vocabulary, so that floats, mpmath numbers and balls run the same formula.
 
 Everything outside the vocabulary is refused. The vocabulary: `+ - * /`, integers, `q(p, n)` for every other rational,
 `pi`, and the functions of `VOCABULARY`. A rational is never written `1/3`: Python would divide it in double
@@ -39,7 +39,7 @@ from sympy.core.function import AppliedUndef
 
 from symbolic.expressions.numbers import NumberSystem, T
 
-# The functions of the vocabulary: whoever reads them for one kind of number takes their names from here.
+# The functions of the vocabulary, and the names by which every number system defines them.
 FUNCTIONS: dict[Any, str] = {
     function: function.__name__ for function in (sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh)
 }
@@ -90,8 +90,8 @@ def _listed(symbols: set[Symbol]) -> str:
     return ", ".join(sorted(str(s) for s in symbols)) or "none"
 
 
-class Words:
-    """A printer that keeps the names it gave and the words it used."""
+class WordPrinter:
+    """A printer of expressions that remembers the temporary names it gave and the words of the vocabulary it used."""
 
     def __init__(self, taken: set[str]) -> None:
         self.taken = taken
@@ -107,7 +107,7 @@ class Words:
         return self.names[symbol]
 
     def assignment(self, e: Expr) -> tuple[list[tuple[str, str]], list[str]]:
-        """Assignments needed first, and the terms of `e`, each with its sign."""
+        """The assignments that must come first, as (name, text), and the terms of `e`, each with its sign."""
         self.before = []
         terms = [self._term(term, i > 0) for i, term in enumerate(_terms(e))]
         return self.before, terms
@@ -124,7 +124,7 @@ class Words:
         return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
 
     def _print(self, e: Expr) -> tuple[str, bool]:
-        """The text, and whether it is a sum, or begins with a sign, so that a product has to enclose it."""
+        """The text, and whether a product must put it in parentheses: it is a sum, or begins with a sign."""
         if isinstance(e, Symbol):
             return self.names.get(e, e.name), False
         if isinstance(e, Integer):
@@ -199,7 +199,7 @@ class Words:
         return "*".join([half, half] + [name] * (n % 2))
 
     def _kept(self, text: str) -> str:
-        """The name under which a text is kept; it is written once."""
+        """The name of the temporary that holds the value of `text`; its assignment is written once."""
         if text not in self.kept:
             self.kept[text] = self._fresh()
             self.before.append((self.kept[text], text))
@@ -217,7 +217,7 @@ def _closed(text: str) -> bool:
 
 
 def _terms(e: Expr) -> list[Expr]:
-    """The terms of a sum in SymPy's printing order, a positive one first where there is one."""
+    """The terms of a sum in SymPy's printing order, but with a positive one first if there is one."""
     if not isinstance(e, Add):
         return [e]
     terms = list(e.as_ordered_terms())
@@ -231,7 +231,7 @@ WIDTH = 99
 
 @dataclass(frozen=True)
 class Kernel:
-    """A generated function: its name, arguments and results in order, the words it uses, its text."""
+    """A generated function: its name, arguments and results in order, the words of the vocabulary it uses, its text."""
 
     name: str
     arguments: tuple[str, ...]
@@ -279,7 +279,7 @@ def kernel(
 
 @cache
 def constant(value: Expr) -> Kernel:
-    """An exact number as a function of no arguments, made once however often it is asked for.
+    """A kernel without arguments that returns the exact number `value`; kernels are cached.
 
     >>> from fractions import Fraction
     >>> from sympy import Rational
@@ -291,9 +291,9 @@ def constant(value: Expr) -> Kernel:
 
 
 def load(kernel: Kernel, arithmetic: NumberSystem[T]) -> Callable[..., Any]:
-    """The function of a kernel over one kind of number, whose words give it its meaning.
+    """The kernel as a Python function over one number system, which defines the words of the vocabulary.
 
-    This is the only place where generated text is run; nothing else is in its reach.
+    Only here is generated text executed, and it can reach nothing but these words. `ValueError` if a word is missing.
 
     >>> from fractions import Fraction
     >>> from types import SimpleNamespace
@@ -314,12 +314,12 @@ def load(kernel: Kernel, arithmetic: NumberSystem[T]) -> Callable[..., Any]:
 
 @cache
 def compiled(text: str, name: str) -> CodeType:
-    """The bytecode of a kernel's text, made once: it takes longer than most kernels run."""
+    """The bytecode of a kernel's text, cached: compiling takes longer than most kernels run."""
     return compile(text, f"<kernel {name}>", "exec")
 
 
 def module_text(kernels: Iterable[Kernel], source: str) -> str:
-    """A file of kernels, with a header that says from what it was made and how.
+    """The text of a module of kernels, with a header that names the module they were generated from.
 
     >>> module_text([], "symbolic.motion.chords").splitlines()[0]
     '# Generated by symbolic.expressions.text from symbolic.motion.chords; edit that, not this.'
@@ -335,7 +335,7 @@ def module_text(kernels: Iterable[Kernel], source: str) -> str:
 
 
 def _shared(steps: dict[Symbol, Expr], taken: set[str]) -> dict[Symbol, Expr]:
-    """`steps` with common subexpressions named; these names are for sorting, `_lines` gives the final ones."""
+    """`steps` with common subexpressions as further steps, under provisional names: `_lines` gives the final ones."""
     spare = (s for s in numbered_symbols("c") if s.name not in taken)
     found, reduced = cse(list(steps.values()), symbols=spare, order="canonical", list=True)
     meaning = dict(found)
@@ -351,8 +351,8 @@ def _shared(steps: dict[Symbol, Expr], taken: set[str]) -> dict[Symbol, Expr]:
 
 
 def _lines(steps: dict[Symbol, Expr], results: list[Symbol], names: set[str]) -> tuple[list[str], set[str]]:
-    """Assignments, each after those it needs; temporaries are numbered in the order of appearance."""
-    printer, lines = Words(names), list[str]()
+    """Lines of assignments, each after those it needs, with temporaries numbered in order; and the words they use."""
+    printer, lines = WordPrinter(names), list[str]()
     done: set[Symbol] = set()
 
     def write(symbol: Symbol) -> None:

@@ -13,11 +13,9 @@ law is `A(next) - phi(A(previous)) = 0`, with its slopes in the derivatives (`la
 `A` is the direction of `N` minus the direction of `d`, so each derivative is that of two arguments:
 `dA = bend(V) - bend(d)`, `bend(w) = (w x dw)/(w.w)`.
 
-Convexity as a proved condition on the shape.
-
-A closed simple boundary is convex where it never turns right. On a trigonometric boundary the
-turning `x'y'' - y'x''` is a polynomial in `tan(x/2)`, with `x` the common multiple of `theta` that it
-depends on, so its sign over all of the boundary and the whole shape range can be proved.
+Convexity is proved here too, for all shapes in a range. A closed simple boundary is convex where it never turns right.
+On a trigonometric boundary the turning `x'y'' - y'x''` is a polynomial in `tan(x/2)`, with `x` the common multiple of
+`theta` that it depends on, so its sign over all of the boundary and the whole shape range can be proved.
 """
 
 from collections.abc import Sequence
@@ -27,22 +25,20 @@ from itertools import combinations_with_replacement
 
 from sympy import Derivative, Expr, Function, Interval, Symbol, atan, cos, diff, oo, sin
 
-from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, nonnegative, positive
+from symbolic.expressions.signs import Box, Outcome, SignFinding, conjunction, nonnegative, positive
 from symbolic.expressions.text import Kernel, kernel
 from symbolic.tables.geometry import in_half_tangent, speed, turning
-from symbolic.tables.law import PAPERS_LAW, Law
+from symbolic.tables.law import Law
 from symbolic.tables.table import Component, Table, eta, lam, s, theta
 from symbolic.tables.validity import parameter_box
 
 theta0 = Symbol("theta0", real=True)  # the bounce itself
 theta1 = Symbol("theta1", real=True)  # the other end of a chord
-theta_previous = Symbol("theta_previous", real=True)
-theta_next = Symbol("theta_next", real=True)
 
 
 @dataclass(frozen=True)
 class Staged:
-    """Expressions by name, over intermediate values that are defined in order."""
+    """Expressions by name, in terms of intermediate values; each of these is defined by earlier ones."""
 
     arguments: tuple[Symbol, ...]
     definitions: dict[Symbol, Expr]
@@ -63,7 +59,7 @@ def chord_angle(table: Table, here: int = 0, there: int = 0, order: int = 1) -> 
 
     `here` and `there` are components; `theta0` is the parameter here, `theta1` there. The values are
     `angle` and its partial derivatives up to `order` (at most 2), `angle_0` by `theta0`, `angle_01`
-    by `theta0` and `theta1`, `angle_1_alpha` by `theta1` and `alpha`. A shape comes in from order 1.
+    by `theta0` and `theta1`, `angle_1_alpha` by `theta1` and `alpha`. Shapes are differentiated from order 1 on.
 
     >>> from symbolic.tables import circle
     >>> list(chord_angle(circle, order=2).values)
@@ -79,14 +75,14 @@ def chord_angle(table: Table, here: int = 0, there: int = 0, order: int = 1) -> 
 
 @cache
 def _coordinates(shapes: tuple[Symbol, ...]) -> tuple[Expr, ...]:
-    """Those of the two ends, then of the chord, as functions that could be any."""
+    """Coordinates of both ends of a chord, then of the chord, as unknown functions of `theta0`, `theta1`, shapes."""
     ends = [Function(axis + end, real=True)(by, *shapes) for end, by in (("0", theta0), ("1", theta1)) for axis in "xy"]
     return (*ends, *(Function("d" + axis, real=True)(theta0, theta1, *shapes) for axis in "xy"))
 
 
 @cache
 def _derived(shapes: tuple[Symbol, ...], order: int) -> dict[str, Expr]:
-    """The values of `chord_angle` for any two components."""
+    """The values of `chord_angle` by name, for any two components, in symbols for their points."""
     x0, y0, _, _, dx, dy = _coordinates(shapes)
     vx, vy = diff(x0, theta0), diff(y0, theta0)
     turned = {p: _bend(vx, vy, p) - _bend(dx, dy, p) for p in (theta0, theta1, *shapes)}
@@ -100,7 +96,7 @@ def _derived(shapes: tuple[Symbol, ...], order: int) -> dict[str, Expr]:
 
 
 def partials(shapes: tuple[Symbol, ...], order: int) -> dict[str, tuple[Symbol, ...]]:
-    """The names of the values of `chord_angle`, in order, and what each is differentiated by.
+    """The names of the values of `chord_angle`, in order, each with the variables by which the angle is differentiated.
 
     >>> list(partials((Symbol("alpha"),), 1))
     ['angle', 'angle_0', 'angle_1', 'angle_alpha']
@@ -115,54 +111,12 @@ def partials(shapes: tuple[Symbol, ...], order: int) -> dict[str, tuple[Symbol, 
     return {_named(*each): each for each in by}
 
 
-def collision_rule(
-    table: Table, components: tuple[int, int, int] = (0, 0, 0), order: int = 1, law: Law = PAPERS_LAW
-) -> Staged:
-    """`A(next) + lam*A(previous)` at a bounce, and its first derivatives; 0 when the rule is obeyed.
-
-    `components` are those of the previous bounce, of the bounce and of the next one. The values are
-    `residual`, `d_previous`, `d_here`, `d_next`, `d_lam` and one for each shape parameter and each of the law's own.
-
-    >>> from symbolic.tables import circle
-    >>> rule = collision_rule(circle).whole("residual")
-    >>> rule.subs({theta_previous: -2, theta: 0, theta_next: 2, lam: 1}).simplify()
-    0
-    """
-    previous, here, following = components
-    forth = chord_angle(table, here, following, order)
-    back = chord_angle(table, here, previous, order)
-    renamed = {}
-    definitions: dict[Symbol, Expr] = {}
-    for staged, mark, other in ((forth, "next", theta_next), (back, "previous", theta_previous)):
-        own = {theta0: theta, theta1: other}
-        own |= {s: Symbol(_ending(s.name, mark), real=True) for s in staged.definitions}
-        definitions |= {own[s]: e.xreplace(own) for s, e in staged.definitions.items()}
-        renamed[mark] = {name: e.xreplace(own) for name, e in staged.values.items()}
-    out, into = renamed["next"], renamed["previous"]
-    shapes = tuple(p.symbol for p in table.shapes)
-    others = tuple(p for p in law.symbols if p not in shapes)
-
-    def reflected(expression: Expr) -> Expr:
-        return expression.subs(eta, into["angle"])
-
-    values = {"residual": out["angle"] - reflected(law.phi)}
-    if order:
-        slope = reflected(law.slope)
-        values |= {"d_previous": slope * into["angle_1"]}
-        values |= {"d_here": out["angle_0"] + slope * into["angle_0"] - reflected(law.phi.diff(theta))}
-        values |= {"d_next": out["angle_1"], "d_lam": -reflected(law.phi.diff(lam))}
-        for shape in shapes:
-            values[f"d_{shape}"] = out[_named(shape)] + slope * into[_named(shape)] - reflected(law.phi.diff(shape))
-        values |= {f"d_{p}": -reflected(law.phi.diff(p)) for p in others}
-    return Staged((theta_previous, theta, theta_next, lam, *shapes, *others), definitions, values)
-
-
 @cache
 def law_kernel(law: Law, order: int = 1, whole: Component | None = None) -> Kernel:
     """The exit angle as a generated function of `(eta, lam, theta, *own)`, with derivatives up to `order`.
 
-    Of a law that speaks of arc length on the closed curve `whole` it is one of `(eta, lam, theta, s, *own)`; the
-    derivatives by `theta` are those along the curve, on which that of `s` is the speed.
+    For a law that contains arc length, `whole` is the closed curve: the arguments are then `(eta, lam, theta, s,
+    *own)`, and derivatives by `theta` are those along the curve, where `ds/dtheta` is the speed.
 
     The values are `phi`, then `phi_eta` and its like, and for order 2 `phi_eta_eta` and all other pairs with `eta` or
     `theta`.
@@ -214,8 +168,8 @@ def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) ->
 def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
     """`chord_angle` along each side of a polygon, as a generated function of the parameters at its corners.
 
-    First all sides to the next corner, then all to the one before, of each the values of `chord_angle`. What belongs
-    to a corner is computed once. The table is one component, of a given shape.
+    The results are the values of `chord_angle` for all sides to the next corner, then to the one before. What depends
+    on one corner is computed once. The table has one component and no free shape parameter.
 
     >>> from symbolic.tables import circle
     >>> polygon_kernel(circle, 3, 0).results
@@ -238,13 +192,13 @@ def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
 
 @cache
 def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
-    """The angles of `polygon_kernel` to order 0 on a table of one polar curve, from the gaps between corners too.
+    """The angles of `polygon_kernel` to order 0 on one polar curve, with the gaps between corners as arguments too.
 
     A function of the parameters at the corners and of the gaps to the next one, the last gap back to the first. With
     `q` the radius here by that there, the chord leaves at `atan(sin(gap)/(q - cos(gap)))` from the ray to the origin
-    and the normal at `atan(rho'/rho)`. What turns with all corners cancels, so that in balls a gap is as wide as it
-    is and not as its two ends. The first results are the angles, which hold where the last ones, `q - cos(gap)`, are
-    positive.
+    and the normal at `atan(rho'/rho)`. A common turn of all corners cancels, so that in balls a gap has its own width
+    and not that of its two ends. The first results are the angles, which hold where the last ones, `q - cos(gap)`, are
+    positive. `ValueError` for other tables.
 
     >>> from symbolic.tables import circle
     >>> polar_polygon_kernel(circle, 3).results[5:7]
@@ -270,25 +224,15 @@ def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
     return kernel(f"polar_polygon_{corners}", [*at, *gaps], values | ahead, definitions, about)
 
 
-@cache
-def collision_kernel(table: Table, components: tuple[int, int, int] = (0, 0, 0), law: Law = PAPERS_LAW) -> Kernel:
-    """`collision_rule` as a generated function of `(theta_previous, theta, theta_next, lam, *shape, *own)`."""
-    staged = collision_rule(table, components, law=law)
-    rule = "phi + lam*eta" if law.uniform else f"phi = {law}"
-    about = f"The collision rule {rule} at a bounce, components {' '.join(map(str, components))}."
-    name = "collision_rule_" + "_".join(map(str, components))
-    return kernel(name, staged.arguments, staged.values, staged.definitions, about)
-
-
 class _Stage:
-    """The coordinates of a chord as functions, until their derivatives become named values."""
+    """Formulas for undetermined coordinates of a chord, with derivatives of coordinates replaced by named values."""
 
     def __init__(self, shapes: tuple[Symbol, ...], meaning: dict[Expr, Expr]) -> None:
         self.shapes, self.meaning = shapes, meaning
-        self.known: dict[Expr, Expr] = {}  # what stands for a derivative or a coordinate
+        self.known: dict[Expr, Expr] = {}  # the name or number that replaces a derivative or a coordinate
 
     def finished(self, arguments: tuple[Symbol, ...], found: dict[str, Expr]) -> Staged:
-        """The values with each derivative of a coordinate replaced by a name, and the names' definitions."""
+        """The values with derivatives of coordinates replaced by names, and definitions of those names."""
         definitions: dict[Symbol, Expr] = {}
         values = {name: self._named_parts(e, definitions) for name, e in found.items()}
         return Staged(arguments, definitions, values)
@@ -331,12 +275,7 @@ def _named(*parameters: Symbol) -> str:
     return f"angle_{tail.removeprefix('_')}" if parameters else "angle"
 
 
-def _ending(name: str, mark: str) -> str:
-    """`x0_t` keeps its name: it belongs to the bounce; what belongs to a chord is marked."""
-    return name if "0" in name else f"{name}_{mark}"
-
-
-def convexity(table: Table, box: Box | None = None, strictly: bool = False) -> Finding:
+def convexity(table: Table, box: Box | None = None, strictly: bool = False) -> SignFinding:
     """Is the table convex for every shape in `box` (by default its own range, ends included)?
 
     `strictly` asks for negative curvature everywhere. A piecewise table is judged component by
@@ -350,13 +289,13 @@ def convexity(table: Table, box: Box | None = None, strictly: bool = False) -> F
     return conjunction(*(_turns_left(turning(component), ranges, strictly) for component in table.components))
 
 
-def _turns_left(expression: Expr, box: Box, strictly: bool) -> Finding:
+def _turns_left(expression: Expr, box: Box, strictly: bool) -> SignFinding:
     judge = positive if strictly else nonnegative
     if not expression.has(theta):
         return judge(expression, {x: r for x, r in box.items() if x in expression.free_symbols})
     half = in_half_tangent(expression)
     if half is None:
-        return Finding(Outcome.UNKNOWN, f"{expression} is no trigonometric polynomial")
+        return SignFinding(Outcome.UNKNOWN, f"{expression} is no trigonometric polynomial")
     polynomial, T, at_pi = half
     used = {x: r for x, r in box.items() if x in polynomial.free_symbols}
     far = judge(at_pi, {x: r for x, r in box.items() if x in at_pi.free_symbols})

@@ -5,7 +5,8 @@ the tangent; with `psi` the direction of the tangent its own direction is `psi0 
 lands at `q1 = (X1, Y1)(s1)`, where the flight equation says that `q1 - q0` is parallel to that
 direction, with incidence angle `eta1 = psi1 - direction - pi/2`. The law is `phi1 = -eta1 + f(eta1)`.
 
-How much area a bounce contracts: at a point, on average, and near the elastic case. Paper: sections 1 and 4.1.
+The module also derives how much area a bounce contracts: at a point, on average, and near the elastic case. Paper:
+sections 1 and 4.1.
 
 A flight keeps the area `ds d(sin(phi))`; the reflection turns `sin(eta)` into `sin(lam*eta)`. So in these coordinates
 a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends on the incidence angle alone. For any
@@ -24,7 +25,7 @@ for a law that depends on the place as well.
   expands areas for `lam` just below 1. Over the whole of phase space that average is exactly 1: to first order
   in `1 - lam`, expansion and contraction cancel there.
 
-Functions of the phase point that never decrease, and the limit sets they force.
+Last, a function of the phase point that never decreases, and the limit sets that it forces.
 
 In an ellipse `x**2/a**2 + y**2 = 1` let `J = g(q)*cos(phi)`, with `g(q) = |(x/a**2, y)|`. Along a
 flight the landing has `g(q1)*cos(eta1) = g(q0)*cos(phi0)` (Joachimsthal), and the reflection turns
@@ -144,8 +145,8 @@ def derivative_matrix(
 def determinant(slope: Expr = lam, drift: Expr = S.Zero) -> Expr:
     """`det DT` in the coordinates `(s, phi)`: `lam * cos_phi0 / cos_eta1`, with the slope of any law for `lam`.
 
-    It exceeds 1 at grazing landings, however small `lam` is: contraction holds on average only. The drift of a law
-    that depends on the place adds a multiple of the first row to the second, and leaves it.
+    It exceeds 1 at grazing landings, however small `lam` is: contraction holds on average only. The drift of a law that
+    depends on the place adds a multiple of the first row to the second, which does not change the determinant.
 
     >>> determinant(), determinant(drift=Symbol("c"))
     (cos_phi0*lam/cos_eta1, cos_phi0*lam/cos_eta1)
@@ -181,7 +182,7 @@ def birkhoff_matrix(matrix: Matrix, cos_phi0: Expr, cos_phi1: Expr) -> Matrix:
 
 @cache
 def area_factor(phi: Expr = -lam * eta) -> Expr:
-    """`g(eta)`: what a bounce that lands at the incidence angle `eta` multiplies `ds d(sin(phi))` by; of any law `phi`.
+    """`g(eta)`, the factor of the area `ds d(sin(phi))` at a bounce with incidence angle `eta`, for any law `phi(eta)`.
 
     >>> area_factor(), area_factor(-eta)
     (lam*cos(eta*lam)/cos(eta), 1)
@@ -191,7 +192,7 @@ def area_factor(phi: Expr = -lam * eta) -> Expr:
 
 
 def telescoped(bounces: int, phi: Expr = -lam * eta) -> Expr:
-    """`prod det DT / (prod g * cos(phi_0)/cos(phi_n))` along an orbit, in `(s, phi)`: 1, which is the sum rule.
+    """The sum rule: along an orbit, in `(s, phi)`, `prod det DT / (prod g * cos(phi_0)/cos(phi_n))`, which is 1.
 
     >>> telescoped(3)
     1
@@ -216,7 +217,7 @@ def steepening() -> Expr:
 
 
 def weak_dissipation() -> Expr:
-    """`d log(g)/d lam` at `lam = 1`: what one bounce contributes when the elastic law is left.
+    """`d log(g)/d lam` at `lam = 1`: the first-order effect of dissipation on the area factor of one bounce.
 
     >>> weak_dissipation()
     -eta*tan(eta) + 1
@@ -250,7 +251,7 @@ def log_cosine_mean() -> Expr:
 
 
 def growth_defects() -> list[Expr]:
-    """The growth rates of the Gram-Schmidt method add up to that of areas: zeros.
+    """Three expressions that are 0, so that the growth rates of the Gram-Schmidt method add up to that of areas.
 
     In turn: the square of the product of both normalising factors of a matrix, minus that of its determinant; its first
     factor squared, minus the squared length of its first column; and the determinant of a product, minus the product.
@@ -271,7 +272,7 @@ def growth_defects() -> list[Expr]:
 
 
 def image_share(phi: Expr = -lam * eta) -> Expr:
-    """The share of phase space that the image of `T` may fill: the mean of `g` over it, for a law that falls.
+    """The share of phase space that the image of `T` may fill: the mean of `g` over it, for a decreasing law.
 
     >>> image_share()
     sin(pi*lam/2)
@@ -291,7 +292,7 @@ def gradient(x: Expr, y: Expr) -> Matrix:
 
 
 def joachimsthal_defect() -> Expr:
-    """`<G(q0) + G(q1), q1 - q0>` for two points of the ellipse: zero, so `J` survives a flight.
+    """The scalar product of `gradient(q0) + gradient(q1)` and `q1 - q0` on the ellipse: 0, so a flight conserves `J`.
 
     >>> from symbolic.expressions.signs import vanishes
     >>> vanishes(joachimsthal_defect())

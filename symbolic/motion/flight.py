@@ -14,7 +14,7 @@ Paper: the flights of section 2.
 The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text
 that SymPy proves is the text that the numeric kernels run. Complex numbers are pairs.
 
-The pinball map of the unit circle, explicit. Paper: section 3.1.
+The module ends with the pinball map of the unit circle. Paper: section 3.1.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,6 +32,7 @@ from symbolic.tables.validity import is_positive
 Complex = tuple[Any, Any]
 Harmonics = Mapping[int, tuple[Complex, Complex]]  # C_k and S_k by k
 ONE: Complex = (1, 0)
+HIGH = 64  # most periods of a wave in one turn of theta
 
 
 def harmonics(component: Component) -> dict[int, tuple[Complex, Complex]] | None:
@@ -53,7 +54,7 @@ def harmonics(component: Component) -> dict[int, tuple[Complex, Complex]] | None
 
 
 def _tidy(value: Expr) -> Expr:
-    """A coefficient in its simplest form, which a complex fraction has when it is expanded."""
+    """A coefficient, simplified; expanding is enough for a complex number with rational parts."""
     fraction = not value.has(Pow) and all(part.is_Rational or part is I for part in value.atoms())
     return expand(value) if fraction else simplify(value)
 
@@ -71,8 +72,23 @@ def powers(z: Complex, highest: int) -> list[Complex]:
     return found
 
 
+def power(z: Complex, n: int) -> Complex:
+    """`z**n`, computed by those products of `powers` that it needs.
+
+    >>> power((0, 1), 10**6 + 1)
+    (0, 1)
+    """
+    needed = [n] if n > 1 else []
+    for k in needed:
+        needed += [half for half in (k // 2, k - k // 2) if half > 1 and half not in needed[-2:]]
+    found = {0: ONE, 1: z}
+    for k in sorted(set(needed)):
+        found[k] = times(found[k // 2], found[k - k // 2])
+    return found[n]
+
+
 def point_at(h: Harmonics, u: Complex) -> Complex:
-    """The boundary point at `u = exp(i*theta)`, highest harmonic first."""
+    """The boundary point at `u = exp(i*theta)`, summed from the highest harmonic down."""
     up = powers(u, max(h, default=0))
     x, y = 0, 0
     for k in sorted(h, reverse=True):
@@ -92,7 +108,7 @@ def differentiated(h: Harmonics) -> dict[int, tuple[Complex, Complex]]:
 
 
 def support(h: Harmonics, k: int, E: Complex) -> Complex:
-    """`M_k`. For `n = 1` this alone gives the chord: `exp(i*m)` lies along `M_1`.
+    """`M_k` of the module's text. For `n = 1` this alone gives the chord: `exp(i*m)` lies along `M_1`.
 
     >>> support({1: ((4, 0), (0, 2))}, 1, (5, 7))
     (20, 14)
@@ -102,7 +118,7 @@ def support(h: Harmonics, k: int, E: Complex) -> Complex:
 
 
 def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Complex]:
-    """A harmonic in the frame of the flight, where `E = 1`; of the two vectors only the parts that a chord sees.
+    """`C_k` and `S_k` in the frame of the flight, where `E = 1`, without the parts that do not change its chord.
 
     `exp(i*k*m)*conj(M_k)` is a number times `E**(k + 1)` and one times `E**(k - 1)`. With `|E| = 1` used here, a
     circle's part of a table adds no rounding to the chord polynomial: its products `E*conj(E)` are one.
@@ -115,8 +131,18 @@ def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Com
     return (g[0], 0), (-g[1], 0)
 
 
+def oscillates(expression: Expr) -> bool:
+    """Does an expression contain a wave of more than `HIGH` periods in a turn? Then it is not tested for a conic.
+
+    >>> oscillates(1 + cos(65 * theta)), oscillates(cos(theta) ** 3)
+    (True, False)
+    """
+    multiples = (wave.args[0].coeff(theta) for wave in expression.atoms(cos, sin))
+    return any(k.is_Rational and abs(k) > HIGH for k in multiples)
+
+
 class Focal(NamedTuple):
-    """The ellipse `1/rho = p + size*cos(theta - w)` in its eccentric parameter `E`, counted like `theta - w`."""
+    """The ellipse `1/rho = p + size*cos(theta - w)` with its eccentric anomaly `E`, which is 0 at `theta = w`."""
 
     harmonics: Harmonics  # of the parameter `E`
     ahead: tuple[Expr, Expr]  # cosine and sine of `w`
@@ -126,7 +152,7 @@ class Focal(NamedTuple):
 
 
 def about_focus(rho: Expr) -> Focal | None:
-    """The ellipse with a focus in the origin whose radius is `rho(theta)`; None of anything else, and of a circle.
+    """The ellipse with a focus in the origin and the radius `rho(theta)`; None for other curves, and for a circle.
 
     With `left = p*p - size*size` the half axes are `p/left` and `1/sqrt(left)`, and the centre is at `-size/left` along
     the long one. None as well where the direction of that axis depends on a parameter.
@@ -136,6 +162,8 @@ def about_focus(rho: Expr) -> Focal | None:
     >>> about_focus(1 + cos(theta) / 2) is None
     True
     """
+    if oscillates(rho):  # before waves become powers
+        return None
     c, s = Dummy(real=True), Dummy(real=True)
     found = expand(1 / rho, trig=True).xreplace({cos(theta): c, sin(theta): s})
     if found.has(theta) or not found.is_polynomial(c, s):
@@ -158,11 +186,11 @@ def about_focus(rho: Expr) -> Focal | None:
 
 
 def about_far_focus(component: Component, box: Box) -> Component:
-    """The same component without the loss of digits at a far tip, where it is an arc of a conic about the origin.
+    """The component, if an arc of a conic about its focus in the origin, rewritten without loss of digits at a far tip.
 
     There `1/rho = p + size*cos(theta - w)` is a small difference. With `c` the cosine of half of `theta - w` it is
     `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse; all is written in cosine and sine of
-    `theta/2`. Left as it is where `size` has no proved sign on the box, or is no half of `p`.
+    `theta/2`. The component is returned unchanged where `size` has no proved sign on the box or is not above `p/2`.
 
     >>> rho = 1 / (5 + 4 * cos(theta))
     >>> about_far_focus(Component("arc", (rho * cos(theta), rho * sin(theta)), S.Zero, pi), {}).point[1]
@@ -184,11 +212,11 @@ def about_far_focus(component: Component, box: Box) -> Component:
 
 
 def focal_arc(component: Component, box: Box) -> list[Expr] | None:
-    """The numbers of an arc of an ellipse that is given by its radius about a focus in the origin; None of any other.
+    """The 17 numbers of an arc of an ellipse that is given by its radius about a focus in the origin; None for others.
 
-    The point is `(p - e)*A + q*B`, with `(p, q)` the cosine and sine of the eccentric parameter: the focus; `A`; `B`;
-    the first corner; `A x B`; `1 - e`; of the arc's middle the cosine and sine, and of half its angle the sine and
-    cosine; the direction of `A`; and `sqrt((1 + e)/(1 - e))`, by which the tangents of half of both angles differ.
+    The point is `(p - e)*A + q*B`: `(p, q)` are cosine and sine of the eccentric anomaly, `e` is the eccentricity.
+    Given are focus; `A`; `B`; first corner; `A x B`; `1 - e`; cosine and sine of the arc's middle; sine and cosine of
+    half its angle; direction of `A`; `sqrt((1 + e)/(1 - e))`, the ratio of the tangents of half of both angles.
 
     >>> rho = 1 / (5 + 3 * cos(theta))
     >>> focal_arc(Component("arc", (rho * cos(theta), rho * sin(theta)), -pi / 2, pi / 2), {})[2:6]
@@ -215,7 +243,7 @@ def focal_arc(component: Component, box: Box) -> list[Expr] | None:
 
 
 def half_of(direction: tuple[Expr, Expr]) -> tuple[Expr, Expr]:
-    """Cosine and sine of half an angle between minus and plus half a turn, from its own."""
+    """Cosine and sine of half an angle in (-pi, pi], from the cosine and sine of the angle."""
     x, y = direction
     sine = sqrt((1 - x) / 2)
     return sqrt((1 + x) / 2), -sine if y.is_negative else sine
@@ -301,7 +329,7 @@ def _product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
 
 
 def flight(s: Expr = s, phi: Expr = phi) -> tuple[Expr, Expr]:
-    """`(s1, phi1)`: the particle advances by `pi - 2*phi` and keeps `lam` of its angle.
+    """The pinball map of the unit circle: a flight advances `s` by `pi - 2*phi` and multiplies the angle by `lam`.
 
     >>> flight()
     (-2*phi + s + pi, lam*phi)
@@ -310,7 +338,7 @@ def flight(s: Expr = s, phi: Expr = phi) -> tuple[Expr, Expr]:
 
 
 def iterate(n: int) -> tuple[Expr, Expr]:
-    """The map applied `n` times, not reduced modulo the perimeter.
+    """`flight` applied `n` times, with arc length not reduced modulo the perimeter.
 
     >>> iterate(2)
     (-2*lam*phi - 2*phi + s + 2*pi, lam**2*phi)
@@ -322,7 +350,7 @@ def iterate(n: int) -> tuple[Expr, Expr]:
 
 
 def limit_position() -> Expr:
-    """Where even bounces settle, as an arc length: `s - 2*phi/(1 - lam)`.
+    """The arc length to which the even bounces on the circle converge: `s - 2*phi/(1 - lam)`.
 
     >>> limit_position().subs(lam, 0)
     -2*phi + s

@@ -23,16 +23,20 @@ from .gallery import (
     sinai,
     square,
     stadium,
+    support,
     triangle,
 )
 from .law import Law
-from .measured import from_fourier, from_path, from_points
+from .measured import from_fourier, from_points
+from .outlines import ConicArc, from_path
 from .scene import Scene
 from .table import Component, Fit, Mark, Shape, Table
+from .validity import prove_table
 
 __all__ = [
     "GALLERY",
     "Component",
+    "ConicArc",
     "Fit",
     "Law",
     "Mark",
@@ -58,6 +62,7 @@ __all__ = [
     "piecewise",
     "polar",
     "polygon",
+    "prove_table",
     "regular",
     "reuleaux",
     "round_arc",
@@ -65,5 +70,6 @@ __all__ = [
     "sinai",
     "square",
     "stadium",
+    "support",
     "triangle",
 ]

@@ -1,16 +1,12 @@
-"""The closed curves of a boundary, where they cross, and finite Fourier sums by their coefficients.
+"""The closed curves of a boundary, and finite Fourier sums by their coefficients.
 
-Sums are multiplied as sequences of fractions, where SymPy would multiply out: `(1 + cos(theta))**64` has 129
-coefficients and millions of terms on SymPy's way to them.
-
-Crossings are excluded for finite Fourier sums, else sought on polygons.
+Sums are multiplied as lists of rational coefficients, because SymPy would multiply out their terms:
+`(1 + cos(theta))**64` has 129 coefficients, and SymPy makes millions of terms on its way to them.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
-from math import atan2, fsum, tau
 from typing import Any
 
 from sympy import (
@@ -19,32 +15,28 @@ from sympy import (
     Dummy,
     Expr,
     I,
-    Interval,
     Mul,
     Pow,
     Rational,
     S,
     Symbol,
-    acos,
-    atan,
-    chebyshevu,
     cos,
     expand,
     pi,
-    sign,
     sin,
 )
 from sympy.polys.rings import ring
 from sympy.simplify.fu import TR8
 
-from symbolic.expressions.signs import bernstein, vanishes
+from symbolic.expressions.enclosures import Enclosures, UnboundedError
+from symbolic.expressions.signs import vanishes
+from symbolic.tables.polynomial import fraction, rational_coefficients, value_of
 from symbolic.tables.table import Component, Table, theta
 
 Pair = tuple[Fraction, Fraction]  # real and imaginary part
-Waves = dict[int, Pair]  # of exp(i*k*theta), by k; none of them 0
-PRODUCTS = 150_000  # of two coefficients, in one formula: about a second
+Waves = dict[int, Pair]  # the nonzero coefficients of exp(i*k*theta), by k
+PRODUCTS = 150_000  # most products of two coefficients in one formula: about a second
 EMPTY: Mapping[Symbol, Any] = {}
-DIGITS = 30  # by which two values are told apart
 LONG = 200  # operations, names and numbers: what is longer is not multiplied out by SymPy
 
 
@@ -54,7 +46,7 @@ class _TooLongError(Exception):
 
 @lru_cache(maxsize=256)
 def waves(expression: Expr) -> Waves | None:
-    """The coefficients of a trigonometric polynomial with rational numbers; None for whatever else it may be.
+    """Coefficients of `exp(i*k*theta)` in a trigonometric polynomial with rational numbers, by `k`; None for others.
 
     None as well where more than `PRODUCTS` products would be needed.
 
@@ -65,13 +57,13 @@ def waves(expression: Expr) -> Waves | None:
     """
     try:
         found = _read(expression, [PRODUCTS], Fraction)
-    except _TooLongError:  # treated as any other formula, that is not multiplied out
+    except _TooLongError:  # treated like a formula that is not a trigonometric polynomial
         return None
     return None if found is None else dict(sorted(found.items()))
 
 
 def trigonometric(expression: Expr) -> Expr:
-    """A trigonometric polynomial as a sum of sines and cosines of multiples; others merely expanded.
+    """A trigonometric polynomial as a sum of sines and cosines of multiples of `theta`; others are expanded only.
 
     >>> trigonometric(sin(theta) ** 2 + 3 * cos(theta) ** 2)
     cos(2*theta) + 2
@@ -85,7 +77,7 @@ def trigonometric(expression: Expr) -> Expr:
 
 @lru_cache(maxsize=256)
 def _summed(expression: Expr) -> Expr | None:
-    """A real trigonometric polynomial, letters in its coefficients, as sines and cosines of multiples; or None."""
+    """`trigonometric` for a real polynomial whose coefficients may contain letters; None for other expressions."""
     letters = sorted(expression.free_symbols - {theta}, key=str)
     own = ring(letters or [Dummy("x")], QQ)[0]
     try:
@@ -107,9 +99,9 @@ def _summed(expression: Expr) -> Expr | None:
 def _read(
     e: Expr, left: list[int], number: Callable[[int, int], Any], letters: Mapping[Symbol, Any] = EMPTY
 ) -> dict[int, tuple[Any, Any]] | None:
-    """The coefficients, operand by operand; `left` holds how many products may still be made.
+    """The coefficients of `e`, by recursion over its operands; `left[0]` is the number of products still allowed.
 
-    `number(p, q)` is a fraction in the ring of the coefficients, which `letters` belong to.
+    `number(p, q)` gives `p/q` in the ring of the coefficients; `letters` maps symbols to generators of the ring.
     """
     zero = number(0, 1)
     if isinstance(e, Rational):
@@ -119,8 +111,8 @@ def _read(
     if e is I:
         return {0: (zero, number(1, 1))}
     if isinstance(e, cos | sin):
-        multiple = e.args[0] / theta
-        if not multiple.is_Integer:
+        multiple, angle = e.args[0].as_coeff_Mul()
+        if angle is not theta or not multiple.is_Integer:
             return None
         k, half = int(multiple), number(1, 2)
         return {-k: (half, zero), k: (half, zero)} if isinstance(e, cos) else {-k: (zero, half), k: (zero, -half)}
@@ -135,17 +127,20 @@ def _read(
         if part is None:
             return None
         parts.append(part)
+    if isinstance(e, Add):
+        return _sum(parts)
     found = parts[0]
     for part in parts[1:]:
-        found = _sum(found, part) if isinstance(e, Add) else _product(found, part, left)
+        found = _product(found, part, left)
     return found
 
 
-def _sum(f: Waves, g: Waves) -> Waves:
-    total = dict(f)
-    for k, (x, y) in g.items():
-        u, v = total.get(k, (0, 0))
-        total[k] = u + x, v + y
+def _sum(parts: list[Waves]) -> Waves:
+    total: Waves = {}
+    for part in parts:
+        for k, (x, y) in part.items():
+            u, v = total.get(k, (0, 0))
+            total[k] = u + x, v + y
     return {k: c for k, c in total.items() if c[0] or c[1]}
 
 
@@ -174,12 +169,12 @@ def _power(f: Waves, n: int, left: list[int], one: Waves) -> Waves:
 
 
 def exactly(c: Pair) -> Expr:
-    """A coefficient as SymPy writes it."""
+    """A complex coefficient, a pair of fractions, as a SymPy number."""
     return Rational(c[0].numerator, c[0].denominator) + I * Rational(c[1].numerator, c[1].denominator)
 
 
 def highest(found: Waves) -> int:
-    """The highest harmonic."""
+    """The largest modulus of `k` among the coefficients; 0 if there are none."""
     return max((abs(k) for k in found), default=0)
 
 
@@ -189,33 +184,37 @@ def is_periodic(expression: Expr) -> bool:
     >>> is_periodic(cos(cos(3 * theta)) / (2 + sin(theta))), is_periodic(theta), is_periodic(cos(theta / 2))
     (True, False, False)
     """
-    if isinstance(expression, cos | sin) and (expression.args[0] / theta).is_Integer:
-        return True
+    if isinstance(expression, cos | sin):
+        multiple, angle = expression.args[0].as_coeff_Mul()
+        if angle is theta and multiple.is_Integer:
+            return True
     return expression is not theta and all(is_periodic(part) for part in expression.args)
 
 
 @lru_cache(maxsize=4096)
 def size(expression: Expr) -> int:
-    """How many operations, names and numbers an expression has, a repeated one each time."""
+    """The number of operations, names and numbers in an expression, repetitions counted."""
     return 1 + sum(size(part) for part in expression.args)
 
 
-PLACES = Rational(1, 3), Rational(13, 11)  # of a parameter, where a value is looked at
+PLACES = Rational(1, 3), Rational(13, 11)  # values of theta that `varies` compares
 
 
 def varies(value: Expr) -> bool:
-    """Is a value seen to differ at two parameters? Then it is no constant; asked before anything is multiplied out.
+    """True if `value` is proved to differ at two values of `theta`, so that it is not constant; nothing is expanded.
 
-    False says nothing: letters are given the value 1/20, at which there may be no such value.
+    False proves nothing: letters are given the value 1/20, where `value` may be undefined.
 
     >>> varies(cos(theta)), varies(cos(theta) ** 2 + sin(theta) ** 2)
     (True, False)
     """
-    given = dict.fromkeys(value.free_symbols, Rational(1, 20))
-    one, other = (value.subs(given | {theta: place}).evalf(DIGITS) for place in PLACES)
-    if not (one.is_Float and other.is_Float):
+    letters = sorted(value.free_symbols - {theta}, key=str)
+    try:
+        at = Enclosures([value], theta, *letters)
+    except UnboundedError:
         return False
-    return bool(abs(one - other) > (abs(one) + abs(other)) / 10 ** (DIGITS // 2))
+    (one,), (other,) = (at(*Enclosures([place, *([Rational(1, 20)] * len(letters))])()) for place in PLACES)
+    return one[1] < other[0] or other[1] < one[0]
 
 
 def alone(expression: Expr, x: Symbol = theta) -> bool:
@@ -223,15 +222,11 @@ def alone(expression: Expr, x: Symbol = theta) -> bool:
     return bool(S(expression).free_symbols <= {x})
 
 
-CORNERS = 96  # of the polygon, over all components
-FINE = 2**80  # of the lattice on which its corners lie
-Corner = tuple[int, int]
-
-
-def curves(table: Table) -> list[tuple[Component, ...]]:
+@lru_cache(maxsize=16)
+def curves(table: Table) -> tuple[tuple[Component, ...], ...]:
     """The closed curves of a boundary, each as its components in order: the outer one first, then the holes.
 
-    A curve is complete where it comes back to its first point; a chain that does not is refused.
+    A curve is complete where it comes back to its first point; `ValueError` for a chain that does not come back.
 
     >>> from symbolic.tables import cuspless
     >>> [[component.name for component in curve] for curve in curves(cuspless)]
@@ -239,7 +234,7 @@ def curves(table: Table) -> list[tuple[Component, ...]]:
     """
     only = table.components[0]
     if len(table.components) == 1 and only.end - only.start == 2 * pi and all(map(is_periodic, only.point)):
-        return [table.components]
+        return (table.components,)
     found, curve = [], list[Component]()
     for index, before in enumerate(table.components):
         curve.append(before)
@@ -255,125 +250,13 @@ def curves(table: Table) -> list[tuple[Component, ...]]:
             )
         found.append(tuple(curve))
         curve = []
-    return found
+    return tuple(found)
 
 
 def _meet(before: Component, after: Component) -> bool:
+    exact = S(before.end).is_Rational and S(after.start).is_Rational
+    if exact and (rows := rational_coefficients(before)) and (others := rational_coefficients(after)):
+        last, first = map(fraction, (before.end, after.start))
+        return all(value_of(p, last) == value_of(q, first) for p, q in zip(rows, others, strict=True))
     pairs = zip(before.at(before.end), after.at(after.start), strict=True)
     return all(p == q or vanishes(p - q) for p, q in pairs)
-
-
-def chord_of_length_zero(c: dict[int, Expr], scale: Expr = S.One) -> str | None:
-    """A sentence on where `sum c_k exp(i*k*theta)` meets itself or stops; None when it is proved simple.
-
-    The chord between `m + B` and `m - B` is `2*i*sin(B)` times `sum sgn(k) c_k U_(|k|-1)(cos B)
-    exp(i*k*m)`. A simple regular curve has no zero of that sum for `-1 <= cos B <= 1`; boxes of
-    `(tan(m/2), cos B)` are excluded by the sign of its real or its imaginary part. `scale` is theta in this angle.
-
-    >>> chord_of_length_zero({-2: -S(1) / 2, -1: S(1) / 2, 1: S(1) / 2, 2: S(1) / 2})
-    'the boundary meets itself, or stops, near theta = -91 and 90 degrees'
-    """
-    T, C = Dummy("T", real=True), Dummy("C", real=True)
-    n = max(abs(k) for k in c)
-    total = S.Zero
-    for k, value in c.items():
-        if k:
-            wave = (1 + sign(k) * I * T) ** (2 * abs(k)) * (1 + T**2) ** (n - abs(k))
-            total += sign(k) * value * chebyshevu(abs(k) - 1, C) * wave
-    parts = [expand(part) for part in expand(total).as_real_imag()]
-    box = _unexcluded([p for p in parts if p != 0], {T: Interval(-1, 1), C: Interval(-1, 1)}, 14)
-    if box is None:
-        return None
-    m = 2 * atan((box[T].start + box[T].end) / 2)
-    half = acos((box[C].start + box[C].end) / 2)
-    ends = sorted((scale * angle * 180 / pi).round() for angle in (m - half, m + half))
-    return f"the boundary meets itself, or stops, near theta = {ends[0]} and {ends[1]} degrees"
-
-
-def _unexcluded(parts: list[Expr], box: dict[Symbol, Interval], depth: int) -> dict[Symbol, Interval] | None:
-    """A box of the last generation in which no part keeps its sign; None when every box is excluded."""
-    for part in parts:
-        signs = {c.is_positive if c.is_nonzero else None for c in bernstein(part, box)}
-        if len(signs) == 1 and None not in signs:
-            return None
-    if depth == 0:
-        return box
-    x = max(box, key=lambda y: box[y].measure)
-    middle = (box[x].start + box[x].end) / 2
-    for half in (Interval(box[x].start, middle), Interval(middle, box[x].end)):
-        found = _unexcluded(parts, {**box, x: half}, depth - 1)
-        if found is not None:
-            return found
-    return None
-
-
-def polygon_crossing(table: Table) -> str | None:
-    """A sentence on where the polygon inscribed in the boundary crosses itself; None when it does not.
-
-    >>> from symbolic.tables import cuspless
-    >>> polygon_crossing(cuspless) is None
-    True
-    """
-    polygons = [_corners(replace(table, components=curve), len(table.components)) for curve in curves(table)]
-    sides = [
-        (polygon[k], polygon[k + 1 - len(polygon)], names[k])
-        for polygon, names in polygons
-        for k in range(len(polygon))
-    ]
-    for i, (a, b, here) in enumerate(sides):
-        for c, d, there in sides[i + 1 :]:
-            if b != c and d != a and _cross(a, b, c, d):
-                return f"the boundary crosses itself, near {here} and {there}"
-    for polygon, _ in polygons:
-        if (turns := _turns(polygon)) != 1:
-            return f"the boundary turns round {turns} times before it closes, and should once"
-    (outer, _), *holes = polygons
-    for polygon, names in holes:
-        around = [other for other, _ in holes if other is not polygon and _surrounds(other, polygon[0])]
-        if around or not _surrounds(outer, polygon[0]):
-            return f"the hole near {names[0]} does not lie in the table"
-    return None
-
-
-def _surrounds(polygon: list[Corner], point: Corner) -> bool:
-    """Does the point lie inside the polygon? A ray to the right crosses it an odd number of times."""
-    inside = False
-    for a, b in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
-        if (a[1] > point[1]) != (b[1] > point[1]):
-            inside ^= (_side(a, b, point) > 0) == (b[1] > a[1])
-    return inside
-
-
-def _corners(table: Table, parts: int) -> tuple[list[Corner], list[str]]:
-    count = max(2, CORNERS // parts)  # off the ends, where curves of a symmetric table like to meet
-    corners, names = [], []
-    for component in table.components:
-        for k in range(count):
-            value = component.start + (component.end - component.start) * Rational(3 * k + 1, 3 * count)
-            x, y = (Rational(_evaluated(coordinate, value)) for coordinate in component.point)
-            corners.append((x.p * FINE // x.q, y.p * FINE // y.q))
-            names.append(f"{component.name} at theta = {value}")
-    return corners, names
-
-
-def _evaluated(coordinate: Expr, value: Expr) -> Expr:
-    """A coordinate with 20 digits, without exact values of its sines, for which SymPy takes long."""
-    return coordinate.evalf(20, subs={theta: value})
-
-
-def _turns(corners: list[Corner]) -> int:
-    """How often the polygon's direction turns round, either way: once where it is simple (Hopf)."""
-    total = fsum(
-        atan2(_side(a, b, c), (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]))
-        for a, b, c in zip(corners[-2:] + corners[:-2], corners[-1:] + corners[:-1], corners, strict=True)
-    )
-    return round(abs(total) / tau)
-
-
-def _cross(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
-    """Do the open segments `ab` and `cd` cross?"""
-    return _side(a, b, c) * _side(a, b, d) < 0 and _side(c, d, a) * _side(c, d, b) < 0
-
-
-def _side(a: Corner, b: Corner, c: Corner) -> int:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -1,7 +1,7 @@
-"""What a scene says, as plain data: its boundary by a name, by formulas, or from an exact table; each number exact.
+"""Scenes as plain data: the boundary by a name, by formulas or by points, and every number exact.
 
-Formulas and numbers are text here, read by `symbolic.tables.formula`, which executes nothing. One of the paper's
-tables with plain numbers is read without SymPy.
+Formulas and numbers are text here; `symbolic.tables.formula` parses them and executes nothing. A scene with one of the
+paper's tables and plain numbers is read without SymPy.
 """
 
 import json
@@ -18,23 +18,24 @@ if TYPE_CHECKING:
     from symbolic.tables.table import Shape, Table
 
 PAPER = {"circle": (), "ellipse": ("a",), "cardioid": (), "cuspless": (), "egg": ("alpha",)}
-GALLERY = (  # tables of symbolic.tables.gallery and of families; their lengths have values of their own
+GALLERY = (  # tables of symbolic.tables.gallery and of families; each of their lengths has a default value
     "square", "triangle", "stadium", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "diamond", *NAMES,
 )  # fmt: skip
-POINTS = 3  # of the paper's egg
+POINTS = 3  # default of K, the number of points of the egg
+MOST = 4000  # largest number of components
 UNIFORM = "-lam*eta"  # the paper's law
-LAW_NAMES = ("eta", "lam", "theta", "s")  # what every law may speak of
+LAW_NAMES = ("eta", "lam", "theta", "s")  # the letters that every law may contain
 RESERVED = frozenset({  # names in a formula that are functions or constants; all others are parameters
     "Abs", "E", "abs", "atan", "cos", "cosh", "exp", "log", "pi", "sin", "sinh", "sqrt", "tan", "tanh"
 })  # fmt: skip
 PIECE = ("name", "x", "y", "from", "to")
-KINDS = ("table", "polar", "parametric", "component", "points")
+KINDS = ("table", "polar", "parametric", "support", "component", "points")
 FIT = {
     "smoothness": 2,
     "degree": None,
     "by": "chord",
     "uncertainty": "0",
-}  # of a boundary by points
+}  # default options of the fit, for a boundary that is given by points
 BOUNDARY = ("name", *KINDS, *FIT, "K", "undefined", "origin")
 KEYS = (*BOUNDARY, "shape", "law", "lam")
 PLAIN = re.compile(r"[+-]?(\d{1,99}/[1-9]\d{0,98}|(\d{1,99}\.?\d{0,99}|\.\d{1,99})([eE][+-]?\d{1,2})?)", re.ASCII)
@@ -43,7 +44,7 @@ NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def like(name: str, known: Iterable[str]) -> str:
-    """The question whether another name was meant, where a known one is like it.
+    """Text such as `; did you mean stadium?` for the most similar known name; empty where none is similar.
 
     >>> like("stadum", GALLERY)
     '; did you mean stadium?'
@@ -54,9 +55,9 @@ def like(name: str, known: Iterable[str]) -> str:
 
 
 def exact(label: str, given: Any) -> "Fraction | Expr":
-    """The exact real number that text, an integer, a fraction or an expression says; a plain one without SymPy.
+    """An exact real number from text, an integer, a fraction or an expression; a `Fraction` where SymPy is not needed.
 
-    A decimal means the decimal it shows. A float is refused, because it is not the number it shows.
+    A decimal means the decimal it shows. A float is refused: it is not what it shows. Errors begin with `label`.
 
     >>> exact("alpha", "0.08"), exact("a", "sqrt(2)")
     (Fraction(2, 25), sqrt(2))
@@ -78,12 +79,12 @@ def exact(label: str, given: Any) -> "Fraction | Expr":
 
 
 def exact_text(label: str, given: Any) -> str:
-    """The same number as text, the same for every way to write it: `0.08` and `2/25` are `2/25`."""
+    """The number of `exact` as text, in one form for every way to write it: `0.08` and `2/25` both give `2/25`."""
     return str(exact(label, given))
 
 
 def parameter_text(label: str, given: Any) -> str:
-    """A parameter as exact text: its value, or `VALUE:LOW..HIGH`, the value and the range that is looked at.
+    """A parameter as exact text: its value, or `VALUE:LOW..HIGH`, the value and the range of the parameter.
 
     >>> parameter_text("b", "0.1"), parameter_text("b", "0.1:0..0.25")
     ('1/10', '1/10:0..1/4')
@@ -108,12 +109,12 @@ def value_text(text: str) -> str:
 
 
 def range_text(text: str) -> str:
-    """Its range `LOW..HIGH`, or nothing where it has none."""
+    """The range of a parameter as `LOW..HIGH`; empty where it has none."""
     return text.partition(":")[2]
 
 
 def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr]":
-    """The ends of a range `LOW..HIGH`."""
+    """The two ends of a range written as `LOW..HIGH`, as exact numbers."""
     low, _, high = text.partition("..")
     return exact(label, low), exact(label, high)
 
@@ -122,7 +123,7 @@ def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr
 
 
 def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """One of the paper's tables by its name."""
+    """The entries of a scene for a table of the paper, and the values of its shape parameters (none yet)."""
     if name not in PAPER:
         raise ValueError(f"no table is called {name!r}; the paper's are {', '.join(PAPER)}")
     if isinstance(K, bool) or not isinstance(K, int) or K < 2:
@@ -133,7 +134,7 @@ def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
-    """What an exact table says; the paper's own are recognised, with the numbers that they hold already."""
+    """The entries of a scene for an exact table, and the shape values that it holds (for the paper's tables only)."""
     from sympy import pi
 
     from symbolic import tables
@@ -161,7 +162,7 @@ def table_boundary(table: "Table") -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _fit_entries(table: "Table") -> dict[str, Any]:
-    """The points of a fitted table, and how they were fitted, unless that is the cubic spline by distance."""
+    """The entries for a fitted table: its points, and the options of the fit that differ from the defaults in `FIT`."""
     fit = table.fit
     assert fit is not None
     said: dict[str, Any] = {"name": table.name} if table.name != "measured" else {}
@@ -171,7 +172,7 @@ def _fit_entries(table: "Table") -> dict[str, Any]:
 
 
 def _fitted(said: Mapping[str, Any]) -> dict[str, Any]:
-    """A boundary that a document gives by points, in the entries of `_fit_entries`."""
+    """The entries of `_fit_entries`, read from a document that gives the boundary by points."""
     rows = said["points"]
     if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == 2 for row in rows):
         raise ValueError("scene: points must be a list of pairs of numbers, as in points = [['1', '0'], ['0', '0.5']]")
@@ -193,7 +194,7 @@ def _points(table: "Table") -> int:
 
 
 def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[str, Any]:
-    """A boundary as a document says it, each formula read and written again, so that equal ones are the same text."""
+    """The checked entries of a document's boundary; formulas are parsed and printed, so that equal ones look equal."""
     if "table" in said:
         known_entries("scene with a named table", said, ("table", "K"))
         return named_boundary(text_entry("table", said["table"]), said.get("K", POINTS))[0]
@@ -206,7 +207,14 @@ def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[st
         if not isinstance(said["parametric"], list) or len(said["parametric"]) != 2:
             raise ValueError("scene: parametric needs two formulas, as in parametric = ['3*cos(theta)', 'sin(theta)']")
         found["parametric"] = [_formula("parametric", text, parameters) for text in said["parametric"]]
+    elif "support" in said:
+        from symbolic.tables.gallery import supported
+
+        h = _parsed("support", text_entry("support", said["support"]), parameters)
+        found["parametric"] = [str(coordinate) for coordinate in supported(h)]
     else:
+        if len(_list("component", said)) > MOST:
+            raise ValueError(f"scene: {len(said['component'])} components are given; accepted: up to {MOST}")
         found["component"] = [_component(n, entry, parameters) for n, entry in enumerate(_list("component", said), 1)]
     if "undefined" in said:
         found["undefined"] = [_mark(entry) for entry in _list("undefined", said)]
@@ -216,26 +224,30 @@ def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[st
     return found
 
 
-def _component(n: int, entry: Any, parameters: tuple[str, ...]) -> dict[str, str]:
-    """One component: a name, two formulas in `theta`, and where `theta` begins and ends."""
+def _component(n: int, entry: Any, parameters: tuple[str, ...]) -> dict[str, Any]:
+    """The checked entry of one component: name, formulas `x` and `y`, ends of `theta`, and `hole` if it bounds one."""
     label = f"component {n}"
-    known_entries(f"scene: {label}", entry, PIECE)
+    known_entries(f"scene: {label}", entry, (*PIECE, "hole"))
+    if not isinstance(entry.get("hole", False), bool):
+        raise ValueError(f"scene: {label}: hole = {entry['hole']!r}; accepted: true, false")
     for key in PIECE[1:]:
         if key not in entry:
             raise ValueError(f"scene: {label} has no {key}; it needs {', '.join(PIECE[1:])}")
-    return {"name": word_entry(f"{label}: name", entry.get("name", f"component{n}"))} | {
-        key: _formula(f"{label}: {key}", entry[key], parameters) for key in PIECE[1:]
-    }
+    return (
+        {"name": word_entry(f"{label}: name", entry.get("name", f"component{n}"))}
+        | {key: _formula(f"{label}: {key}", entry[key], parameters) for key in PIECE[1:]}
+        | ({"hole": True} if entry.get("hole") else {})
+    )
 
 
 def _mark(entry: Any) -> dict[str, Any]:
-    """A boundary point where the map is undefined."""
+    """The checked entry of a boundary point where the map is undefined."""
     known_entries("scene: undefined", entry, ("name", "component", "theta"))
     return {"name": word_entry("undefined: name", entry.get("name"))} | _place("undefined", entry)
 
 
 def _place(label: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """A component's index and a parameter there."""
+    """The checked index of a component, and a parameter `theta` on it; errors begin with `label`."""
     index = entry.get("component", 0)
     if isinstance(index, bool) or not isinstance(index, int) or index < 0:
         raise ValueError(f"scene: {label}: component = {index!r} is no index, counted from 0")
@@ -258,7 +270,7 @@ def _parsed(label: str, text: str, parameters: Iterable[str]) -> "Expr":
 
 
 def _symbols(parameters: Iterable[str]) -> "dict[str, Symbol]":
-    """`theta`, and the shape's parameters as real symbols."""
+    """`theta` and the shape's parameters as real symbols, by name."""
     from sympy import Symbol
 
     from symbolic.tables.table import theta
@@ -267,8 +279,9 @@ def _symbols(parameters: Iterable[str]) -> "dict[str, Symbol]":
 
 
 def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
-    """The exact table that a document says, with its numbers, but for shape parameters that are left `free`."""
+    """The exact table of a document, with the numbers of its shape; the shape parameters in `free` stay symbols."""
     from symbolic import tables
+    from symbolic.tables.curves import curves
     from symbolic.tables.table import Mark
 
     texts = {parameter: document["shape"][parameter] for parameter in parameters_of(document)}
@@ -295,11 +308,16 @@ def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
     arcs = [tables.arc(p["name"], *(formula(p[key]) for key in PIECE[1:])) for p in document["component"]]
     start = document.get("origin", {"component": 0, "theta": "0"})
     origin = start["component"], formula(start["theta"])
-    return tables.piecewise(*arcs, name=name, shapes=free, undefined=marks, origin=origin)
+    table = tables.piecewise(*arcs, name=name, shapes=free, undefined=marks, origin=origin)
+    outer = curves(table)[0]
+    for n, part in enumerate(document["component"][: len(outer)], 1):
+        if part.get("hole"):
+            raise ValueError(f"scene: component {n}: hole = true; the first closed curve is the outer one and no hole")
+    return table
 
 
 def name_of(boundary: Mapping[str, Any]) -> str:
-    """The name of a boundary: the paper's, the user's own, or the way it is written."""
+    """The name of a boundary: the paper's, the user's own, or `polar`, `parametric`, `piecewise` or `measured`."""
     kind = next((key for key in ("polar", "parametric") if key in boundary), "piecewise")
     kind = "measured" if "points" in boundary else kind
     return str(boundary.get("table") or boundary.get("name") or kind)
@@ -315,7 +333,7 @@ def parameters_of(boundary: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def words_of(formulas: Iterable[str]) -> set[str]:
-    """The names in formulas that stand for no function and no constant."""
+    """The names in formulas that stand for neither a function nor a constant."""
     return {name for text in formulas for name in NAME.findall(text)} - RESERVED
 
 
@@ -337,7 +355,7 @@ def _expression(label: str, text: str) -> "Expr":
 
 
 def known_entries(label: str, entry: Any, keys: tuple[str, ...]) -> None:
-    """Refuses an entry that is no table, or that says something under a key that means nothing."""
+    """Raises `ValueError` unless `entry` is a mapping with no other keys than `keys`; errors begin with `label`."""
     if not isinstance(entry, Mapping):
         raise ValueError(f"{label} is {entry!r}; it must be a table with the entries {', '.join(keys)}")
     for key in entry:
@@ -352,21 +370,21 @@ def _list(key: str, said: Mapping[str, Any]) -> list[Any]:
 
 
 def text_entry(label: str, given: Any) -> str:
-    """An entry that must be text."""
+    """`given`, which must be text; otherwise `ValueError`."""
     if not isinstance(given, str):
         raise ValueError(f"scene: {label} = {given!r} is no text; put it in quotation marks")
     return given
 
 
 def word_entry(label: str, given: Any) -> str:
-    """An entry that must be a name."""
+    """`given`, which must be a name (letters, digits, `_`, `-` and blanks); otherwise `ValueError`."""
     if not isinstance(given, str) or not WORD.fullmatch(given):
         raise ValueError(f"scene: {label} = {given!r} is no name; accepted: letters, digits, '_', '-' and blanks")
     return given
 
 
 def number_entry(label: str, given: Any) -> Any:
-    """A number as text or as an integer; a TOML float is refused, because it is not the decimal that it shows."""
+    """`given`, if text or an integer, else `ValueError`: a TOML float is not the decimal that it shows."""
     if isinstance(given, float):
         raise ValueError(f"scene: {label} = {given} is a rounded float; put the decimal in quotation marks")
     if isinstance(given, bool) or not isinstance(given, int | str):
@@ -375,7 +393,7 @@ def number_entry(label: str, given: Any) -> Any:
 
 
 def toml(value: Any) -> str:
-    """Plain data on one line of TOML; its strings are JSON's, which TOML reads too."""
+    """Plain data (mappings, lists, text, numbers) on one line of TOML; strings are written as in JSON."""
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list | tuple):

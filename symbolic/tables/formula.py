@@ -1,4 +1,4 @@
-"""Formulas: typed by a user and read by a parser that can only build exact expressions, or set in LaTeX.
+"""Formulas: a parser of typed text that can only build exact expressions, and their LaTeX.
 
     sum     = product { ("+" | "-") product }
     product = signed { ("*" | "/") signed }
@@ -6,7 +6,7 @@
     power   = atom [ ("**" | "^") signed ]
     atom    = number | name | function "(" sum ")" | "(" sum ")"
 
-Nothing typed is ever executed, and a decimal is the decimal it shows: `0.08` is 2/25. What may be read is bounded
+Nothing typed is ever executed, and a decimal is the decimal it shows: `0.08` is 2/25. The size of a formula is bounded
 (`flaw`), so that everything done with it stays cheap: SymPy's numerical tests take twice as long for each level of an
 irrational constant, and its roots factor the number under them; a short formula can otherwise ask for a day of work.
 """
@@ -68,7 +68,7 @@ FUNCTIONS: Mapping[str, Callable[[Expr], Expr]] = {
 
 
 def parse(text: str, names: Mapping[str, Symbol] = NAMES) -> Expr:
-    """The exact expression that `text` says, in the given names; `ValueError` when it says none.
+    """The exact expression of `text`; `names` maps the allowed letters to symbols. `ValueError` for any other text.
 
     >>> parse("1 + cos(5*theta)/40")
     cos(5*theta)/40 + 1
@@ -86,7 +86,7 @@ sqrt, sin, cos, exp, log, atan, sinh, cosh, tanh, abs, tan
 
 
 def number(text: str, label: str) -> Expr:
-    """The exact real number that `text` says; an error begins with `label`.
+    """The exact real number that `text` denotes; an error begins with `label`.
 
     >>> number("2/25", "alpha"), number("sqrt(2)", "a")
     (2/25, sqrt(2))
@@ -107,7 +107,7 @@ class _Token(NamedTuple):
 
 
 class _Reader:
-    """One pass over the tokens of a formula; `level` counts how deep the recursion is."""
+    """A recursive-descent parser of one formula; `level` is the depth of the recursion."""
 
     def __init__(self, text: str, names: Mapping[str, Symbol]) -> None:
         self.named: Mapping[str, Expr] = {**names, **CONSTANTS}
@@ -187,7 +187,13 @@ class _Reader:
         if self._take("("):
             return self._inside()
         if kind not in ("name", "number") or (kind == "name" and text not in {**FUNCTIONS, **self.named}):
-            raise _error(text, place, "is unknown" if kind == "name" else "is unexpected", self._accepted())
+            own = (
+                f", or a letter with a number, {text}=NUMBER (at the prompt: --shape {text}=NUMBER)"
+                if kind == "name" and "theta" in self.named
+                else ""
+            )
+            wrong = "is unknown" if kind == "name" else "is unexpected"
+            raise _error(text, place, wrong, self._accepted() + own)
         self.tokens.pop()
         if kind == "number":
             return _numeral(text, place)
@@ -243,12 +249,12 @@ BITS = 1400  # largest numerator or denominator; 400 decimal digits fit
 ARGUMENT = 10**6  # largest modulus of a constant inside a function
 VOCABULARY = (
     *(Add, Mul, Pow, Rational, Symbol, type(pi), type(E), Abs, tan),
-    *(function for function in vocabulary.FUNCTIONS if isinstance(function, type)),  # all but the square root, a power
+    *(function for function in vocabulary.FUNCTIONS if isinstance(function, type)),  # without the square root: a power
 )
 
 
 def flaw(value: Expr) -> tuple[str, str] | None:
-    """What is wrong with `value`, and what would be accepted; None when it may stay.
+    """The fault of `value` and what would be accepted, as two texts; None if there is no fault.
 
     >>> from symbolic.tables.table import theta
     >>> flaw(theta**65)
@@ -268,9 +274,9 @@ def flaw(value: Expr) -> tuple[str, str] | None:
     return None
 
 
-@lru_cache(maxsize=4096)  # each operation that is read asks all below it again
+@lru_cache(maxsize=4096)  # the parser tests all parts of a formula again after each operation
 def _flaw_at(node: Expr) -> tuple[str, str] | None:
-    if node.is_number and node.is_finite is False:  # letters are finite: what is not has a constant that is not
+    if node.is_number and node.is_finite is False:  # letters are finite, so that only a constant can be infinite
         return "the value is not finite", "a formula without a pole"
     if node is S.ImaginaryUnit:
         return "the value is not real", "a formula with real values"
@@ -322,7 +328,7 @@ def modest(value: Rational, power: int = 1) -> bool:
 
 @lru_cache(maxsize=4096)
 def levels(value: Expr) -> int:
-    """How deeply operations are nested in `value`.
+    """The depth to which operations are nested in `value`; 0 for a number or a name.
 
     >>> levels(1 + 2 * pi)
     2
@@ -342,7 +348,7 @@ SPECIAL = {
 
 
 def latex(expression: Expr | Matrix | Component | Table) -> str:
-    """`expression` in LaTeX, in the paper's letters; a component is its parametrisation.
+    """LaTeX of an expression, matrix, component or table, in the paper's letters; a component is its parametrisation.
 
     >>> from symbolic.tables.table import alpha
     >>> latex(lam * alpha)
@@ -369,7 +375,7 @@ def equation(left: str, right: Expr | Matrix) -> str:
 
 
 def letter(name: str) -> str:
-    """A name of the code as the paper's letter, with what follows as a subscript.
+    """LaTeX of a name in the code: the paper's letter, with digits and the part after `_` as a subscript.
 
     >>> letter("theta_next"), letter("lam"), letter("mu0")
     ('\\\\theta_{\\\\mathrm{next}}', '\\\\lambda', '\\\\mu_{0}')

@@ -15,12 +15,20 @@ from inspect import signature
 from itertools import pairwise
 from typing import TypeAlias
 
-from sympy import Expr, Interval, Rational, S, cos, oo, pi, sin, sqrt
+from sympy import Expr, Interval, Rational, S, Symbol, cos, oo, pi, sin, sqrt
 
 from symbolic.tables.families import NAMES
+from symbolic.tables.formula import NAMES as NAMES_OF_FORMULAS
 from symbolic.tables.formula import parse
 from symbolic.tables.table import Component, Mark, Shape, Table, a, alpha, exact_number, theta
-from symbolic.tables.validity import closed_and_finite, counterclockwise_and_simple, positive_radius, validated
+from symbolic.tables.validity import (
+    closed_and_finite,
+    counterclockwise_and_simple,
+    positive_radius,
+    prove_table,
+    radius_over,
+    validated,
+)
 
 
 def polar(
@@ -28,21 +36,28 @@ def polar(
     name: str = "polar",
     shapes: Iterable[Shape] = (),
     undefined: Iterable[Mark] = (),
+    **letters: str,
 ) -> Table:
     """The table bounded by `rho(theta)`, `-pi <= theta < pi`, in polar coordinates.
 
-    Text is read by `symbolic.tables.formula`, which executes nothing.
+    Text is parsed by `symbolic.tables.formula`, which executes nothing. Each letter of the formula is a keyword with
+    its range, `LOW:HIGH`. The boundary is proved simple for all values in it; `Table.at` gives the letter a value.
+
+    >>> polar("1 + b*cos(2*theta)", b="0:1/5").shapes[0].range
+    Interval(0, 1/5)
 
     >>> polar(1 + cos(5 * theta) / 40).components[0].at(S.Zero)
     (41/40, 0)
     >>> polar("1 + cos(5*theta)/40") == polar(1 + cos(5 * theta) / 40)
     True
     """
-    rho, shapes, undefined = _exact(rho), tuple(shapes), tuple(undefined)
+    shapes, undefined = (*shapes, *_ranges(name, letters)), tuple(undefined)
+    rho = _exact(rho, shapes)
     whole = arc(name, rho * cos(theta), rho * sin(theta), -pi, pi)
     table = closed_and_finite(Table(name, (whole,), shapes, undefined))
     simple = not shapes and not undefined and positive_radius(name, rho)
-    return table if simple else counterclockwise_and_simple(table)
+    found = table if simple else counterclockwise_and_simple(table)
+    return _over_ranges(found) if letters else found
 
 
 def parametric(
@@ -51,14 +66,59 @@ def parametric(
     name: str = "parametric",
     shapes: Iterable[Shape] = (),
     undefined: Iterable[Mark] = (),
+    **letters: str,
 ) -> Table:
-    """The table bounded by the closed curve `(x(theta), y(theta))`, `-pi <= theta < pi`.
+    """The table bounded by the closed curve `(x(theta), y(theta))`, `-pi <= theta < pi`; letters as in `polar`.
 
     >>> parametric(3 * cos(theta), 2 * sin(theta)).components[0].at(pi / 2)
     (0, 2)
     """
-    whole = arc(name, x, y, -pi, pi)
-    return validated(Table(name, (whole,), tuple(shapes), tuple(undefined)))
+    shapes = (*shapes, *_ranges(name, letters))
+    whole = Component(name, (_exact(x, shapes), _exact(y, shapes)), -pi, pi)
+    found = validated(Table(name, (whole,), shapes, tuple(undefined)))
+    return _over_ranges(found) if letters else found
+
+
+def support(h: Expr | str, name: str = "support", **letters: str) -> Table:
+    """The table that the lines `x*cos(theta) + y*sin(theta) = h(theta)` touch; letters as in `polar`.
+
+    It is convex where `h + h'' >= 0`; elsewhere the curve turns back, and is refused.
+
+    >>> from symbolic import area
+    >>> area(support("1 + cos(3*theta)/10"))  # of the width 2 in all directions: h(theta) + h(theta + pi)
+    24*pi/25
+    """
+    ranges = _ranges(name, letters)
+    x, y = supported(_exact(h, ranges))
+    found = parametric(x, y, name, ranges)
+    return _over_ranges(found) if letters else found
+
+
+def supported(h: Expr) -> tuple[Expr, Expr]:
+    """The point where the line with the support function `h` touches: `h*N + h'*T`, `N` normal, `T` tangent."""
+    slope = h.diff(theta)
+    return h * cos(theta) - slope * sin(theta), h * sin(theta) + slope * cos(theta)
+
+
+def _ranges(name: str, letters: Mapping[str, str]) -> list[Shape]:
+    """Shape parameters with their ranges, from letters with texts `LOW:HIGH`."""
+    found = []
+    for letter, text in letters.items():
+        low, colon, high = str(text).partition(":")
+        if not colon:
+            raise ValueError(f"{name}: {letter} = {text} is no range; accepted: LOW:HIGH such as {letter}='0:1/5'")
+        ends = exact_number(f"{name}: {letter}", low.strip()), exact_number(f"{name}: {letter}", high.strip())
+        if not ends[0] < ends[1]:
+            raise ValueError(f"{name}: {letter} = {text} is no range; accepted: LOW:HIGH with LOW < HIGH")
+        found.append(Shape(Symbol(letter, real=True), Interval(*ends), "is outside of the range that was given"))
+    return found
+
+
+def _over_ranges(table: Table) -> Table:
+    """`table`, if it is proved to be a table for all values of its letters in their ranges; otherwise `ValueError`."""
+    if not radius_over(table):
+        prove_table(table)
+    return table
 
 
 def piecewise(
@@ -77,11 +137,12 @@ def arc(name: str, x: Expr | str, y: Expr | str, start: Expr | str, end: Expr | 
     return Component(name, (_exact(x), _exact(y)), _exact(start), _exact(end))
 
 
-def _exact(given: Expr | int | str) -> Expr:
-    """An expression as it is; text only through the parser that executes nothing."""
+def _exact(given: Expr | int | str, shapes: Iterable[Shape] = ()) -> Expr:
+    """An expression unchanged, or the expression that text denotes; the text may contain the symbols of `shapes`."""
     if isinstance(given, bool) or not isinstance(given, str | int | float | Expr):  # floats are refused later
         raise ValueError(f"table: {given!r} is no formula; give an exact expression, an integer, or text")
-    return parse(given) if isinstance(given, str) else S(given)
+    own = {shape.symbol.name: shape.symbol for shape in shapes}
+    return parse(given, {**NAMES_OF_FORMULAS, **own}) if isinstance(given, str) else S(given)
 
 
 def egg(K: int | Expr = 3) -> Table:
@@ -100,7 +161,7 @@ def egg(K: int | Expr = 3) -> Table:
 
 @lru_cache(maxsize=64)
 def _egg(points: Expr) -> Table:
-    """The egg of a number of points that makes sense.
+    """The egg with a number of points that `egg` has checked.
 
     Its radius is at least `1 - alpha > 0`, so that it runs counterclockwise and does not cross itself.
     """
@@ -110,7 +171,7 @@ def _egg(points: Expr) -> Table:
     return closed_and_finite(Table("egg", (whole,), (convex,)))
 
 
-# What `validated` would prove of the paper's tables at every import, a test proves once.
+# `validated` is not run on the paper's tables at each import: a test proves once what it would prove.
 circle = Table("circle", (arc("circle", cos(theta), sin(theta), -pi, pi),))
 ellipse = Table(
     "ellipse",
@@ -152,14 +213,22 @@ HALF = Rational(1, 2)
 
 
 def polygon(*corners: tuple[Number, Number], name: str = "polygon", shapes: Iterable[Shape] = ()) -> Table:
-    """The table with these corners, in counterclockwise order.
+    """The table with these corners, in counterclockwise order; the first may be repeated at the end.
 
     >>> [side.name for side in polygon((0, 0), (1, 0), (0, 1)).components]
     ['side1', 'side2', 'side3']
+    >>> polygon((0, 0), (1, 0), (0, 1), (0, 0)) == polygon((0, 0), (1, 0), (0, 1))
+    True
     """
-    if len(corners) < 3:
-        raise ValueError(f"{name}: {len(corners)} corners make no polygon; give at least 3")
-    return piecewise(*_sides(corners), name=name, shapes=shapes)
+    exact = [(exact_number("corner", x), exact_number("corner", y)) for x, y in corners]
+    if len(exact) > 1 and exact[0] == exact[-1]:
+        exact.pop()
+    if len(exact) < 3:
+        raise ValueError(f"{name}: {len(exact)} corners make no polygon; give at least 3")
+    for i, ((x, y), after) in enumerate(pairwise(exact), 1):
+        if (x, y) == after:
+            raise ValueError(f"{name}: corners {i} and {i + 1} are both ({x}, {y}); leave one of them out")
+    return piecewise(*_sides(exact), name=name, shapes=shapes)
 
 
 def regular(n: int, radius: Number = 1) -> Table:
@@ -173,7 +242,7 @@ def regular(n: int, radius: Number = 1) -> Table:
     r = positive("regular: radius", radius)
     angles = [-pi / 2 - pi / n + 2 * pi * k / n for k in range(n)]
     corners = [(r * cos(a), r * sin(a)) for a in angles]
-    return Table(f"regular{n}", tuple(_sides(corners)))  # convex, so that nothing need be proved of it
+    return Table(f"regular{n}", tuple(_sides(corners)))  # convex, so that no proof is needed
 
 
 def square(side: Length = 1) -> Table:
@@ -290,7 +359,7 @@ def sinai(radius: Length = "1/4") -> Table:
 
 
 def diamond() -> Table:
-    """Between four dispersing quarter circles about the corners of a square of half side 1: four cusps.
+    """The table between four dispersing quarter circles of radius 1 about the points (+-1, +-1), with four cusps.
 
     >>> diamond().components[0].at(pi / 2)
     (1, 0)
@@ -334,7 +403,7 @@ def _sides(corners: Sequence[tuple[Number, Number]]) -> list[Component]:
 
 
 def _within(label: str, given: Length) -> tuple[Expr, Expr, Expr]:
-    """A length, or the symbol of one that stays free, and the ends between which it lies."""
+    """A length, or its symbol if it is free, and both ends of its range, which are the number itself if it is one."""
     if isinstance(given, Shape):
         return given.symbol, given.range.start, given.range.end
     value = exact_number(label, given)
@@ -342,7 +411,7 @@ def _within(label: str, given: Length) -> tuple[Expr, Expr, Expr]:
 
 
 def positive(label: str, given: Length) -> Expr:
-    """A length, refused where it is not positive."""
+    """The exact value of a length, or its symbol; `ValueError` unless it is positive."""
     value, low, _ = _within(label, given)
     if not low.is_positive:
         raise ValueError(f"{label} = {low} is no length; accepted: positive numbers")
@@ -350,7 +419,7 @@ def positive(label: str, given: Length) -> Expr:
 
 
 def free(*lengths: Length) -> list[Shape]:
-    """Those that stay free."""
+    """The free ones among these lengths, as shape parameters."""
     return [length for length in lengths if isinstance(length, Shape)]
 
 
@@ -358,7 +427,7 @@ OWN = (square, triangle, stadium, reuleaux, lemon, semi_ellipse, mushroom, sinai
 
 
 class Gallery(Mapping[str, Callable[..., Table]]):
-    """Tables by name: those of this file, and those of `families`, a file each."""
+    """Functions that make tables, by name: those of this file and those in the folder `families`."""
 
     def __getitem__(self, name: str) -> Callable[..., Table]:
         own = {make.__name__: make for make in OWN}
@@ -378,7 +447,7 @@ GALLERY = Gallery()
 
 
 def of_gallery(name: str, lengths: Mapping[str, Number]) -> Table:
-    """The table of the gallery with this name, and lengths other than its own.
+    """The table of the gallery with this name, with `lengths` in place of its default ones.
 
     >>> of_gallery("square", {"side": "1/2"}).components[2].at(S.Zero)
     (1/2, 1/2)

@@ -6,9 +6,9 @@ focusing component is negative (the paper's convention; textbooks use the opposi
 Arc length: a closed form where the speed allows one, else the exact integral. Where `speed**2 = p + q*cos(n*theta)`
 it is an incomplete elliptic integral of the second kind; at parameter 1 (the cardioid) it degenerates to a sine.
 
-Symmetries: the rotations and reflections about the origin that are found and proved to keep the boundary; a cyclic or a
-dihedral group. One that turns the parameter into `+theta + shift` keeps exit angles, `-theta + shift` negates them, and
-both take orbits of the pinball map to orbits: an attractor has images, and a stabiliser.
+Symmetries: rotations and reflections about the origin that are proved to map the boundary to itself form a cyclic or a
+dihedral group. One that takes `theta` to `theta + shift` keeps exit angles, one that takes it to `-theta + shift`
+negates them, and both take orbits of the pinball map to orbits.
 """
 
 from dataclasses import dataclass
@@ -40,10 +40,11 @@ from sympy.polys.polyerrors import PolynomialError
 
 from symbolic.expressions.signs import vanishes
 from symbolic.tables.curves import LONG, exactly, size, trigonometric, waves
+from symbolic.tables.polynomial import derivative, end_point
 from symbolic.tables.table import Component, Table, theta
 
-HIGHEST = 24  # harmonic of what is written as a polynomial in the tangent of half the angle
-FEW = 8  # components whose arc lengths are simplified
+HIGHEST = 24  # harmonic that is written as a polynomial in the tangent of half the angle
+FEW = 8  # most components whose arc lengths are simplified
 
 
 def velocity(component: Component) -> Matrix:
@@ -53,7 +54,13 @@ def velocity(component: Component) -> Matrix:
     >>> velocity(circle.components[0]).T
     Matrix([[-sin(theta), cos(theta)]])
     """
-    return Matrix(component.point).diff(theta)
+    return Matrix(_derivatives(component))
+
+
+@cache
+def _derivatives(component: Component) -> tuple[Expr, Expr]:
+    x, y = (derivative(f) if f.is_Add and f.is_polynomial(theta) else f.diff(theta) for f in component.point)
+    return x, y
 
 
 def speed(component: Component) -> Expr:
@@ -83,7 +90,7 @@ def normal(component: Component) -> Matrix:
 
 
 def turning(component: Component) -> Expr:
-    """`x' y'' - y' x''`: positive where the boundary focuses, and free of roots."""
+    """`x' y'' - y' x''`, which contains no square root: positive where the boundary focuses."""
     first = velocity(component)
     second = first.diff(theta)
     return trigonometric(first[0] * second[1] - first[1] * second[0])
@@ -112,7 +119,7 @@ def evolute(component: Component) -> Matrix:
 
 
 def centre_of_curvature(component: Component) -> Matrix:
-    """The point of the evolute, as it is derived."""
+    """The centre of curvature, not simplified."""
     x, y = velocity(component)
     ratio = trigonometric(x**2 + y**2) / turning(component)
     return Matrix([p + ratio * n for p, n in zip(component.point, (-y, x), strict=True)])
@@ -151,16 +158,16 @@ def _elliptic(p: Expr, q: Expr, n: int) -> Expr:
 
 
 def positions(table: Table) -> tuple[Expr, ...]:
-    """The paper's arc length `s(theta)` on each component, counted counterclockwise from the origin.
+    """The paper's arc length `s(theta)` on each component, counted counterclockwise from the table's `origin`.
 
-    Not wrapped: a paper that draws `s` symmetrically takes it modulo `perimeter(table)`.
+    It is not reduced modulo `perimeter(table)`, which the paper does where it draws `s` symmetrically about 0.
 
     >>> from symbolic.tables import cuspless
     >>> positions(cuspless)
     (4*sin(theta/2) + 9*sqrt(3)/4, theta)
     """
     (first, start), count = table.origin, len(table.components)
-    if (table.components[first].start - start).is_positive:  # nothing else was said
+    if (table.components[first].start - start).is_positive:  # the default 0, before the component begins
         start = table.components[first].start
     found: dict[int, Expr] = {}
     reached = -arc_length(table.components[first]).subs(theta, start)
@@ -177,22 +184,28 @@ def positions(table: Table) -> tuple[Expr, ...]:
 
 
 def perimeter(table: Table) -> Expr:
-    """The length of the whole boundary.
+    """The length of the whole boundary; an integral without a closed form is left unevaluated.
 
     >>> from symbolic.tables import cardioid, cuspless
     >>> perimeter(cardioid), perimeter(cuspless)
     (8, 9*sqrt(3)/2)
     """
-    lengths = [(arc_length(component), component) for component in table.components]
-    return simplify(sum(length.subs(theta, c.end) - length.subs(theta, c.start) for length, c in lengths))
+    closed, integrals = S.Zero, S.Zero
+    for component in table.components:
+        length, (start, end) = arc_length(component), (component.start, component.end)
+        if isinstance(length, Integral):
+            integrals += Integral(length.function, (length.variables[0], start, end))
+        else:
+            closed += length.subs(theta, end) - length.subs(theta, start)
+    return simplify(closed) + integrals
 
 
-CIRCLE = 4  # of its infinitely many symmetries, those of the square are listed
+CIRCLE = 4  # rotations that are listed for a circle, which has infinitely many
 
 
 @dataclass(frozen=True)
 class Symmetry:
-    """`theta` on component `i` goes to `sign*theta + shift[i]` on component `onto[i]`; `sign*phi` is the exit angle.
+    """A symmetry: `theta` on component `i` goes to `sign*theta + shift[i]` on component `onto[i]`, `phi` to `sign*phi`.
 
     In the plane it is the rotation by `angle`, after the reflection `y -> -y` when `sign` is -1.
     """
@@ -205,7 +218,7 @@ class Symmetry:
 
     @property
     def matrix(self) -> Matrix:
-        """The orthogonal matrix.
+        """The orthogonal matrix of the symmetry in the plane.
 
         >>> Symmetry("half turn", 1, pi, (0,), (pi,)).matrix
         Matrix([
@@ -216,7 +229,7 @@ class Symmetry:
         return Matrix([[c, -s * self.sign], [s, c * self.sign]])
 
     def then(self, other: "Symmetry") -> "Symmetry":
-        """This symmetry, followed by another."""
+        """The composition: this symmetry, then `other`."""
         sign, angle = self.sign * other.sign, (other.angle + other.sign * self.angle) % (2 * pi)
         shift = [other.sign * by + other.shift[on] for on, by in zip(self.onto, self.shift, strict=True)]
         return Symmetry(_name(sign, angle), sign, angle, tuple(other.onto[on] for on in self.onto), tuple(shift))
@@ -224,9 +237,9 @@ class Symmetry:
 
 @cache
 def group(table: Table) -> tuple[Symmetry, ...]:
-    """The symmetries that are proved, the identity first.
+    """The proved symmetries of a table, the identity first.
 
-    Complete for the paper's tables but the circle, of which only the symmetries of the square are listed: a
+    Complete for the paper's tables except the circle, for which only the symmetries of the square are listed: a
     symmetry keeps the curvature, so it permutes the vertices of an ellipse (`a > 1`) or an egg
     (`alpha > 0`), the cusp, or the wall.
 
@@ -241,9 +254,9 @@ def group(table: Table) -> tuple[Symmetry, ...]:
 
 
 def order_of_rotation(component: Component) -> int:
-    """How many turns of the parameter are symmetries: the common divisor of all differences of frequencies.
+    """The number of rotations that map a closed component to itself: the gcd of the differences of its frequencies.
 
-    `z(theta + d) = exp(i*w)*z(theta)` asks `k*d = w`, up to whole turns, of every frequency `k` of `z = x + i*y`.
+    `z(theta + d) = exp(i*w)*z(theta)` means `k*d = w` modulo `2*pi` for every frequency `k` of `z = x + i*y`.
 
     >>> from symbolic.tables import egg
     >>> order_of_rotation(egg(5).components[0])
@@ -257,7 +270,7 @@ def order_of_rotation(component: Component) -> int:
 
 
 def _of_one(table: Table) -> tuple[list[Symmetry], list[Symmetry]]:
-    """Shifts by `2*pi*k/n`, and reflections in `n` axes if there is one at 0 or `pi/(2*n)`."""
+    """The rotations and reflections of one closed component, from shifts of `theta` by multiples of `2*pi/n`."""
     component = table.components[0]
     n = order_of_rotation(component)
     shifts = [2 * pi * k / n for k in range(n)]
@@ -281,32 +294,41 @@ def _one(component: Component, sign: int, shift: Expr) -> Symmetry | None:
 
 
 def _turned(c: Expr, half_turns: Expr, sign: int) -> bool:
-    """Is a coefficient (its conjugate in a reflection), turned by so many half turns, the coefficient itself?"""
+    """Is a Fourier coefficient `c` equal to its product with `(-1)**half_turns`, conjugated if `sign` is -1?"""
     turned = c if sign > 0 else conjugate(c)
     return bool(half_turns.is_Integer and vanishes(S.NegativeOne**half_turns * turned - c))
 
 
 def _of_many(table: Table) -> tuple[list[Symmetry], list[Symmetry]]:
-    """The identity, reflections in the two axes that permute the components, ends to ends, and both together."""
+    """The rotations (identity, perhaps half turn) and the reflections in coordinate axes that keep the boundary."""
     parts = table.components
     same = Symmetry("identity", 1, S.Zero, tuple(range(len(parts))), (S.Zero,) * len(parts))
     places = [
         (i, by) for i, image in enumerate(parts) for by in ((0, pi) if image.end - image.start == 2 * pi else (0,))
     ]
+    chords = [
+        sum((q - p) ** 2 for p, q in zip(end_point(part, False), end_point(part, True), strict=True)) for part in parts
+    ]  # squares of chords, which symmetries preserve
+    by_chord = dict[Expr, list[tuple[int, Expr]]]()
+    for i, by in places:
+        by_chord.setdefault(chords[i] if chords[i].is_Rational else S.NaN, []).append((i, by))
     axes = []
     for angle in (S.Zero, pi):
         found = Symmetry(_name(-1, angle), -1, angle, (), ())
         onto = []
-        for part in parts:
-            tried = ((i, simplify(part.start + parts[i].end) + by) for i, by in places)
+        for part, chord in zip(parts, chords, strict=True):
+            alike = places if S.NaN in by_chord else by_chord[chord]  # of numbers that are not rational nothing is said
+            tried = ((i, simplify(part.start + parts[i].end) + by) for i, by in alike)
             onto += [next(((i, by) for i, by in tried if _keeps(part, parts[i], found.matrix, -1, by)), None)]
+            if onto[-1] is None:  # each part is tried on all of them
+                break
         if None not in onto:
             axes.append(Symmetry(found.name, -1, angle, *map(tuple, zip(*onto, strict=True))))
     return [same, *(first.then(second) for first, second in pairwise(axes))], axes
 
 
 def _keeps(part: Component, image: Component, matrix: Matrix, sign: int, shift: Expr) -> bool:
-    """Is the image of a point the point of the image?"""
+    """Does `matrix` map `part` onto `image`, its point at `theta` to the point at `sign*theta + shift`?"""
     moved = matrix * Matrix(part.point)
     target = [coordinate.subs(theta, sign * theta + shift) for coordinate in image.point]
     differences = [left - right for left, right in zip(moved, target, strict=True)]
@@ -322,7 +344,7 @@ def _name(sign: int, angle: Expr) -> str:
 
 
 def coefficients(expression: Expr) -> dict[int, Expr] | None:
-    """The nonzero `c_k` of a trigonometric polynomial in `theta`, by `k`; None when it is not one.
+    """The nonzero coefficients `c_k` of `exp(i*k*theta)` in an expression, by `k`; None if it is no finite such sum.
 
     >>> coefficients(2 * cos(theta) ** 2)
     {-2: 1/2, 0: 1, 2: 1/2}
@@ -349,7 +371,7 @@ def coefficients(expression: Expr) -> dict[int, Expr] | None:
 
 
 def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
-    """The `c_k` of `z = x + i*y` on a component.
+    """The nonzero Fourier coefficients `c_k` of `z = x + i*y` on a component, by `k`; None if `z` is no finite sum.
 
     >>> from symbolic.tables import cardioid
     >>> boundary_coefficients(cardioid.components[0])
@@ -360,10 +382,10 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
 
 
 def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
-    """`(p, T, value)`: the sign of a trigonometric polynomial is that of `p(T)`, `T = tan(x/2)`; `value` at `x = pi`.
+    """`(p, T, value)`: a polynomial `p` in `T = tan(x/2)` with the sign of a trigonometric one, and that at `x = pi`.
 
-    None where the expression is no such polynomial, or has harmonics above HIGHEST. Here `x = g*theta` with `g` the
-    common divisor of the frequencies.
+    None where the expression is no such polynomial, or has harmonics above HIGHEST. Here `x = g*theta`, where `g` is
+    the common divisor of the frequencies.
 
     >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
     >>> p.subs(T, 0), value

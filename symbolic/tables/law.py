@@ -1,13 +1,13 @@
 """Reflection laws: the exit angle as a formula in the angle of incidence, proved to point into the table.
 
 The paper allows `phi = -eta + f(eta)` with any `f` in C^2, and studies `phi = -lam*eta`. Here a law is any formula in
-`eta`, `lam`, the landing's boundary parameter `theta` or arc length `s`, and parameters of the user's own. It is one
-only where it maps the open half circle into itself, `|phi| < pi/2` for `|eta| < pi/2`, and that is proved in integers
-over all angles and over the ranges of whatever else is in the formula: towards an end where `|phi|` tends to `pi/2`
-itself, by the first derivative that does not vanish there.
+`eta`, `lam`, the boundary parameter `theta` or the arc length `s` of the point of reflection, and parameters of the
+user's own. It must map the open half circle into itself, `|phi| < pi/2` for `|eta| < pi/2`. This is proved in integer
+arithmetic over all angles and over the ranges of all other letters; next to an end where `|phi|` tends to `pi/2`, by
+the first derivative that does not vanish there.
 
-Arc length is that of the paper, counted from the table's origin. Where it is a closed formula in `theta` on every
-component, `Law.on` writes it in; on a closed curve without one it is what is integrated wherever a number is needed.
+Arc length is the paper's, counted from the table's origin. Where it is a closed formula in `theta` on every component,
+`Law.on` substitutes it; on a closed curve without such a formula `s` stays, and is integrated where a number is needed.
 """
 
 from collections.abc import Iterator, Mapping
@@ -20,22 +20,22 @@ from symbolic.tables.definition import LAW_NAMES, UNIFORM, exact, exact_text, wo
 if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
-    from symbolic.expressions.signs import Finding
+    from symbolic.expressions.signs import SignFinding
     from symbolic.tables.table import Table
 
 Range = tuple[Any, Any]  # two exact numbers, in order
-Ranges = tuple[tuple[Any, Any, Any], ...]  # symbols, each with both ends
-Case = tuple[Any, Any, dict[Any, Any], dict[Any, Any]]
-ORDER = 4  # of the derivatives that are looked at where |phi| tends to pi/2
-STRIPS = (2, 4, 6, 8)  # widths 2**-n of such a neighbourhood, in quarter turns
-BOUND = 1 << 20  # of the law and its two first derivatives
+Ranges = tuple[tuple[Any, Any, Any], ...]  # of symbol, lower end and upper end
+Case = tuple[Any, Any, dict[Any, Any], dict[Any, Any]]  # what `_cases` yields
+ORDER = 4  # of the highest derivative that is tried where |phi| tends to pi/2
+STRIPS = (2, 4, 6, 8)  # n of the strips next to such an end, of width 2**-n quarter turns
+BOUND = 1 << 20  # of |phi| and of its first two derivatives
 
 
 @dataclass(frozen=True)
 class Law:
     """A reflection law: the exit angle `phi` as a formula in `eta`, `lam`, `theta`, `s`, and parameters of its own.
 
-    `numbers` are those of its own parameters that have a value, as exact text; `at` gives one to the others.
+    `numbers` holds the values of its own parameters, as exact text; `at` sets those that have none yet.
 
     >>> Law().phi, Law("-lam*eta") == Law("-eta*lam")
     (-eta*lam, True)
@@ -48,7 +48,7 @@ class Law:
 
     formula: str = UNIFORM
     numbers: tuple[tuple[str, str], ...] = ()
-    along: "Expr | None" = None  # what `s` is in `theta`, on a component of a table that has several
+    along: "Expr | None" = None  # `s` as a formula in `theta` on one component, where the table has several
 
     def __post_init__(self) -> None:
         if self.formula != UNIFORM:
@@ -56,12 +56,12 @@ class Law:
 
     @property
     def uniform(self) -> bool:
-        """Is it the paper's uniform contraction, `phi = -lam*eta`?"""
+        """Is the law the paper's uniform contraction, `phi = -lam*eta`?"""
         return self.formula == UNIFORM
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Its own parameters that have no value yet, in order."""
+        """Parameters of the law that have no value yet, in order."""
         names = [name for name in parameters_of_law(self.formula) if name not in dict(self.numbers)]
         lengths = {symbol.name for symbol in self.along.free_symbols} - set(LAW_NAMES) if self.along else set()
         return tuple(sorted({*names, *lengths}))
@@ -84,12 +84,22 @@ class Law:
 
     @property
     def phi(self) -> "Expr":
-        """The exit angle, exactly. Paper: section 2."""
+        """The exit angle as an exact expression, rewritten so that `tan(eta)` has no pole at `pi/2`. Paper: section 2.
+
+        >>> from sympy import pi
+        >>> from symbolic.tables.table import eta
+        >>> Law("-atan(lam*tan(eta))").phi.subs(eta, pi / 2)  # the limit
+        -pi/2
+        """
+        return _without_pole(self._as_written)
+
+    @property
+    def _as_written(self) -> "Expr":
         return _exit_angle(self.formula, self.numbers, self.along)
 
     @property
     def slope(self) -> "Expr":
-        """`-d phi/d eta`, what a reflection multiplies small differences of angles by: `lam` for the paper's law."""
+        """`-d phi/d eta`, the factor of small differences of angle in a reflection: `lam` for the paper's law."""
         from symbolic.tables.table import eta
 
         return -self.phi.diff(eta)
@@ -108,8 +118,24 @@ class Law:
 
         return not self.uniform and self.phi.has(s)
 
+    def elastic(self, lam: Any) -> bool:
+        """Is the law elastic, `phi = -eta`, at this exact contraction? The map then preserves area.
+
+        >>> Law().elastic(1), Law().elastic(0)
+        (True, False)
+        """
+        from sympy import S
+
+        from symbolic.expressions.signs import vanishes
+        from symbolic.tables.table import eta
+        from symbolic.tables.table import lam as contraction
+
+        if self.uniform:
+            return bool(S(lam) == 1)
+        return bool(vanishes(self.phi.subs(contraction, S(lam)) + eta))
+
     def on(self, table: "Table", component: int = 0) -> "Law":
-        """The same law on one component, `s` written as a formula in `theta`; on a closed curve without one `s` stays.
+        """The law on one component: `s` is replaced by its formula in `theta`, but kept on a closed curve without one.
 
         >>> from symbolic import tables
         >>> Law("-lam*eta + sin(s)/9").on(tables.square(), 2).phi
@@ -119,26 +145,28 @@ class Law:
 
     @property
     def odd(self) -> bool:
-        """Is `phi` proved to be odd in `eta`, the same everywhere? Then mirror images of orbits are orbits."""
+        """Is `phi` proved to be odd in `eta` and the same at all points? Then mirror images of orbits are orbits."""
         from symbolic.expressions.signs import vanishes
         from symbolic.tables.table import eta
 
         return self.uniform or (not self.placed and vanishes(self.phi + self.phi.subs(eta, -eta)))
 
-    def proof(self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range) -> "Finding":
-        """Does it map the open half circle into itself, for all `lam`, `theta`, `s` and own parameters in these ranges?
+    def proof(
+        self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range
+    ) -> "SignFinding":
+        """Does the law map the open half circle into itself for all `lam`, `theta`, `s` and parameters in these ranges?
 
-        `theta` is by default that of a closed curve, from -pi to pi; arc length has a range on a table only.
+        `theta` runs by default from -pi to pi, over a closed curve; a law in `s` needs its range, as `places` gives it.
 
         >>> Law("-lam*eta").proof().outcome.name, Law("-lam*eta - eta**3/5").proof().outcome.name
         ('PROVED', 'REFUTED')
         """
         if self.measured and s is None:
             raise ValueError(f"law = {self}: s is arc length, which has a range on a table only")
-        return _proof(self.phi, self._ranges(lam, theta, s, own))
+        return _proof(self._as_written, self._ranges(lam, theta, s, own))
 
     def _ranges(self, lam: Range, theta: Range | None, s: Range | None, own: Mapping[str, Range]) -> Ranges:
-        """The range of each symbol but `eta` that the exit angle may depend on."""
+        """Symbol, lower and upper end, for each symbol but `eta` that the exit angle may contain."""
         from sympy import S, pi
 
         from symbolic.tables.table import lam as contraction
@@ -150,7 +178,7 @@ class Law:
         return tuple((symbol, S(low), S(high)) for symbol, (low, high) in ranges.items())
 
     def places(self, table: "Table") -> tuple[Range | None, Range | None]:
-        """The ranges of `theta` and of `s` over all components of a table, each when the law depends on it."""
+        """The ranges of `theta` and `s` over all components of a table; None for a variable that is not in the law."""
         if not self.placed:
             return None, None
         from sympy import Max, Min
@@ -159,26 +187,26 @@ class Law:
         found = Min(*(part.start for part in parts)), Max(*(part.end for part in parts))
         return found, _reach(self, table) if self.measured else None
 
-    def contracting(self, lam: Range = (0, 1), **own: Range) -> "Finding":
-        """Is `|phi| < |eta|` for every `eta` but 0? It makes `J` of an ellipse grow (`symbolic.motion.collision`).
+    def contracting(self, lam: Range = (0, 1), **own: Range) -> "SignFinding":
+        """Is `|phi| < |eta|` for every `eta` but 0? Then `J` of `symbolic.motion.collision` grows on an ellipse.
 
         >>> Law("-lam*sin(eta)").contracting().outcome.name, Law("-eta").contracting().outcome.name
         ('PROVED', 'REFUTED')
         """
         from sympy import pi
 
-        from symbolic.expressions.signs import Finding, Outcome, conjunction
+        from symbolic.expressions.signs import Outcome, SignFinding, conjunction
 
         if self.placed:
-            return Finding(Outcome.UNKNOWN, "the exit angle depends on the place")
+            return SignFinding(Outcome.UNKNOWN, "the exit angle depends on the place")
         found = []
-        for x, exit, others, _ in _cases(self.phi, self._ranges(lam, None, None, own)):
+        for x, exit, others, _ in _cases(self._as_written, self._ranges(lam, None, None, own)):
             for side in (exit, exit.subs(x, -x)):
                 found += [_positive(x * pi / 2 - sign * side, x, others, begin=0) for sign in (1, -1)]
         return conjunction(*found)
 
     def check(self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range) -> None:
-        """`ValueError` with the angle at which it leads out of the table, or when no proof was found."""
+        """Raises `ValueError` if `proof` finds an angle at which the law leads out of the table, or no proof."""
         if self.uniform:
             return
         finding = self.proof(lam, theta, s, **own)
@@ -231,8 +259,30 @@ def _exit_angle(formula: str, numbers: tuple[tuple[str, str], ...], along: "Expr
 
 
 @cache
+def _without_pole(phi: "Expr") -> "Expr":
+    """`atan(u*tan(eta))` as `eta - atan((1 - u)*sin(eta)*cos(eta)/(cos(eta)**2 + u*sin(eta)**2))`, wherever `u >= 0`.
+
+    Both are one function for `|eta| < pi/2`, and the second runs on smoothly through a right angle.
+    """
+    from sympy import Wild, atan, cos, sin, tan
+
+    from symbolic.tables.table import eta
+
+    u = Wild("u", exclude=[eta])
+
+    def rewritten(whole: "Expr") -> "Expr":
+        found = whole.args[0].match(u * tan(eta))
+        if found is None or not found[u].is_nonnegative:
+            return whole
+        factor = found[u]
+        return eta - atan((1 - factor) * sin(eta) * cos(eta) / (cos(eta) ** 2 + factor * sin(eta) ** 2))
+
+    return phi.replace(lambda part: isinstance(part, atan) and part.has(tan(eta)), rewritten)
+
+
+@cache
 def lengths(table: "Table") -> "tuple[Expr, ...] | None":
-    """Arc length on every component, from the table's origin, in the words of a law; None where one has no such form.
+    """Arc length from the table's origin on each component, a formula in `theta`; None if one has no elementary form.
 
     >>> from symbolic import tables
     >>> lengths(tables.cardioid), lengths(tables.egg(3))
@@ -269,7 +319,7 @@ def _unknown(law: Law, table: "Table") -> ValueError:
 
 @cache
 def _reach(law: Law, table: "Table") -> Range:
-    """The range of arc length: exact in closed form, else bounds of it on a closed curve."""
+    """The least and the greatest arc length on a table: exact where `lengths` has formulas, else bounds."""
     from symbolic.expressions.enclosures import UnboundedError, root_integral
     from symbolic.tables.geometry import speed
     from symbolic.tables.table import theta
@@ -293,9 +343,9 @@ def _reach(law: Law, table: "Table") -> Range:
 
 
 def _cases(phi: "Expr", ranges: Ranges) -> Iterator[Case]:
-    """`x` with `eta = x*pi/2`, the exit angle in it, the ranges that are left, and what the other symbols are.
+    """Cases that cover the ranges: `x` (`eta = x*pi/2`), the exit angle, ranges of variables and values of symbols.
 
-    Where the exit angle is affine in a symbol, the ends of its range decide; else it runs with a variable from 0 to 1.
+    A symbol in which the exit angle is affine is set to the ends of its range; any other becomes a variable on [0, 1].
     """
     from sympy import Dummy, S, pi
 
@@ -311,35 +361,38 @@ def _cases(phi: "Expr", ranges: Ranges) -> Iterator[Case]:
         if low == high or phi.diff(symbol, 2) == 0:
             corners = [{**corner, symbol: end} for corner in corners for end in dict.fromkeys((low, high))]
         else:
-            u = Dummy("u")
+            u = Dummy("u", nonnegative=True)
             moving[symbol], left[u] = low + (high - low) * u, (S.Zero, S.One)
     for corner in corners:
         known = {**corner, **moving}
-        yield x, phi.subs({eta: x * pi / 2, **known}, simultaneous=True), left, known
+        yield x, _without_pole(phi.subs(known, simultaneous=True)).subs(eta, x * pi / 2), left, known
 
 
 @cache
-def _proof(phi: "Expr", ranges: Ranges) -> "Finding":
+def _proof(phi: "Expr", ranges: Ranges) -> "SignFinding":
     from sympy import S, pi
 
-    from symbolic.expressions.signs import Finding, Outcome, conjunction
+    from symbolic.expressions.signs import Outcome, SignFinding, conjunction
 
     found = []
     for x, exit, others, known in _cases(phi, ranges):
+        own: list[SignFinding] = []
         for sign in (1, -1):
             finding = _positive(pi / 2 - sign * exit, x, others)
             if finding.outcome is Outcome.REFUTED:
                 return _witnessed(finding, x, exit, known)
-            found.append(finding)
-        found += [_bounded(exit.diff(x, n), {x: (-S.One, S.One), **others}) for n in (0, 1, 2)]
+            own.append(finding)
+        slope = _derivative(exit, x)
+        own += [_bounded(value, {x: (-S.One, S.One), **others}) for value in (exit, slope, slope.diff(x))]
+        found += [_located(one, x, known) if one.outcome is Outcome.REFUTED else one for one in own]
     whole = conjunction(*found)
     if whole:
-        return Finding(Outcome.PROVED, "enclosures: |phi| < pi/2 for |eta| < pi/2, with two bounded derivatives")
-    return Finding(Outcome.UNKNOWN, f"no proof that |phi| < pi/2 for |eta| < pi/2, smoothly: {whole.reason}")
+        return SignFinding(Outcome.PROVED, "enclosures: |phi| < pi/2 for |eta| < pi/2, with two bounded derivatives")
+    return SignFinding(Outcome.UNKNOWN, f"no proof that |phi| < pi/2 for |eta| < pi/2, smoothly: {whole.reason}")
 
 
-def _positive(g: "Expr", x: "Symbol", others: Mapping["Symbol", Range], begin: int = -1) -> "Finding":
-    """Is `g > 0` for `begin < x < 1`? Where it vanishes at an end, a derivative of one sign decides next to it."""
+def _positive(g: "Expr", x: "Symbol", others: Mapping["Symbol", Range], begin: int = -1) -> "SignFinding":
+    """Is `g > 0` for `begin < x < 1`? If `g` vanishes at an end, the sign of a derivative decides near it."""
     from sympy import Rational, S
 
     from symbolic.expressions.enclosures import sign_in
@@ -349,7 +402,7 @@ def _positive(g: "Expr", x: "Symbol", others: Mapping["Symbol", Range], begin: i
     for end, way in ((begin, 1), (1, -1)):
         inward, order = g, 0
         while order < ORDER and _is_zero(inward.subs(x, end)):
-            inward, order = way * inward.diff(x), order + 1
+            inward, order = way * _derivative(inward, x), order + 1
         if order:
             for n in STRIPS:
                 ends[end] = end + way * Rational(1, 2**n)
@@ -362,23 +415,44 @@ def _positive(g: "Expr", x: "Symbol", others: Mapping["Symbol", Range], begin: i
     return sign_in(g, {x: (ends[begin], ends[1]), **others})
 
 
+def _derivative(value: "Expr", x: "Symbol") -> "Expr":
+    """`d value/dx`; as one reduced fraction if it has no arc tangent left, since terms that cancel have wide bounds."""
+    from sympy import Function, atan, cancel, cos, sin
+
+    found = value.diff(x)
+    angles = all(isinstance(part, atan | sin | cos) for part in value.atoms(Function))
+    return cancel(found) if angles and value.has(atan) and not found.has(atan) else found
+
+
 def _is_zero(value: "Expr") -> bool:
-    """Is `value` 0 whatever is still open in it? A number at one place says no at once."""
+    """Does `value` vanish identically in its symbols? A numerical value that is not 0 decides at once."""
     from sympy import Rational, simplify
 
     here = value.subs({symbol: Rational(1, 3) for symbol in value.free_symbols}).n(30)
+    if not here.is_comparable:  # at a pole
+        return False
     return not abs(here) > Rational(1, 10**20) and bool(simplify(value) == 0)
 
 
-def _bounded(value: "Expr", box: Mapping["Symbol", Range]) -> "Finding":
+def _bounded(value: "Expr", box: Mapping["Symbol", Range]) -> "SignFinding":
     """Is the modulus of `value` below `BOUND` on the whole box?"""
     from symbolic.expressions.enclosures import sign_in
 
     return sign_in(BOUND**2 - value**2, box)
 
 
-def _witnessed(finding: "Finding", x: "Symbol", exit: "Expr", others: Mapping["Symbol", "Expr"]) -> "Finding":
-    """The refutation, with the angle nearest to the normal at which the law was seen to fail, on this side of it."""
+def _located(finding: "SignFinding", x: "Symbol", others: Mapping["Symbol", "Expr"]) -> "SignFinding":
+    """The finding, its reason replaced: it names the values of `eta` and others near which `BOUND` may be exceeded."""
+    from sympy import pi
+
+    at = dict(finding.at)
+    places = {"eta": x * pi / 2, **{str(symbol): value for symbol, value in others.items()}}
+    where = ", ".join(f"{name} = {place.subs(at).n(6)}" for name, place in places.items())
+    return replace(finding, reason=f"phi, or one of its derivatives, may be larger than {BOUND} near {where}")
+
+
+def _witnessed(finding: "SignFinding", x: "Symbol", exit: "Expr", others: Mapping["Symbol", "Expr"]) -> "SignFinding":
+    """The refutation, its reason replaced: it names an angle, found by bisection, at which the law fails."""
     from sympy import Rational, S, pi
 
     at = dict(finding.at)

@@ -1,33 +1,35 @@
-"""Tables from data: a closed spline through points, a finite Fourier sum near them, exact as they stand.
+"""Tables from data: a closed spline through points, or a finite Fourier sum near them, with exact coefficients.
 
-The exact definition is the fit: its coefficients are rational, and whatever is computed or proved is so for the fit.
-What the fit says about the body that was measured is an error bar, which the table carries (`Table.fit`).
+The fit is the exact definition of the table: its coefficients are rational, and what is computed or proved holds for
+it. Its distance from the body that was measured is estimated by an error bar, which is in `Table.fit`.
 
-Points may be in either order round the body. The parameter of the fit grows with the distance between points,
-counted in 64ths of its mean (`by="chord"`), or by one from each to the next (`by="index"`).
+Points may be in either order round the body. From each point to the next the parameter of the fit grows with their
+distance, rounded to 64ths of the mean distance (`by="chord"`), or by one (`by="index"`).
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from math import isqrt
 from typing import Any
 
-from sympy import Expr, I, S, cos, pi, re, sin
+from sympy import Add, Expr, I, S, cos, pi, re, sin
 from sympy import im as imaginary
 
 from symbolic.tables.definition import PLAIN
 from symbolic.tables.gallery import parametric
-from symbolic.tables.polynomial import Bezier, Vector, as_component, checked, elevated, signed_area
-from symbolic.tables.table import Fit, Table, exact_number, theta
+from symbolic.tables.polynomial import Bezier, Vector, as_component, separate, signed_area
+from symbolic.tables.table import Component, Fit, Table, exact_number, theta
 
-BITS = 64  # of a control point, against the size of the whole
+BITS = 64  # in a control point, relative to the size of the boundary
 GUARD = 128  # bits of a fixed-point number on the way to a Fourier sum
-SHARES = 64  # of the mean distance: what parameters are counted in
+SHARES = 64  # units of the parameter in the mean distance between points
 SWEEPS = 2 * BITS  # each halves the error of the slopes
-BETWEEN = 8  # straight sides in place of a piece, where the distance of a point is taken
-MOST = 4000  # points
+BETWEEN = 8  # straight sides that replace a piece where its distance from a point is measured
+MOST = 4000  # largest number of points
 THIRD = Fraction(1, 3)
+ROUNDING = Fraction(1, 2**44)  # of the extent: what two floats for one point may differ by
 
 
 def from_points(
@@ -39,13 +41,14 @@ def from_points(
     by: str = "chord",
     uncertainty: Any = 0,
 ) -> Table:
-    """The table whose boundary is fitted to points of it, in order round the body.
+    """The table whose boundary is fitted to measured points, given in order round the body.
 
-    Either a closed spline of pieces cubic in `theta`, through the points, with so many continuous derivatives
-    (`smoothness`: 0 for straight sides, 1 for the slopes of parabolas through three points, 2 if left out); or, with a
-    `degree`, the finite Fourier sum of least squares. Coordinates are exact numbers, or text in which a decimal is the
-    decimal it shows; a float is the rational number it is.
-    `uncertainty` is how far each point may be from the body, and is carried along.
+    It is a closed spline through the points, cubic in `theta`, with `smoothness` continuous derivatives (0 for straight
+    sides, 1 for the slopes of parabolas through three points, 2 if left out); or, with a `degree`, the finite Fourier
+    sum of least squares. `by`, described in the module, gives the parameter. Coordinates are exact numbers, or text in
+    which a decimal is the decimal it shows; a float is the rational number it is. A last point that repeats the first
+    is left out. `uncertainty` is how far each point may be from the body, and is kept in `Table.fit`. `ValueError` for
+    bad input, or a boundary that crosses itself.
 
     >>> oval = from_points([(2, 0), (0, "1.5"), (-2, 0), (0, "-1.5")])
     >>> [len(oval.components), oval.fit.residual < S.One / 10**15]
@@ -53,7 +56,7 @@ def from_points(
     >>> from_points([(2, 0), (0, 1), (-2, 0), (0, -1)], degree=1, by="index").components[0].at(S.Zero)
     (2, 0)
     """
-    given = _read(name, points)
+    given = unclosed(read(name, points))
     least = 3 if degree is None else 2 * _whole(name, "degree", degree, 1, 64) + 1
     if not least <= len(given) <= MOST:
         raise ValueError(f"{name}: {len(given)} points are given; accepted: from {least} to {MOST}")
@@ -71,11 +74,7 @@ def from_points(
     ordered = given if _area(given) > 0 else [given[0], *reversed(given[1:])]
     steps = [1] * len(given) if by == "index" else _steps(ordered)
     if degree is None:
-        pieces = spline(ordered, steps, order)
-        residual = _rounded_up(max(_distance2(piece[0], point) for piece, point in zip(pieces, ordered, strict=True)))
-        missed = _missed(ordered, steps, order)
-        checked(name, pieces)
-        components = tuple(as_component(f"piece{i}", piece) for i, piece in enumerate(pieces, 1))
+        components, residual, missed = _pieces(name, tuple(ordered), tuple(steps), order)
         table = Table(name, components)
     else:
         x, y, residual = fourier(ordered, steps, degree)
@@ -90,56 +89,45 @@ def from_points(
     return Table(table.name, table.components, fit=fit)
 
 
+@lru_cache(maxsize=8)
+def _pieces(
+    name: str, points: tuple[Vector, ...], steps: tuple[int, ...], order: int
+) -> tuple[tuple[Component, ...], Fraction, Fraction | None]:
+    """The pieces of a spline, how far it passes from its points, and from those that are left out."""
+    pieces = spline(points, steps, order)
+    residual = _rounded_up(max(_distance2(piece[0], point) for piece, point in zip(pieces, points, strict=True)))
+    missed = _missed(points, steps, order)
+    area = signed_area(pieces)
+    if area <= 0:
+        how = "runs clockwise; turn it round" if area else "encloses area 0"
+        raise ValueError(f"{name}: the boundary {how}")
+    separate(name, [pieces])
+    return tuple(as_component(f"piece{i}", piece) for i, piece in enumerate(pieces, 1)), residual, missed
+
+
 def from_fourier(coefficients: Mapping[int, Any], name: str = "fourier") -> Table:
     """The table bounded by `x + i*y = sum c_k exp(i*k*theta)`; a coefficient is a number or a pair `(x, y)`.
 
     >>> from_fourier({1: 1, -2: "1/10"}).components[0].point
     (cos(theta) + cos(2*theta)/10, sin(theta) - sin(2*theta)/10)
     """
-    x, y = S.Zero, S.Zero
+    x, y = list[Expr](), list[Expr]()
     for k, given in sorted(coefficients.items()):
         k = _whole(name, "harmonic", k, -1000, 1000)
         a, b = _complex(f"{name}: coefficient {k}", given)
-        x += a * cos(k * theta) - b * sin(k * theta)
-        y += b * cos(k * theta) + a * sin(k * theta)
-    return parametric(x, y, name)
-
-
-def from_path(curves: Iterable[Sequence[Sequence[Sequence[Any]]]], name: str = "outline") -> Table:
-    """The table bounded by closed curves of straight and Bezier pieces: the largest is the boundary, others are holes.
-
-    A piece is its control points, two for a straight side, three or four for a curve, and begins where the one before
-    ends. Curves may run either way.
-
-    >>> bow = [[(0, 0), (2, 0)], [(2, 0), (2, 2), (0, 2), (0, 0)]]
-    >>> [part.name for part in from_path([bow]).components]
-    ['piece1', 'piece2']
-    """
-    found = [[elevated(_read(f"{name}: curve {i}", piece)) for piece in curve] for i, curve in enumerate(curves, 1)]
-    if not found:
-        raise ValueError(f"{name}: a table needs at least one closed curve, and none is given")
-    for i, curve in enumerate(found, 1):
-        for j, piece in enumerate(curve):
-            if curve[j - 1][3] != piece[0]:
-                x, y = map(float, piece[0])
-                raise ValueError(f"{name}: curve {i} is not closed: no piece before ({x:.6g}, {y:.6g}) ends there")
-    found.sort(key=lambda curve: -abs(signed_area(curve)))
-    for i, curve in enumerate(found):
-        if (signed_area(curve) > 0) != (i == 0):
-            found[i] = [(d, c, b, a) for a, b, c, d in reversed(curve)]
-    checked(name, *found)
-    pieces = [piece for curve in found for piece in curve]
-    return Table(name, tuple(as_component(f"piece{i}", piece) for i, piece in enumerate(pieces, 1)))
+        x += [a * cos(k * theta), -b * sin(k * theta)]
+        y += [b * cos(k * theta), a * sin(k * theta)]
+    return parametric(Add(*x), Add(*y), name)
 
 
 # ---- splines
 
 
 def spline(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> list[Bezier]:
-    """The closed spline of so many continuous derivatives through the points, as cubic curves of Bezier.
+    """The closed spline through the points with `smoothness` continuous derivatives, as cubic Bezier curves.
 
-    With `smoothness` 2 its control points lie on a lattice of `2**-BITS` of the whole, so that it passes the given
-    points within that distance; its curvature is continuous exactly.
+    `steps` are the lengths of the pieces in the parameter. With `smoothness` 2, control points are rounded to about
+    `2**-BITS` of the size: so far it may pass from the given points, while its curvature is exactly continuous.
     """
     n = len(points)
     if smoothness == 0:
@@ -160,7 +148,7 @@ def spline(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> l
         )
     if grid is None:
         return [(p, *leg, q) for (p, q), leg in zip(_ring(points), legs, strict=True)]
-    corners: list[Vector] = []  # of the polygon of de Boor, rounded: whatever they are, the curvature is continuous
+    corners: list[Vector] = []  # de Boor points, rounded: the curvature is continuous whatever they are
     for i, ((a, b), (c, d)) in enumerate(legs):
         ratio = Fraction(steps[i - 1], steps[i])
         corners.append((round(a + ratio * (a - c)) * unit, round(b + ratio * (b - d)) * unit))
@@ -175,7 +163,7 @@ def spline(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> l
 
 
 def _slopes(values: Sequence[Fraction], steps: Sequence[int]) -> list[Fraction]:
-    """At each point that of the parabola through it and its neighbours."""
+    """The slope, at each point, of the parabola through it and its two neighbours."""
     n, found = len(values), []
     for i in range(n):
         h, k = steps[i - 1], steps[i]
@@ -185,7 +173,7 @@ def _slopes(values: Sequence[Fraction], steps: Sequence[int]) -> list[Fraction]:
 
 
 def _smooth_slopes(values: Sequence[int], steps: Sequence[int]) -> list[Fraction]:
-    """Those with which the second derivative is continuous, by sweeps that halve the error, in units of the lattice."""
+    """The slopes that make the second derivative continuous, in lattice units, by sweeps that halve the error."""
     n = len(values)
     sides = []
     for i in range(n):
@@ -201,7 +189,7 @@ def _smooth_slopes(values: Sequence[int], steps: Sequence[int]) -> list[Fraction
 
 
 def _missed(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> Fraction | None:
-    """How far the spline through every second point passes from the others, at most: an estimate, from above."""
+    """How far the spline through every second point passes from the others, rounded up; None for less than 6 points."""
     if len(points) < 6:
         return None
     even = points[::2] if len(points) % 2 == 0 else points[:-1:2]
@@ -239,7 +227,7 @@ def _on(piece: Bezier, u: Fraction) -> Vector:
 def fourier(
     points: Sequence[Vector], steps: Sequence[int], degree: int
 ) -> tuple[list[Fraction], list[Fraction], Fraction]:
-    """The coefficients of `1, cos(theta), sin(theta), cos(2*theta), ...` for `x` and `y`, and the largest residual."""
+    """Least-squares coefficients of `1, cos(theta), sin(theta), ...` for `x` and for `y`, and the largest residual."""
     one, unit = 1 << GUARD, _unit(points)
     rows = _waves(steps, degree)
     size = 2 * degree + 1
@@ -275,7 +263,7 @@ def _waves(steps: Sequence[int], degree: int) -> list[list[int]]:
 
 
 def _solved(matrix: list[list[int]], right: list[list[int]]) -> list[list[int]]:
-    """The solutions for both right-hand sides, to the nearest integers; numbers in units of `2**-GUARD`."""
+    """The solutions for each right-hand side, as nearest integers; matrix and sides are in units of `2**-GUARD`."""
     n, one = len(matrix), 1 << GUARD
     rows = [[*row, *(column[i] for column in right)] for i, row in enumerate(matrix)]
     for i in range(n):
@@ -293,7 +281,7 @@ def _solved(matrix: list[list[int]], right: list[list[int]]) -> list[list[int]]:
 
 
 def _gap(sums: Sequence[Sequence[Fraction]], points: Sequence[Vector], steps: Sequence[int]) -> Fraction:
-    """The largest square of the distance of every second point from its place on a Fourier sum."""
+    """The square of the largest distance of every second point from its place on a Fourier sum."""
     rows = _waves(steps, (len(sums[0]) - 1) // 2)
     worst = Fraction(0)
     for row, point in list(zip(rows, points, strict=True))[1::2]:
@@ -318,8 +306,12 @@ def _sum(coefficients: Sequence[Fraction]) -> Expr:
 
 def _exact(label: str, given: Any) -> Fraction:
     """A number as a fraction; a float is the rational number it is."""
+    if getattr(given, "mask", False):
+        raise ValueError(f"{label} is masked; leave the point out")
     try:
-        if isinstance(given, float) or (isinstance(given, str) and PLAIN.fullmatch(given)):
+        if hasattr(given, "as_integer_ratio") and not isinstance(given, Expr | bool):  # NumPy's floats as well
+            return Fraction(*given.as_integer_ratio())
+        if isinstance(given, str) and PLAIN.fullmatch(given):
             return Fraction(given)
         value = exact_number(label, given)
         return Fraction(int(value.p), int(value.q))
@@ -327,8 +319,17 @@ def _exact(label: str, given: Any) -> Fraction:
         raise ValueError(f"{label} = {given!r} is no rational number such as 2/25 or 0.08") from None
 
 
-def _read(label: str, points: Iterable[Sequence[Any]]) -> list[Vector]:
-    """Points as pairs of fractions."""
+def unclosed(points: list[Vector]) -> list[Vector]:
+    """The points without the last one, if it repeats the first up to the rounding of floats."""
+    if len(points) < 2:
+        return points
+    size = max(max(abs(x - x0), abs(y - y0)) for x, y in points for x0, y0 in points[:1])
+    gap = max(abs(p - q) for p, q in zip(points[0], points[-1], strict=True))
+    return points[:-1] if gap <= ROUNDING * max(size, *(abs(c) / 256 for c in points[0])) and size else points
+
+
+def read(label: str, points: Iterable[Sequence[Any]]) -> list[Vector]:
+    """Points as pairs of fractions; `ValueError` for anything but pairs of numbers."""
     found = []
     for i, point in enumerate(points, 1):
         if isinstance(point, str) or not hasattr(point, "__len__") or len(point) != 2:
@@ -354,7 +355,7 @@ def _whole(name: str, label: str, given: Any, low: int, high: int) -> int:
 
 
 def _unit(points: Sequence[Vector]) -> Fraction:
-    """A power of two, about `2**-BITS` of the size of the whole."""
+    """A unit for coordinates: a power of two, about `2**-BITS` of the largest of them."""
     size = max(abs(c) for point in points for c in point) or Fraction(1)
     exponent = size.numerator.bit_length() - size.denominator.bit_length() - BITS
     return Fraction(2) ** exponent
@@ -367,14 +368,14 @@ def _steps(points: Sequence[Vector]) -> list[int]:
 
 
 def _root(square: Fraction) -> Fraction:
-    """The square root, to a relative `2**-BITS`, from below."""
+    """The square root from below, with a relative error of at most `2**-BITS`."""
     shift = max(0, 2 * BITS - square.numerator.bit_length() + square.denominator.bit_length())
     shift += shift % 2
     return Fraction(isqrt((square.numerator << shift) // square.denominator), 1 << shift // 2)
 
 
 def _rounded_up(square: Fraction) -> Fraction:
-    """A short number that is at least the square root, and larger by a 2000th at most."""
+    """An upper bound of the square root, a fraction with few digits that is larger by a 2000th at most."""
     if not square:
         return Fraction(0)
     root = _root(square)

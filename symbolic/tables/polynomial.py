@@ -1,23 +1,28 @@
-"""Closed chains of pieces that are polynomials of degree three: their area and their crossings, exactly.
+"""Closed chains of polynomial pieces of degree three: their area and their crossings, exactly.
 
-A piece is a cubic curve of Bezier with rational control points, which lies in their convex hull, and so does its
-velocity in that of their differences. So a curve is proved simple: it is cut until each piece turns by less than a
-quarter of a turn, neighbours together run forwards in one direction, and the boxes of all others are disjoint.
+A piece is a cubic Bezier curve with rational control points. It lies in the convex hull of these points, and its
+velocity in that of their differences. A curve is proved simple by cutting it until each piece turns by less than a
+quarter turn, neighbours together advance along one direction, and the boxes of all other pieces are disjoint.
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
-from math import isqrt
+from math import ceil, floor, isqrt
 
-from sympy import Expr, Poly, S
+from sympy import Add, Expr, Poly, Rational, S, expand
 
 from symbolic.tables.table import Component, theta
 
 Vector = tuple[Fraction, Fraction]
 Bezier = tuple[Vector, Vector, Vector, Vector]
-DEEPEST = 60  # halvings
-MOST = 400_000  # pairs of pieces that are looked at
+Piece = tuple[tuple[Fraction, ...], ...]  # control points; of arcs of conics with a third coordinate, their weights
+DEEPEST = 60  # most halvings
+LATTICE = 40  # bits of the sides of a box
+FINE = 10**9  # denominator of the coordinates of a unit chord
+MOST = 100_000  # largest number of pairs of pieces whose boxes overlap
+SHARES = 10**18  # denominator of the place of a control point along a tangent
 
 
 def as_component(name: str, piece: Bezier) -> Component:
@@ -26,9 +31,89 @@ def as_component(name: str, piece: Bezier) -> Component:
     for axis in (0, 1):
         a, b, c, d = (p[axis] for p in piece)
         coefficients = a, 3 * (b - a), 3 * (a - 2 * b + c), d - a + 3 * (b - c)
-        terms = [S(k) * theta**i for i, k in enumerate(coefficients)]
-        point.append(sum(terms, S.Zero))
+        point.append(Add(*(_rational(k) * theta**i for i, k in enumerate(coefficients))))
     return Component(name, (point[0], point[1]), S.Zero, S.One)
+
+
+def fraction(value: Expr) -> Fraction:
+    """A rational number of SymPy as a fraction.
+
+    >>> fraction(Rational(2, 25))
+    Fraction(2, 25)
+    """
+    return Fraction(int(S(value).p), int(S(value).q))
+
+
+def _rational(value: Fraction) -> Rational:
+    return Rational(value.numerator, value.denominator)
+
+
+@lru_cache(maxsize=8192)
+def rational_coefficients(component: Component) -> tuple[list[Fraction], list[Fraction]] | None:
+    """Those of both coordinates, constant first; None unless they are polynomials with rational numbers, ends as well.
+
+    >>> from symbolic.tables import square
+    >>> rational_coefficients(square(3).components[0])
+    ([Fraction(0, 1), Fraction(3, 1)], [Fraction(0, 1)])
+    """
+    if not (S(component.start).is_Rational and S(component.end).is_Rational):
+        return None
+    point = map(S, component.point)
+    x, y = (as_sum(each) or (as_sum(expand(each)) if each.is_polynomial(theta) else None) for each in point)
+    return None if x is None or y is None else (x, y)
+
+
+def derivative(coordinate: Expr) -> Expr:
+    """The derivative by `theta`; of a sum of powers with rational factors it is written down from these.
+
+    >>> derivative(3 * theta**2 - theta / 2)
+    6*theta - 1/2
+    """
+    row = as_sum(coordinate)
+    if row is None:
+        return coordinate.diff(theta)
+    return Add(*(_rational(k * c) * theta ** (k - 1) for k, c in enumerate(row) if k))
+
+
+def end_point(component: Component, last: bool) -> tuple[Expr, Expr]:
+    """The first or the last point of a component, exactly."""
+    place, rows = component.end if last else component.start, rational_coefficients(component)
+    if rows is None:
+        return component.at(place)
+    x, y = (_rational(value_of(row, fraction(place))) for row in rows)
+    return x, y
+
+
+def as_sum(coordinate: Expr) -> list[Fraction] | None:
+    """The coefficients of a sum of powers of `theta` with rational factors, constant first; None of anything else.
+
+    >>> as_sum(theta**2 - 1), as_sum((theta + 1) ** 2)
+    ([Fraction(-1, 1), Fraction(0, 1), Fraction(1, 1)], None)
+    """
+    found: dict[int, Fraction] = {}
+    for term, c in coordinate.as_coefficients_dict().items():
+        base, power = (theta, S.Zero) if term == 1 else term.as_base_exp()
+        if base != theta or not (power.is_Integer and power >= 0 and c.is_Rational):
+            return None
+        found[int(power)] = fraction(c)
+    return [found.get(k, Fraction(0)) for k in range(max(found, default=0) + 1)]
+
+
+def derived(row: Sequence[Fraction]) -> list[Fraction]:
+    """The coefficients of the derivative of a polynomial."""
+    return [k * c for k, c in enumerate(row)][1:]
+
+
+def value_of(row: Sequence[Fraction], at: Fraction) -> Fraction:
+    """The value of a polynomial, by Horner's rule.
+
+    >>> value_of([Fraction(1), Fraction(0), Fraction(2)], Fraction(3))
+    Fraction(19, 1)
+    """
+    value = Fraction(0)
+    for c in reversed(row):
+        value = value * at + c
+    return value
 
 
 def cubic(component: Component) -> list[list[Expr]] | None:
@@ -38,6 +123,10 @@ def cubic(component: Component) -> list[list[Expr]] | None:
     >>> cubic(square(3).components[0])
     [[0, 3, 0, 0], [0, 0, 0, 0]]
     """
+    if (rows := rational_coefficients(component)) is not None:
+        longest = max(map(len, rows))
+        padded = [[*map(_rational, row), *[S.Zero] * (4 - len(row))] for row in rows]
+        return padded if longest <= 4 else None
     if not all(coordinate.is_polynomial(theta) for coordinate in component.point):
         return None
     found = [Poly(coordinate, theta).all_coeffs()[::-1] for coordinate in component.point]
@@ -51,29 +140,37 @@ def as_bezier(component: Component) -> Bezier | None:
     >>> as_bezier(square(3).components[0])[-1]
     (Fraction(3, 1), Fraction(0, 1))
     """
-    low, high = component.start, component.end
-    if not (low.is_Rational and high.is_Rational):
+    rows = rational_coefficients(component)
+    if rows is None or max(map(len, rows)) > 4:
         return None
+    low, high = map(fraction, (component.start, component.end))
     found = []
-    for coordinate in component.point:
-        if not coordinate.is_polynomial(theta) or coordinate.free_symbols - {theta}:
-            return None
-        inside = coordinate if (low, high) == (0, 1) else coordinate.subs(theta, low + (high - low) * theta)
-        values = [_fraction(c) for c in reversed(Poly(inside, theta).all_coeffs())]
-        if len(values) > 4 or None in values:
-            return None
-        a, b, c, d = [value for value in values if value is not None] + [Fraction(0)] * (4 - len(values))
+    for row in rows:
+        _, k1, k2, k3 = row + [Fraction(0)] * (4 - len(row))
+        a, b = value_of(row, low), (high - low) * (k1 + low * (2 * k2 + 3 * low * k3))
+        c, d = (high - low) ** 2 * (k2 + 3 * low * k3), (high - low) ** 3 * k3
         found.append((a, a + b / 3, a + (2 * b + c) / 3, a + b + c + d))
     one, two, three, four = zip(*found, strict=True)
     return one, two, three, four
 
 
 def elevated(points: Sequence[Vector]) -> Bezier:
-    """The same curve as one of degree three, from the control points of one of degree 1, 2 or 3."""
+    """The cubic Bezier curve of a curve of degree 1, 2 or 3 with these control points; `ValueError` for other degrees.
+
+    A straight curve gets constant speed, wherever between its ends the inner control points lie.
+
+    >>> zero, one = (Fraction(0), Fraction(0)), (Fraction(3), Fraction(0))
+    >>> elevated([zero, zero, one, one]) == elevated([zero, one])
+    True
+    """
     third = Fraction(1, 3)
     if not 2 <= len(points) <= 4:
         raise ValueError(f"a piece has {len(points)} control points; accepted: 2, 3 or 4")
     p, q = points[0], points[-1]
+    chord = q[0] - p[0], q[1] - p[1]
+    ways = [_dot(chord, (c[0] - p[0], c[1] - p[1])) for c in points]
+    if ways == sorted(ways) and all(chord[0] * (c[1] - p[1]) == chord[1] * (c[0] - p[0]) for c in points):
+        points = p, q
     if len(points) == 4:
         return p, points[1], points[2], q
     inner = [(r[0] + 2 * third * (c[0] - r[0]), r[1] + 2 * third * (c[1] - r[1])) for c in points[1:-1] for r in (p, q)]
@@ -81,8 +178,34 @@ def elevated(points: Sequence[Vector]) -> Bezier:
     return p, one, two, q
 
 
-def _fraction(value: Expr) -> Fraction | None:
-    return Fraction(int(value.p), int(value.q)) if value.is_Rational else None
+def aligned(curve: Sequence[Bezier], near: Fraction) -> list[Bezier]:
+    """A closed curve with tangents made exactly equal at each join where they are equal up to rounding.
+
+    At such a join one control point moves, by at most `near` in each coordinate. Straight pieces do not move.
+
+    >>> side, bow = ((0, 0), (3, 0)), ((3, 0), (4, Fraction(1, 10**20)), (2, 2), (0, 0))
+    >>> aligned([elevated(side), elevated(bow)], Fraction(1, 10**9))[1][1]
+    (Fraction(4, 1), Fraction(0, 1))
+    """
+    found = [list(piece) for piece in curve]
+    straight = [piece == elevated((piece[0], piece[3])) for piece in curve]
+    for j, after in enumerate(found):
+        before = found[j - 1]
+        handles = [
+            (after, 1, before, 2),
+            (before, 2, after, 1),
+        ]  # piece and index of the point that may move, then of the one that gives the direction
+        for (one, i, other, k), stays in zip(handles, (straight[j], straight[j - 1]), strict=True):
+            end = after[0]
+            way, own = ((end[0] - p[0], end[1] - p[1]) for p in (other[k], one[i]))
+            square, along = _dot(way, way), -_dot(way, own)
+            if stays or along <= 0 or way[0] * own[1] == way[1] * own[0]:
+                continue
+            share = Fraction(round(along / square * SHARES), SHARES)
+            moved = end[0] + share * way[0], end[1] + share * way[1]
+            if max(abs(moved[0] - one[i][0]), abs(moved[1] - one[i][1])) <= near:
+                one[i] = moved
+    return [(p, q, r, s) for p, q, r, s in found]
 
 
 def signed_area(pieces: Sequence[Bezier]) -> Fraction:
@@ -95,67 +218,106 @@ def signed_area(pieces: Sequence[Bezier]) -> Fraction:
     return total / 20
 
 
-def checked(name: str, *curves: Sequence[Bezier]) -> None:
-    """Refuses closed curves, each the end of a piece the start of the next, that do not bound a table.
-
-    The outer curve comes first and runs counterclockwise; holes run clockwise inside it.
-    """
-    for k, pieces in enumerate(curves):
-        area = signed_area(pieces)
-        if k == 0 and area <= 0:
-            how = "runs clockwise; turn it round" if area else "encloses area 0"
-            raise ValueError(f"{name}: the boundary {how}")
-        if k and area >= 0:
-            raise ValueError(f"{name}: hole {k} must run clockwise")
+def separate(name: str, curves: Sequence[Sequence[Piece]]) -> None:
+    """Raises `ValueError` if closed curves meet themselves or one another, or a later one is no hole in the first."""
+    for pieces in curves:
+        for piece in pieces:
+            if len(set(piece)) == 1:
+                x, y = _shown(piece)
+                raise ValueError(f"{name}: a piece at ({x:.12g}, {y:.12g}) has length 0; leave it out")
     found = meets(curves)
     if found is not None:
-        raise ValueError(f"{name}: the boundary crosses itself, or stops, near ({found[0]:.6g}, {found[1]:.6g})")
+        raise ValueError(f"{name}: the boundary crosses itself, or stops, near ({found[0]:.12g}, {found[1]:.12g})")
+    hole = _outside(curves)
+    if hole:
+        raise ValueError(f"{name}: hole {hole} does not lie in the table")
+
+
+def bound_a_table(curves: Sequence[Sequence[Bezier]]) -> bool:
+    """Is it proved that these closed curves bound a table, the first as its outer boundary and the others as holes?"""
+    areas = [signed_area(pieces) for pieces in curves]
+    if areas[0] <= 0 or any(area >= 0 for area in areas[1:]):
+        return False
+    return meets(curves) is None and not _outside(curves)
+
+
+def _outside(curves: Sequence[Sequence[Piece]]) -> int:
+    """The number of a hole that does not lie in the outer curve, or lies in another hole; 0 when there is none."""
     outer = curves[0]
     for k, hole in enumerate(curves[1:], 1):
-        around = [other for other in curves[1:] if other is not hole and _surrounds(other, hole[0][0])]
-        if around or not _surrounds(outer, hole[0][0]):
-            raise ValueError(f"{name}: hole {k} does not lie in the table")
+        point = _cartesian(hole[0])[0]
+        around = [other for other in curves[1:] if other is not hole and _surrounds(other, point)]
+        if around or not _surrounds(outer, point):
+            return k
+    return 0
 
 
-Span = tuple[int, int, Fraction, Fraction, Bezier]  # curve, piece, where on it, control points
+Span = tuple[int, int, int, int, int, int, Piece]  # box, outwards on a lattice; curve, place in it, control points
 
 
-def meets(curves: Sequence[Sequence[Bezier]]) -> tuple[float, float] | None:
-    """A point near which the curves meet themselves, one another or stop; None when it is proved that they do not."""
-    rings: list[list[Bezier]] = []
+def meets(curves: Sequence[Sequence[Piece]]) -> tuple[float, float] | None:
+    """A point near which curves meet, or stop (velocity 0), or may do so; None if it is proved that they do not.
+
+    A line sweeps the boxes from left to right; only pieces whose boxes overlap are compared. `ValueError` if more than
+    `MOST` pairs do.
+    """
+    rings: list[list[Piece]] = []
     for pieces in curves:
         ring = [part for piece in pieces for part in _monotone(piece, 0)]
-        for _ in range(DEEPEST):
-            bad = [i for i in range(len(ring)) if not _forwards(ring[i - 1], ring[i])]
-            if not bad:
-                break
-            cut = {i % len(ring) for i in bad} | {(i - 1) % len(ring) for i in bad}
-            ring = [half for i, part in enumerate(ring) for half in (_halves(part) if i in cut else (part,))]
-        else:
-            return _shown(ring[bad[0]])
+        stop = _run_forwards(ring)
+        if stop is not None:
+            return _shown(stop)
         rings.append(ring)
-    boxed = [(*_box(part), k, i, part) for k, ring in enumerate(rings) for i, part in enumerate(ring)]
-    boxed.sort(key=lambda row: row[0])
+    boxes = [(_box(part), k, i, part) for k, ring in enumerate(rings) for i, part in enumerate(ring)]
+    unit = max(abs(side) for box, *_ in boxes for side in box) / (1 << LATTICE) or Fraction(1)
+    spans: list[Span] = []
+    for (a, b, c, d), k, i, part in boxes:
+        spans.append((floor(a / unit), ceil(b / unit), floor(c / unit), ceil(d / unit), k, i, part))
+    active: list[Span] = []
     looked = 0
-    for at, (_, right, low, high, k, i, part) in enumerate(boxed):
-        for left, _, bottom, top, other, j, piece in boxed[at + 1 :]:
-            if left > right:
-                break
+    for span in sorted(spans, key=lambda span: span[:2]):
+        left, _, low, high, k, i, part = span
+        active = [other for other in active if other[1] >= left]
+        for _, _, bottom, top, other, j, piece in active:
+            if bottom > high or top < low or (k == other and (i - j) % len(rings[k]) in (1, len(rings[k]) - 1)):
+                continue
             looked += 1
             if looked > MOST:
-                return _shown(part)
-            if bottom > high or top < low:
-                continue
-            n = len(rings[k])
-            if k == other and (i - j) % n in (1, n - 1):
-                continue
+                raise ValueError(
+                    f"more than {MOST} pairs of pieces lie side by side: not proved that they do not cross"
+                )
             if _touch(part, piece, 0):
                 return _shown(part)
+        active.append(span)
     return None
 
 
-def _monotone(piece: Bezier, depth: int) -> list[Bezier]:
-    """The piece in parts on which the velocity turns by less than a quarter of a turn; a part that stops is one too."""
+def _run_forwards(ring: list[Piece]) -> Piece | None:
+    """Halves pieces in place until all neighbours advance along one direction; a piece where they never do, or None."""
+    known = [False] * len(ring)
+    for _ in range(DEEPEST):
+        bad = [i for i, fine in enumerate(known) if not fine and not _forwards(ring[i - 1], ring[i])]
+        if not bad:
+            return None
+        if any(_straight(ring[i - 1]) and _straight(ring[i]) for i in bad):
+            return ring[bad[0]]  # halving straight pieces does not help
+        stop, count = ring[bad[0]], len(ring)
+        cut = {i % count for i in bad} | {(i - 1) % count for i in bad}
+        parts = [
+            (_halves(part), False) if i in cut else ((part,), (i - 1) % count not in cut) for i, part in enumerate(ring)
+        ]
+        ring[:] = [half for halves, _ in parts for half in halves]
+        known = [fine for halves, fine in parts for _ in halves]
+    return stop
+
+
+def _straight(piece: Piece) -> bool:
+    (x, y), *others = _differences(piece)
+    return all(x * w == y * v for v, w in others)
+
+
+def _monotone(piece: Piece, depth: int) -> list[Piece]:
+    """The piece cut into parts on which the velocity turns by less than a quarter turn, or that are too short."""
     d = _differences(piece)
     if depth >= DEEPEST // 4 or all(_dot(v, w) > 0 for i, v in enumerate(d) for w in d[i:]):
         return [piece]
@@ -163,26 +325,27 @@ def _monotone(piece: Bezier, depth: int) -> list[Bezier]:
     return _monotone(first, depth + 1) + _monotone(last, depth + 1)
 
 
-def _forwards(before: Bezier, after: Bezier) -> bool:
-    """Do two neighbours run forwards in one direction, so that together they do not meet themselves?"""
+def _forwards(before: Piece, after: Piece) -> bool:
+    """Do two neighbouring pieces advance along one direction, so that together they do not meet themselves?"""
     v, w = (_along(piece) for piece in (before, after))
     direction = v[0] + w[0], v[1] + w[1]
     return all(_dot(d, direction) > 0 for piece in (before, after) for d in _differences(piece))
 
 
-def _along(piece: Bezier) -> Vector:
-    """The chord, about of length one: any vector will do, and this one is best."""
-    x, y = piece[3][0] - piece[0][0], piece[3][1] - piece[0][1]
+def _along(piece: Piece) -> Vector:
+    """The chord, scaled to length about 1: `_forwards` may use any vector, so that rounding does no harm."""
+    (x0, y0), *_, (x1, y1) = _cartesian(piece)
+    x, y = x1 - x0, y1 - y0
     size = max(abs(x), abs(y))
     if not size:
         return Fraction(0), Fraction(0)
-    x, y = round(x / size, 3), round(y / size, 3)
-    length = isqrt(int((x * x + y * y) * 10**6))
+    x, y = Fraction(round(x / size * FINE), FINE), Fraction(round(y / size * FINE), FINE)
+    length = isqrt(int((x * x + y * y) * FINE**2))
     return x / length, y / length
 
 
-def _touch(p: Bezier, q: Bezier, depth: int) -> bool:
-    """Is it not proved that two pieces are disjoint?"""
+def _touch(p: Piece, q: Piece, depth: int) -> bool:
+    """False if two pieces are proved to be disjoint; True if they are not."""
     left, right, low, high = _box(p)
     a, b, c, d = _box(q)
     if left > b or a > right or low > d or c > high or _apart(p, q) or _apart(q, p):
@@ -192,56 +355,57 @@ def _touch(p: Bezier, q: Bezier, depth: int) -> bool:
     return any(_touch(x, y, depth + 1) for x in _halves(p) for y in _halves(q))
 
 
-def _apart(p: Bezier, q: Bezier) -> bool:
-    """Does a line along the chord of `p` separate the two?"""
-    x, y = p[3][0] - p[0][0], p[3][1] - p[0][1]
-    own = [x * (c[1] - p[0][1]) - y * (c[0] - p[0][0]) for c in p]
-    other = [x * (c[1] - p[0][1]) - y * (c[0] - p[0][0]) for c in q]
+def _apart(p: Piece, q: Piece) -> bool:
+    """Does a line parallel to the chord of `p` separate the pieces `p` and `q`?"""
+    mine, others = _cartesian(p), _cartesian(q)
+    (x0, y0), *_, (x1, y1) = mine
+    own, other = ([(x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) for x, y in points] for points in (mine, others))
     return max(own) < min(other) or max(other) < min(own)
 
 
-def _differences(piece: Bezier) -> list[Vector]:
-    return [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(piece)]
+def _differences(piece: Piece) -> list[Vector]:
+    return [(x1 - x0, y1 - y0) for (x0, y0), (x1, y1) in pairwise(_cartesian(piece))]
+
+
+def _cartesian(piece: Piece) -> list[Vector]:
+    """The control points in the plane, divided by their weights; the curve lies in their convex hull."""
+    return [(p[0] / p[2], p[1] / p[2]) if len(p) == 3 else (p[0], p[1]) for p in piece]
 
 
 def _dot(v: Vector, w: Vector) -> Fraction:
     return v[0] * w[0] + v[1] * w[1]
 
 
-def _halves(piece: Bezier) -> tuple[Bezier, Bezier]:
-    a, b, c, d = piece
-    ab, bc, cd = _middle(a, b), _middle(b, c), _middle(c, d)
-    abc, bcd = _middle(ab, bc), _middle(bc, cd)
-    centre = _middle(abc, bcd)
-    return (a, ab, abc, centre), (centre, bcd, cd, d)
+def _halves(piece: Piece) -> tuple[Piece, Piece]:
+    rows = [piece]
+    while len(rows[-1]) > 1:
+        rows.append(tuple(tuple((x + y) / 2 for x, y in zip(p, q, strict=True)) for p, q in pairwise(rows[-1])))
+    return tuple(row[0] for row in rows), tuple(row[-1] for row in reversed(rows))
 
 
-def _middle(p: Vector, q: Vector) -> Vector:
-    return (p[0] + q[0]) / 2, (p[1] + q[1]) / 2
-
-
-def _box(piece: Bezier) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-    xs, ys = [p[0] for p in piece], [p[1] for p in piece]
+def _box(piece: Piece) -> tuple[Fraction, Fraction, Fraction, Fraction]:
+    xs, ys = zip(*_cartesian(piece), strict=True)
     return min(xs), max(xs), min(ys), max(ys)
 
 
-def _surrounds(pieces: Sequence[Bezier], point: Vector) -> bool:
+def _surrounds(pieces: Sequence[Piece], point: Vector) -> bool:
     """Does the point lie inside the curve? A ray to the right crosses its pieces an odd number of times."""
     inside = False
     for piece in pieces:
-        queue = [(piece, 0)]
+        queue: list[tuple[Piece, int]] = [(piece, 0)]
         while queue:
             part, depth = queue.pop()
-            _, right, low, high = _box(part)
+            left, right, low, high = _box(part)
             if right < point[0] or low > point[1] or high < point[1]:
                 continue
-            above = [p[1] > point[1] for p in part]
-            if min(p[0] for p in part) > point[0] and (depth > DEEPEST // 2 or sorted(above) in (above, above[::-1])):
-                inside ^= above[0] != above[3]
+            above = [y > point[1] for _, y in _cartesian(part)]
+            if left > point[0] and (depth > DEEPEST // 2 or sorted(above) in (above, above[::-1])):
+                inside ^= above[0] != above[-1]
             elif depth <= DEEPEST:
                 queue += [(half, depth + 1) for half in _halves(part)]
     return inside
 
 
-def _shown(piece: Bezier) -> tuple[float, float]:
-    return float(piece[0][0]), float(piece[0][1])
+def _shown(piece: Piece) -> tuple[float, float]:
+    x, y = _cartesian(piece)[0]
+    return float(x), float(y)

@@ -1,11 +1,12 @@
 """A scene: a table, its shape, a reflection law and a contraction; exact, and one line of text.
 
-A scene is written down once and everything takes it. It holds text and fractions only, so that one of the
-paper's tables is read, compared, hashed and sent to another machine without SymPy; `table` builds the exact
-table when somebody asks for it. Paper: section 2.
+Every part of the package takes a scene. It holds text and fractions only, so that a scene with one of the paper's
+tables is read, compared, hashed and sent to another machine without SymPy; `table` builds the exact table at its
+first use. Paper: section 2.
 """
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -48,14 +49,19 @@ if TYPE_CHECKING:
 
     from symbolic.tables.table import Table
 
+LONGEST = 1 << 22  # characters of a scene file
+QUOTED = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'')
+DOTTED = re.compile(r"(?<![\w-])[\w-]+(?:[ \t]*\.[ \t]*[\w-]+){16}")
+
 
 @dataclass(frozen=True, repr=False)
 class Scene:
     """A table with numbers for its shape, a law and a contraction.
 
-    `table` is an exact table, or the name of one of the paper's; shape parameters are keywords. Numbers are exact,
-    or text, where a decimal means the decimal it shows. A parameter may have a range, `b="0.1:0..1/4"`, over which the
-    boundary is proved to be a table (as far as `over` says), and a law to be one.
+    `table` is an exact table, the name of one of the paper's or of `tables.GALLERY`, or a function that makes one, such
+    as `tables.egg`; shape parameters are keywords. Numbers are exact, or text, where a decimal means the decimal it
+    shows; a float is refused. A parameter may have a range, `b="0.1:0..1/4"`: the boundary is then proved to bound a
+    table for all values in it (see `over`), and the law to point into the table.
 
     >>> egg = Scene("egg", alpha="0.08", lam="1/2")
     >>> egg
@@ -65,21 +71,28 @@ class Scene:
     >>> Scene.parse(egg.text) == egg
     True
     >>> from symbolic import tables
-    >>> Scene(tables.egg(3), alpha="2/25", lam="1/2") == egg
+    >>> Scene(tables.egg(3), alpha="2/25", lam="1/2") == Scene(tables.egg, alpha="2/25", lam="1/2") == egg
     True
     """
 
     text: str
 
     def __init__(
-        self, table: "Table | str", *, lam: Any = 1, law: Law | str = UNIFORM, K: int = POINTS, **shape: Any
+        self,
+        table: "Table | Callable[..., Table] | str",
+        *,
+        lam: Any = 1,
+        law: Law | str = UNIFORM,
+        K: int = POINTS,
+        **shape: Any,
     ) -> None:
-        boundary, fixed = named_boundary(table, K) if isinstance(table, str) else table_boundary(table)
-        ranges = _own_ranges(table) if not isinstance(table, str) and "table" not in boundary else {}
+        found, shape = given_table(table, K, shape)
+        boundary, fixed = named_boundary(found, K) if isinstance(found, str) else table_boundary(found)
+        ranges = _own_ranges(found) if not isinstance(found, str) and "table" not in boundary else {}
         self._hold(boundary, {**fixed, **_with_ranges(shape, ranges)}, lam, law)
 
     def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
-        """Keeps the one line that says all of it; the same line for every way to write it."""
+        """Sets `text` after all checks; equal scenes get the same text, however their numbers are written."""
         name, law = name_of(boundary), law if isinstance(law, Law) else Law(law)
         parameters = tuple(dict.fromkeys((*parameters_of(boundary), *parameters_of_law(law.formula))))
         _one_number(name, law, parameters_of(boundary), shape)
@@ -90,7 +103,8 @@ class Scene:
         for parameter in parameters:
             if parameter not in shape:
                 raise ValueError(
-                    f"{name}: the shape parameter {parameter} needs a value, as in Scene(..., {parameter}=...)"
+                    f"{name}: the shape parameter {parameter} needs a value, as in Scene(..., {parameter}=...) "
+                    f"or --shape {parameter}=NUMBER"
                 )
         document = dict(boundary)
         if parameters:
@@ -109,7 +123,7 @@ class Scene:
             free = Law(law.formula, tuple(pair for pair in law.numbers if pair[0] not in ranges))
             free.check((self.lam, self.lam), *(free.places(self.table) if free.placed else ()), **ranges)
 
-    # ---- what it says
+    # ---- its parts
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -126,17 +140,17 @@ class Scene:
 
     @property
     def K(self) -> int:
-        """Points of the egg; 3 for every other table, where it means nothing."""
+        """The number of points of the egg; 3 for every other table, where it means nothing."""
         return int(self.document.get("K", POINTS))
 
     @property
     def lam(self) -> "Fraction | Expr":
-        """The contraction, exactly."""
+        """The contraction `lam`, exactly."""
         return exact("lam", self.document["lam"])
 
     @property
     def shape(self) -> "dict[str, Fraction | Expr]":
-        """The numbers of the table's shape parameters, exactly."""
+        """The values of the table's shape parameters, by name, exactly."""
         return {name: exact(name, value_text(self.document["shape"][name])) for name in parameters_of(self.document)}
 
     @property
@@ -166,12 +180,12 @@ class Scene:
 
     @cached_property
     def table(self) -> "Table":
-        """The exact table with its shape; `ValueError` when there is none."""
+        """The exact table with the values of its shape; `ValueError` if the boundary does not bound a table."""
         return built(self.document)
 
     @cached_property
     def family_text(self) -> str:
-        """The boundary with the ranges of its parameters in the place of their values; nothing where none has one."""
+        """The boundary's text with ranges in place of its parameters' values; empty if no parameter has a range."""
         shape = {parameter: self.document["shape"][parameter] for parameter in parameters_of(self.document)}
         if not any(map(range_text, shape.values())):
             return ""
@@ -183,14 +197,14 @@ class Scene:
 
     @property
     def family(self) -> "Table":
-        """The table with every shape parameter left free that has a range; the table itself where none has one."""
+        """The table with every shape parameter that has a range left free; `table` itself if none has one."""
         return _family(self.family_text) if self.family_text else self.table
 
     def over(self, parameter: str, low: Any, high: Any) -> "Table":
-        """The table with one of its shape parameters left free, looked at from `low` to `high`.
+        """The table with one of its shape parameters left free, with the range from `low` to `high`.
 
-        `ValueError` with a value at which it is no table. A table given by its radius is proved for every value of the
-        interval; any other one is proved at its ends and at seven values between.
+        `ValueError` with a value at which it is not a table. A table of the user's own is proved to be one for every
+        value of the interval; the paper's tables are checked at both ends.
 
         >>> flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}})
         >>> flower.over("b", 0, "1/30").shapes[0].range
@@ -224,22 +238,29 @@ class Scene:
 
     @classmethod
     def parse(cls, text: str) -> "Scene":
-        """The scene that a line, or a scene file, says; `ValueError` names the entry that is wrong.
+        """The scene of a line of text, or of the text of a scene file; `ValueError` names the entry that is wrong.
 
         >>> Scene.parse('table = "ellipse"\\nlam = "0.9"\\n[shape]\\na = "sqrt(2)"')
         Scene('ellipse', a='sqrt(2)', lam='9/10')
         """
         import tomllib
 
+        if len(text) > LONGEST or DOTTED.search(QUOTED.sub("q", text)):
+            what = (
+                "holds a key of more than 16 words" if len(text) <= LONGEST else f"is longer than {LONGEST} characters"
+            )
+            raise ValueError(f"scene: the text {what}; accepted: keys such as shape.a, in a shorter file")
         try:
             said = tomllib.loads(text)
+        except RecursionError:
+            raise ValueError("scene: lists or tables stand too deep in one another; accepted: a few levels") from None
         except tomllib.TOMLDecodeError as error:
             raise ValueError(f"scene: {error}") from None
         return cls.of(said["scene"] if set(said) == {"scene"} and isinstance(said["scene"], dict) else said)
 
     @classmethod
     def of(cls, document: Mapping[str, Any]) -> "Scene":
-        """The scene of a `document`.
+        """The scene of a document: plain data with the entries of a scene file.
 
         >>> Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}, "lam": "0.5"})
         Scene(polar='b*cos(5*theta) + 1', b='1/40', lam='1/2')
@@ -265,17 +286,27 @@ class Scene:
 
     @classmethod
     def proved(cls, text: str) -> "Scene":
-        """The scene whose own `text` this is; what was proved when it was made is not proved again."""
+        """The scene with this text, which must be the `text` of a scene made before: its proofs are not repeated."""
         other = object.__new__(cls)
         object.__setattr__(other, "text", text)
         return other
 
     @classmethod
     def load(cls, path: "str | Path") -> "Scene":
-        """The scene of a file."""
-        from pathlib import Path  # with tomllib a tenth of a warm start, which needs neither
+        """The scene that the file at `path` holds."""
+        from pathlib import Path  # imported here, since most starts read no scene file
 
-        return cls.parse(Path(path).read_text(encoding="utf-8"))
+        with Path(path).open(encoding="utf-8") as file:
+            return cls.parse(file.read(LONGEST + 1))  # bounded: a device such as /dev/zero never ends
+
+    def save(self, path: "str | Path") -> None:
+        """Writes the scene as a file that `load` reads; `ValueError` where that file cannot be written."""
+        from importlib import import_module
+
+        try:  # `numeric` has the function that writes a file whole or not at all
+            import_module("numeric.lowering.files").write_whole(path, f"{self.text}\n")
+        except OSError as why:
+            raise ValueError(f"scene: {path} cannot be written ({why.strerror}); give a file in a folder") from None
 
     def __repr__(self) -> str:
         said = self.document
@@ -292,8 +323,44 @@ class Scene:
         return rf"$\displaystyle {latex(self.table)}, \quad \varphi = {latex(self.law.phi)}$"
 
 
+def as_scene(given: Any, *, lam: Any = None, law: Law | str | None = None, **shape: Any) -> Scene:
+    """The scene of a table, a map, a scene or a name, with these values in place of its own.
+
+    >>> as_scene("ellipse", a="3/2", lam="1/2")
+    Scene('ellipse', a='3/2', lam='1/2')
+    >>> as_scene(Scene("cardioid", lam="1/2"), lam="1/4")
+    Scene('cardioid', lam='1/4')
+    """
+    own = given if isinstance(given, Scene | str) else getattr(given, "scene", given)  # of a map, or of a cycle
+    if isinstance(own, Scene):
+        changed = lam is not None or law is not None or shape
+        return own.at(lam=lam, law=law, **shape) if changed else own
+    return Scene(own, lam=1 if lam is None else lam, law=UNIFORM if law is None else law, **shape)
+
+
+def given_table(table: Any, K: int, shape: Mapping[str, Any]) -> "tuple[Any, dict[str, Any]]":
+    """The table that is given or named, and the shape values not used for it; a function is called for its table."""
+    numbers = dict(shape)
+    if isinstance(table, str) and table in GALLERY:
+        from symbolic.tables import gallery
+
+        table = gallery.GALLERY[table]
+    if callable(table):
+        from inspect import signature
+
+        name, known = getattr(table, "__name__", "table"), signature(table).parameters
+        own = {key: numbers.pop(key) for key in known if key in numbers} | ({"K": K} if "K" in known else {})
+        try:
+            table = table(**own)
+        except TypeError as why:
+            raise ValueError(f"{name}: no table comes back ({why}); give the table itself") from None
+    if not isinstance(table, str) and not hasattr(table, "components"):
+        raise ValueError(f"{table!r} is no table; accepted: a table, a scene, a map, or the name of a table")
+    return table, numbers
+
+
 def _one_number(name: str, law: Law, own: tuple[str, ...], shape: Mapping[str, Any]) -> None:
-    """Refuses a law that holds one number under a name for which the table, or the scene, has another or none."""
+    """Raises `ValueError` if a parameter has one value in the law and another, or none, in the table or the scene."""
     for parameter, held in law.numbers:
         given = value_text(parameter_text(f"{name}: {parameter}", shape[parameter])) if parameter in shape else None
         if given != held and (given is not None or parameter in own):
@@ -304,7 +371,7 @@ def _one_number(name: str, law: Law, own: tuple[str, ...], shape: Mapping[str, A
 
 
 def _with_ranges(shape: Mapping[str, Any], ranges: Mapping[str, str]) -> dict[str, Any]:
-    """Numbers, each with the range that is known for it where it says none of its own."""
+    """Values of shape parameters, each with its range from `ranges` appended unless it has a range already."""
     return {
         name: value
         if name not in ranges or (isinstance(value, str) and ":" in value)
@@ -314,40 +381,37 @@ def _with_ranges(shape: Mapping[str, Any], ranges: Mapping[str, str]) -> dict[st
 
 
 def _own_ranges(table: "Table") -> dict[str, str]:
-    """The ranges that a table states for its own shape parameters, as far as their ends are numbers."""
+    """The finite ranges that a table has for its own shape parameters, as `LOW..HIGH` by name."""
     ends = {p.symbol.name: (p.range.start, p.range.end) for p in table.shapes}
     return {name: f"{low}..{high}" for name, (low, high) in ends.items() if low.is_finite and high.is_finite}
 
 
 @lru_cache(maxsize=64)
 def _family(line: str) -> "Table":
-    """The table of a line in which some parameters have a range `LOW..HIGH` alone: these stay free.
+    """The table of a scene's line of text in which parameters given as a range `LOW..HIGH` stay free.
 
-    A radius is proved positive over all of the ranges; of any other table the corners of the ranges and, for each
-    parameter, nine values of it are looked at, the others in the middle.
+    A table of the user's own is proved to be one over all of the ranges; the paper's are checked at the ends of these.
     """
     import tomllib
 
     from sympy import Interval, Symbol
 
     from symbolic.tables.table import Shape
-    from symbolic.tables.validity import radius_over
+    from symbolic.tables.validity import prove_table, radius_over
 
     document: dict[str, Any] = tomllib.loads(line)["scene"]
     ranges = {name: range_ends(name, text) for name, text in document["shape"].items() if ".." in text}
-    outside = "is outside of what was looked at"
+    outside = "is outside of the range that was given"
     free = [Shape(Symbol(name, real=True), Interval(*ends), outside) for name, ends in ranges.items()]
     table = built(document, free)
     proved = "table" in document or ("polar" in document and radius_over(table))
     places = [dict(zip(ranges, corner, strict=True)) for corner in product(*ranges.values())]
-    if not proved:
-        middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
-        for name, (low, high) in ranges.items():
-            places += [{**middle, name: low + (high - low) * share / 8} for share in range(9)]
     for place in {str(place): place for place in places}.values():
         try:
             built({**document, "shape": {**document["shape"], **{name: str(value) for name, value in place.items()}}})
         except ValueError as why:  # the paper's tables name the value themselves
             where = ", ".join(f"{name} = {value}" for name, value in place.items())
             raise ValueError(str(why) if "table" in document else f"{where}: {why}") from None
+    if not proved:
+        prove_table(table)
     return table

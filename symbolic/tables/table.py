@@ -1,4 +1,4 @@
-"""What a table is: smooth components in a closed, simple, counterclockwise chain, written in the paper's letters.
+"""Tables and their parts: smooth components in a closed, simple, counterclockwise chain, in the paper's letters.
 
 A table is written down once, as exact expressions in the boundary parameter `theta`; everything
 else in the package is derived from it. Paper: section 2, the definition of `Gamma`.
@@ -14,11 +14,28 @@ from sympy import sympify as exact  # converts Python numbers; never called on t
 
 from symbolic.expressions.signs import interval_text
 
+
+class Letter(Symbol):  # type: ignore[misc]  # SymPy has no types
+    """A symbol whose LaTeX is the paper's letter."""
+
+    def _latex(self, printer: object) -> str:
+        return SHOWN[self.name]
+
+
+Letter.__name__ = "Symbol"  # SymPy sorts by the name of the class: so letters are sorted among other symbols
+
+SHOWN: dict[str, str] = {
+    "lam": r"\lambda",
+    "phi": r"\varphi",
+    "cos_phi0": r"\cos \varphi_{0}",
+    "cos_eta1": r"\cos \eta_{1}",
+}
+
 theta = Symbol("theta", real=True)  # boundary parameter; the polar angle for polar tables
 s = Symbol("s", real=True)  # arc length, counterclockwise
-phi = Symbol("phi", real=True)  # exit angle from the inward normal, positive towards the tangent
+phi = Letter("phi", real=True)  # exit angle from the inward normal, positive towards the tangent
 eta = Symbol("eta", real=True)  # incidence angle; the elastic law is phi = -eta
-lam = Symbol("lam", nonnegative=True)  # contraction of the angle, lambda in the paper
+lam = Letter("lam", nonnegative=True)  # contraction of the angle, lambda in the paper
 t = Symbol("t", positive=True)  # length of a flight
 
 a = Symbol("a", positive=True)  # half the major axis of the ellipse
@@ -26,8 +43,8 @@ alpha = Symbol("alpha", nonnegative=True)  # shape of the egg
 
 K0 = Symbol("K0", real=True)  # curvature where a flight leaves, negative when focusing
 K1 = Symbol("K1", real=True)  # curvature where it lands
-cos_phi0 = Symbol("cos_phi0", positive=True)  # cosine of the exit angle where a flight leaves
-cos_eta1 = Symbol("cos_eta1", positive=True)  # cosine of the incidence angle where it lands
+cos_phi0 = Letter("cos_phi0", positive=True)  # cosine of the exit angle where a flight leaves
+cos_eta1 = Letter("cos_eta1", positive=True)  # cosine of the incidence angle where it lands
 
 
 Pair = tuple[Expr, Expr]
@@ -66,7 +83,7 @@ class Component:
 
 @dataclass(frozen=True)
 class Shape:
-    """A shape parameter, the closed range in which the table is one, and what fails outside."""
+    """A shape parameter, the closed range in which the boundary bounds a table, and the message for other values."""
 
     symbol: Symbol
     range: Interval
@@ -75,7 +92,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class Mark:
-    """A boundary point where the map is undefined, with the name of the outcome (`cusp`)."""
+    """A boundary point where the map is undefined, with the name of the outcome of a flight to it (`cusp`)."""
 
     name: str
     component: int
@@ -84,11 +101,11 @@ class Mark:
 
 @dataclass(frozen=True)
 class Fit:
-    """What a boundary was fitted to, and how far it may be from the body that was measured.
+    """The points that a boundary was fitted to, the method, and estimates of its distance from the measured body.
 
     The boundary itself is exact. `residual` is the largest distance of a point from its place on it, rounded up;
-    `between` how far the fit to every second point passes from the others, an estimate of what happens between points
-    (None for too few of them); `uncertainty` what was said of the points themselves.
+    `between` the largest distance of the other points from a fit to every second one, an estimate for what lies between
+    points (None if there are too few); `uncertainty` is the given error of the points themselves.
     """
 
     points: tuple[Pair, ...]
@@ -107,9 +124,9 @@ class Fit:
 
 @dataclass(frozen=True)
 class Table:
-    """A billiard table, exact.
+    """A billiard table, exact: `shapes` are its free shape parameters, `fixed` the values of the others, by name.
 
-    `origin` is where the paper counts arc length from: a component's index and a parameter there;
+    `origin` is the place from which the paper counts arc length: a component's index and a parameter on it;
     `s` grows counterclockwise, which is the direction of `theta`.
     """
 
@@ -150,7 +167,7 @@ class Table:
             fixed=self.fixed + tuple((symbol.name, value) for symbol, value in values.items()),
         )
         if not table.shapes:
-            from symbolic.tables.validity import simple  # which needs this module
+            from symbolic.tables.validity import simple  # imports this module
 
             simple(table)
         return table
@@ -164,7 +181,7 @@ class Table:
         raise ValueError(f"{self.name}: no component {name}; it has: {names}")
 
     def _repr_latex_(self) -> str:
-        from symbolic.tables.formula import latex  # which needs this module
+        from symbolic.tables.formula import latex  # imports this module
 
         return rf"$\displaystyle {latex(self)}$"
 
@@ -185,7 +202,7 @@ def exact_number(label: str, given: Expr | int | str) -> Expr:
         raise ValueError(f"{label} = {given!r} is no exact number such as 2/25 or 0.08")
     if value.has(Float):
         raise ValueError(
-            f"{label} = {given} is a rounded float; write it exactly, as a string '0.08' or Rational(2, 25)"
+            f"{label} = {given} is a rounded float; write it exactly, as the text '{given}' or such as '2/25'"
         )
     return value
 

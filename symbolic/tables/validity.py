@@ -1,11 +1,12 @@
-"""What must hold before a table is one: exact, closed, counterclockwise, free of self-crossings.
+"""Checks that a boundary bounds a table: exact, closed, counterclockwise, free of self-crossings, holes within it.
 
-Every check is a proof on the ranges of the shape's parameters; that a closed curve does not cross itself is proved
-for finite Fourier sums, and looked for on a polygon otherwise. A boundary that is no trigonometric polynomial, or one
-of high degree, may be too hard for the last two; it is then accepted here and examined where kernels are built.
+Every check is a proof. For a table with letters (shape parameters without values) it covers their ranges, but does not
+exclude self-crossings: these, and whatever the first checks leave open, are excluded when the letters get values.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from sympy import (
     Abs,
@@ -15,6 +16,7 @@ from sympy import (
     I,
     Interval,
     Poly,
+    Pow,
     Rational,
     S,
     Symbol,
@@ -33,33 +35,35 @@ from sympy import (
     zoo,
 )
 
-from symbolic.expressions.enclosures import UnboundedError, pole, sign_in, sign_on
+from symbolic.expressions.enclosures import ONE, Enclosures, UnboundedError, pole, sign_in, sign_on
 from symbolic.expressions.signs import Box, Outcome, conjunction, positive
+from symbolic.tables.arcs import MANY, FourierSum
 from symbolic.tables.curves import (
     LONG,
     alone,
-    chord_of_length_zero,
     curves,
-    polygon_crossing,
     size,
     trigonometric,
     waves,
 )
-from symbolic.tables.geometry import boundary_coefficients, coefficients, in_half_tangent
-from symbolic.tables.polynomial import as_bezier, meets, signed_area
+from symbolic.tables.geometry import coefficients, in_half_tangent
+from symbolic.tables.polynomial import as_bezier, bound_a_table, signed_area
+from symbolic.tables.simplicity import prove_simple
 from symbolic.tables.table import Component, Table, lam, theta
 
-HIGHEST_HARMONIC = 8  # of a curve whose self-crossings are excluded box by box, of a radius judged by Sturm's theorem
+HIGHEST_HARMONIC = 8  # of a radius whose sign Sturm's theorem gives
+Ranges = Mapping[Symbol, tuple[Expr, Expr]]  # both ends of the range of each letter
 TURN = Rational(7, 2)  # beyond pi: what holds from -TURN to TURN holds for every angle
 
 
+@lru_cache(maxsize=64)
 def validated(table: Table) -> Table:
-    """`table` with its letters made the package's own; `ValueError` when it is no table."""
+    """`table` after all checks, with the package's symbols for `theta` and shape; `ValueError` if it is no table."""
     return counterclockwise_and_simple(closed_and_finite(table))
 
 
 def counterclockwise_and_simple(table: Table) -> Table:
-    """The part of `validated` that a polar table of positive radius does not need."""
+    """`table`, checked to be counterclockwise and, if it has no letters, simple; `ValueError` if it is not."""
     _counterclockwise(table)
     if not table.shapes:
         simple(table)
@@ -67,7 +71,7 @@ def counterclockwise_and_simple(table: Table) -> Table:
 
 
 def closed_and_finite(table: Table) -> Table:
-    """The part of `validated` that every table needs, whatever is known of its self-crossings."""
+    """`table` with the package's symbols, checked to be finite and closed; `ValueError` if it is not."""
     if not table.components:
         raise ValueError(f"{table.name}: a table needs at least one component, and none is given")
     table = replace(table, components=tuple(_own_letters(table, c) for c in table.components))
@@ -93,8 +97,11 @@ def positive_radius(name: str, rho: Expr) -> bool:
 def radius_sign(rho: Expr) -> Outcome:
     """Is `rho(theta) > 0` for every theta? A polar curve is then simple and counterclockwise.
 
-    Low harmonics are judged by Sturm's theorem, everything else by enclosures.
+    Low harmonics are judged by Sturm's theorem, long finite sums by their coefficients, all else by enclosures.
     """
+    found = waves(rho)
+    if found is not None and len(found) >= MANY:
+        return FourierSum(found, 0).sign(-TURN, TURN)
     c = coefficients(rho) or {}
     if c and c.get(0, S.Zero) > sum(abs(value) for k, value in c.items() if k):
         return Outcome.PROVED
@@ -140,7 +147,10 @@ def _own_letters(table: Table, component: Component) -> Component:
             if symbol.name not in allowed:
                 accepted = ", ".join(sorted(allowed))
                 raise ValueError(f"{table.name}: unknown symbol {symbol} in {expression}; it may use: {accepted}")
-            renamed[symbol] = allowed[symbol.name]
+            if symbol != allowed[symbol.name]:
+                renamed[symbol] = allowed[symbol.name]
+    if not renamed:
+        return component
     x, y = (coordinate.xreplace(renamed) for coordinate in component.point)
     return replace(
         component, point=(x, y), start=component.start.xreplace(renamed), end=component.end.xreplace(renamed)
@@ -153,6 +163,9 @@ def _finite(table: Table, component: Component) -> None:
         raise ValueError(
             f"{table.name}: {component.name} runs from theta = {start} to {end}; the end must be a larger number"
         )
+    if not any(coordinate.has(theta) for coordinate in component.point):
+        x, y = component.point
+        raise ValueError(f"{table.name}: {component.name} is the single point ({x}, {y}), of length 0; leave it out")
     for coordinate in component.point:
         if coordinate.is_polynomial(theta) or waves(coordinate) is not None:
             continue
@@ -177,9 +190,10 @@ def _closed(table: Table) -> None:
 
 
 def _counterclockwise(table: Table) -> None:
-    area = enclosed_area(table)
+    outer, *holes = curves(table)
+    area = enclosed_area(replace(table, components=outer))
     ranges = {p.symbol: p.range for p in table.shapes}
-    for hole in curves(table)[1:]:
+    for hole in holes:
         inside = enclosed_area(replace(table, components=hole))
         if inside is not None and not inside.free_symbols and not inside.is_negative:
             raise ValueError(f"{table.name}: the hole that begins with {hole[0].name} must run clockwise")
@@ -211,8 +225,9 @@ def enclosed_area(table: Table) -> Expr | None:
             swept = sum(k * (u * u + v * v) for k, (u, v) in found.items())
             total += pi * S(swept)
             continue
-        if size(x) + size(y) > LONG:
-            return None
+        powers = [p for p in x.atoms(Pow) | y.atoms(Pow) if p.has(theta)]
+        if size(x) + size(y) > LONG or not all(p.exp.is_Integer and p.exp > 0 for p in powers):
+            return None  # SymPy would expand quotients and roots for minutes, and integrate none of them
         swept = expand(x * y.diff(theta) - y * x.diff(theta))
         harmonics = None if swept.is_polynomial(theta) else coefficients(swept)
         if harmonics is not None and component.end - component.start == 2 * pi:
@@ -224,39 +239,62 @@ def enclosed_area(table: Table) -> Expr | None:
     return expand(total)
 
 
+@lru_cache(maxsize=64)
 def simple(table: Table) -> bool:
-    """True when a boundary is proved not to cross itself; `ValueError` when it does.
-
-    A positive radius or the exclusion of chords of length 0 proves that it does not, and so do the boxes round the
-    pieces of one curve of rational polynomials; a boundary too hard for any (other pieces, high harmonics, no finite
-    sum) is refused when its inscribed polygon crosses.
-    """
-    whole = table.components[0]
+    """True when the boundary is proved to bound a table; False if it has letters. `ValueError` without a proof."""
     if any(c.free_symbols - {theta} for component in table.components for c in component.point):
         return False
-    if len(table.components) == 1 and not table.undefined:
-        scale = (whole.end - whole.start) / (2 * pi)
+    _prove(table, {})
+    return True
+
+
+def prove_table(table: Table, ranges: Ranges | None = None) -> None:
+    """Proves that a boundary bounds a table for all values of its letters in `ranges`; `ValueError` with the place.
+
+    The boundary is closed identically in the letters; it is simple and counterclockwise; its holes are clockwise, lie
+    in it, and meet neither it nor one another. `ranges` holds both ends of the range of every letter, by default those
+    of the table's shape parameters. A positive radius proves this, and so do disjoint boxes round pieces that are
+    polynomials of degree three; all other boundaries are proved by `symbolic.tables.simplicity`.
+
+    >>> from symbolic.tables import ellipse, stadium
+    >>> from symbolic.tables.table import a
+    >>> prove_table(stadium()), prove_table(ellipse, {a: (1, 3)})
+    (None, None)
+    """
+    within = {p.symbol: (p.range.start, p.range.end) for p in table.shapes} if ranges is None else ranges
+    ends = {letter: (S(low), S(high)) for letter, (low, high) in within.items()}
+    for letter, (low, high) in ends.items():
+        if not (low.is_finite and high.is_finite and (high - low).is_nonnegative):
+            raise ValueError(f"{table.name}: {letter} from {low} to {high} is no range; give two finite numbers")
+    _prove(closed_and_finite(table), ends)
+
+
+def _prove(table: Table, ends: Ranges) -> None:
+    """Proves what `prove_table` does for a finite, closed boundary; `ends` are the ranges of its letters."""
+    whole = table.components[0]
+    if len(table.components) == 1 and not table.undefined and whole.end - whole.start == 2 * pi:
         x, y = whole.point
-        if scale == 1 and _is_polar(x, y) and radius_sign(_radius(x, y)) is Outcome.PROVED:
-            return True
-        c = boundary_coefficients(replace(whole, point=(x.subs(theta, scale * theta), y.subs(theta, scale * theta))))
-        if c is not None and max(abs(k) for k in c) <= HIGHEST_HARMONIC:
-            crossing = chord_of_length_zero(c, scale)
-            if crossing:
-                raise ValueError(f"{table.name}: {crossing}")
-            return True
-    pieces = [as_bezier(component) for component in table.components]
-    known = [piece for piece in pieces if piece is not None]
-    if len(known) == len(pieces) and len(curves(table)) == 1 and meets([known]) is None:
-        return True
-    crossing = polygon_crossing(table)
-    if crossing:
-        raise ValueError(f"{table.name}: {crossing}")
-    return False
+        if _is_polar(x, y) and _positive_radius(_radius(x, y), ends):
+            return
+    rings = [[as_bezier(component) for component in ring] for ring in curves(table)]
+    known = [[piece for piece in ring if piece is not None] for ring in rings]
+    if rings != known or not bound_a_table(known):
+        prove_simple(table, ends)
+
+
+def _positive_radius(rho: Expr, ranges: Ranges) -> bool:
+    if not ranges:
+        return radius_sign(rho) is Outcome.PROVED
+    bounds = {x: [each for end in Enclosures(ends)() for each in end] for x, ends in ranges.items()}
+    try:
+        within = {x: (Rational(min(ends), ONE), Rational(max(ends), ONE)) for x, ends in bounds.items()}
+        return bool(sign_in(rho, {theta: (-TURN, TURN), **within}))
+    except UnboundedError:
+        return False
 
 
 def _is_polar(x: Expr, y: Expr) -> bool:
-    """Is the parameter the polar angle?"""
+    """Is `theta` the polar angle of the point `(x, y)`?"""
     across = y * cos(theta) - x * sin(theta)
     found = waves(across)
     if found is not None or size(across) > LONG:

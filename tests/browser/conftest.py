@@ -1,4 +1,4 @@
-"""A headless Chromium from the machine: `CHROMIUM`, or one found on the path."""
+"""A headless Chromium for tests: the one named by `CHROMIUM`, or one found on the path."""
 
 import os
 import shutil
@@ -31,7 +31,7 @@ def chromium():
 
 @pytest.fixture
 def page(chromium):
-    """A page whose console and errors are read at the end."""
+    """A page whose console messages and errors are checked at the end."""
     page = chromium.new_page()
     said = []
     page.on("console", lambda message: said.append(message.text))

@@ -1,7 +1,6 @@
-"""The pages that `make docs` built, on a desk and a phone, light and dark, as axe judges them.
+"""Accessibility of the pages that `make docs` builds, on desktop and phone, light and dark, by axe.
 
-Of the reference, which is generated from docstrings, and of the index of names a few pages stand for all: axe takes
-minutes over the long ones.
+Of the generated reference and the index a few pages represent all: axe takes minutes over the long ones.
 """
 
 from pathlib import Path
@@ -15,7 +14,7 @@ PHONE, DESK = {"width": 390, "height": 844}, {"width": 1400, "height": 900}
 
 
 def pages():
-    """The pages that Sphinx writes; the search with something found."""
+    """The pages that Sphinx writes, and the search with a result."""
     found = sorted(BUILT.rglob("*.html"))
     themed = [path for path in found if "sidebar-drawer" in path.read_text(encoding="utf-8")]
     made = [path for path in themed if path.name == "genindex.html" or (BUILT / "reference") in path.parents]

@@ -1,4 +1,4 @@
-"""The live table in a real browser: it draws, follows what is dragged and typed, and finds cycles."""
+"""The live table in a real browser: it draws, follows dragging and typing, and finds cycles."""
 
 import re
 import subprocess
@@ -16,7 +16,7 @@ PATIENCE = 30_000  # milliseconds
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory):
-    """The page of `pinball explore`, served by the command itself, which must have nothing to complain of."""
+    """The address of a page of `pinball explore`, served by the command, which must print no error."""
     asked = [sys.executable, "-u", "-m", "verification", "explore", "--no-open"]
     said = tmp_path_factory.mktemp("explore") / "stderr"
     with said.open("w") as errors, subprocess.Popen(asked, stdout=subprocess.PIPE, stderr=errors, text=True) as process:
@@ -53,7 +53,7 @@ def table(chromium, address):
 
 
 def command(page, start):
-    """Waits until the page offers a command that begins so."""
+    """Waits until the page shows a command that begins with this text."""
     expect(page.get_by_label("As a command")).to_have_value(re.compile(f"^{start}"), timeout=PATIENCE)
 
 
@@ -111,7 +111,7 @@ def test_a_click_in_phase_space_starts_there(table):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_it_is_accessible(table, scheme):
-    """Labels, landmarks, contrast and keyboard, as axe judges them."""
+    """Labels, landmarks, contrast and keyboard, by axe."""
     table.emulate_media(color_scheme=scheme)
     table.locator("[role=main]").wait_for()
 

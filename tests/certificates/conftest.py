@@ -1,4 +1,4 @@
-"""The second reader, and the scripts beside it, loaded from their files: they belong to no package."""
+"""Fixtures: the independent certificate checker and the scripts beside it, loaded from their files."""
 
 import importlib.util
 import sys
@@ -11,7 +11,7 @@ FOLDER = Path(__file__).parents[2] / "certificates"
 
 
 def loaded(name: str) -> ModuleType:
-    """A script of the folder as a module, under its own name, once."""
+    """A script of the folder as a module under its own name, loaded once."""
     if name not in sys.modules:
         spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
         sys.modules[name] = importlib.util.module_from_spec(spec)
@@ -22,11 +22,6 @@ def loaded(name: str) -> ModuleType:
 @pytest.fixture(scope="session")
 def check() -> ModuleType:
     return loaded("check")
-
-
-@pytest.fixture(scope="session")
-def mutants(check) -> ModuleType:
-    return loaded("mutants")
 
 
 @pytest.fixture(scope="session")
@@ -41,11 +36,11 @@ def make() -> ModuleType:
 
 @pytest.fixture(scope="session")
 def long(check) -> ModuleType:
-    """What proves cycles of many bounces."""
+    """The module that proves cycles of many bounces."""
     return check.beside("long")
 
 
 @pytest.fixture(scope="session")
 def crisis(check) -> ModuleType:
-    """What proves a boundary crisis, and the branches of its saddles."""
+    """The module that proves boundary crises and branches of saddles."""
     return check.beside("crisis")

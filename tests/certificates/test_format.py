@@ -1,38 +1,36 @@
-"""The format on paper, in the schema and in both readers is one and the same."""
+"""The certificate format is the same on its page, in the schema and in both checkers."""
 
 import copy
 import json
 import re
-import shutil
-from decimal import Decimal
 from pathlib import Path
 
 import jsonschema
 import pytest
-from flint import arb
+from committed import FOLDER, document
+from referencing import Registry, Resource
 
 from symbolic.tables import egg
-from verification.named import files
-from verification.paper.claims import folder
-from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof
+from verification.proofs.manifolds.certificate import STATEMENT, Tangency
 from verification.proofs.manifolds.known import CONTACTS
-from verification.proofs.manifolds.proof import ITEMS, Proof
+from verification.proofs.periodic.cycle_in_box import STATEMENTS
 
 ROOT = Path(__file__).parents[2]
-FOLDER = ROOT / "certificates"
 SCHEMA, CELLS, CRISIS = (
     json.loads((FOLDER / "schema" / f"{name}.json").read_text())
     for name in ("version_4", "trapping_region_1", "boundary_crisis_1")
 )
 FILES = sorted(FOLDER.glob("*.json"))
+SENTENCES = STATEMENTS | {"tangency": STATEMENT}
 PAGE = (ROOT / "docs" / "certificate_format.md").read_text()
 
 
 def valid(given: object) -> bool:
-    """By the schema of its kind."""
+    """True if a document fits the schema of its kind."""
     kind = given.get("kind") if isinstance(given, dict) else None
-    own = {"trapping region": CELLS, "boundary crisis": CRISIS}
-    return jsonschema.Draft202012Validator(own.get(kind, SCHEMA)).is_valid(given)
+    own, whole = {"trapping region": CELLS, "boundary crisis": CRISIS}, Resource.from_contents(SCHEMA)
+    registry = Registry().with_resource("version_4.json", whole)  # which the others take the scene from
+    return jsonschema.Draft202012Validator(own.get(kind, SCHEMA), registry=registry).is_valid(given)
 
 
 def test_the_schemas_are_some():
@@ -51,7 +49,7 @@ def test_the_folder_has_the_certificates_that_its_script_writes(make):
 
 
 def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
-    """Names in the column of the second reader are short: `-4` after `doubling-3` is the next of them."""
+    """Names in the column of the independent checker are short: `-4` after `doubling-3` means `doubling-4`."""
     rows = [line.split("|") for line in (ROOT / "docs" / "trust.md").read_text().splitlines() if line.startswith("|")]
     results = [row for row in rows if len(row) == 8]
     said = [name.removesuffix(".json") for row in results for name in re.findall(r"`([\w.-]+)`", row[4])]
@@ -67,11 +65,10 @@ def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
     assert named - {"lam", "a"} == {path.stem for path in FILES} - examples
 
 
-def test_every_number_that_pages_and_reports_call_certified_has_a_certificate(printed, monkeypatch, capsys, tmp_path):
-    """A report of the paper is read where there is one; here one is made up, with a right and a wrong number."""
-    monkeypatch.setattr(printed.sys, "argv", ["printed.py"])
-    monkeypatch.setattr(printed, "REPORT", tmp_path / "report.json")
-    assert printed.main() == 0
+def test_every_number_that_pages_and_reports_call_certified_has_a_certificate(printed, capsys, tmp_path):
+    """A report of the paper is read where it exists; this one is made up, with a right and a wrong number."""
+    made = tmp_path / "report.json"
+    assert printed.main([str(made)]) == 0
     assert capsys.readouterr().out.endswith(" numbers, 0 without\n")
 
     said = [
@@ -80,58 +77,26 @@ def test_every_number_that_pages_and_reports_call_certified_has_a_certificate(pr
         ("new.claim", None),
     ]
     claims = [{"id": name, "value": value, "method": "certified"} for name, value in said]
-    (tmp_path / "report.json").write_text(json.dumps({"claims": claims}))
-    assert printed.main() == 1
+    made.write_text(json.dumps({"claims": claims}))
+    assert printed.main([str(made)]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "egg.doubling.4: no certificate holds 0.388761023460843"
     assert lines[1] == "new.claim: no certificate holds a sentence that says certified"
     assert lines[2].endswith(" numbers, 2 without")
 
 
-def test_an_event_of_a_kept_report_that_no_certificate_holds_is_named(printed, monkeypatch, capsys, tmp_path):
-    """Each of the four reports with its last digits changed in turn, where it calls an event certified."""
-    shutil.copytree(
-        ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("*.html", "*.png", "*.svg", "gallery")
-    )
-    shutil.copy(ROOT / "README.md", tmp_path)
-    monkeypatch.setattr(printed.sys, "argv", ["printed.py"])
-    monkeypatch.setattr(printed, "REPORT", tmp_path / "report.json")
-    monkeypatch.setattr(printed, "ROOT", tmp_path)
-    for name, count in (("egg", 3), ("flower", 7), ("limacon", 11), ("stadium", 0)):
-        path = tmp_path / "docs" / "reports" / f"{name}.json"
-        report = json.loads(path.read_text())
-        certified = [event for event in report["events"] if event["certified"]]
-        for event in certified:
-            event["value"] = str(Decimal(event["value"]) + Decimal("1e-15"))
-        path.write_text(json.dumps(report))
-
-        assert len(certified) == count
-        assert printed.main() == (1 if count else 0)
-        lines = capsys.readouterr().out.splitlines()
-        assert [line.partition(": ")[0] for line in lines[:-1]] == [f"docs/reports/{name}.json"] * count
-        shutil.copy(ROOT / "docs" / "reports" / path.name, path)
-
-
 def test_a_printed_number_is_held_within_one_of_its_last_digit(printed):
-    given = json.loads((FOLDER / "lambda-c.json").read_text())
+    given = document("lambda-c")
 
     assert printed.holds(given, "0.09340")
     assert printed.holds(given, "0.0934003354313602")
     assert not printed.holds(given, "0.0934003354313604")
-    assert printed.holds(json.loads((FOLDER / "phi-star.json").read_text()), "-0.02898")
-
-
-def test_the_claims_that_are_said_to_have_certificates_are_claims(printed):
-    texts = [path.read_text() for path in (ROOT / "verification" / "paper").rglob("*.py")]
-    claims = {name for text in texts for row in folder.JUDGED.findall(text) for name in folder.QUOTED.findall(row)}
-
-    assert {*printed.CLAIMS, *printed.WITHOUT, *printed.ALSO} <= claims
-    assert {name for files in printed.CLAIMS.values() for name in files} <= {path.stem for path in FILES}
+    assert printed.holds(document("phi-star"), "-0.02898")
 
 
 @pytest.mark.parametrize("key", ["name", "statement", "scene", "radius", "checks", "kind"])
 def test_the_schema_asks_for_every_entry_and_for_no_other(key):
-    given = json.loads((FOLDER / "lambda-c.json").read_text())
+    given = document("lambda-c")
     without = copy.deepcopy(given)
     del without[key]
 
@@ -141,28 +106,27 @@ def test_the_schema_asks_for_every_entry_and_for_no_other(key):
 
 
 def test_a_tangency_that_is_not_proved_has_no_orbit_and_is_not_of_the_format():
-    claim = TangencyClaim(CONTACTS["merging"], egg(3).at(alpha="2/25"), "0.44343525", 20)
-    made = files.document(TangencyProof(claim, Proof(arb(0), dict.fromkeys(ITEMS))))
+    made = Tangency(CONTACTS["merging"], egg(3).at(alpha="2/25"), "0.44343525", 20).document()
 
     assert "orbit" not in made
     assert not valid(json.loads(json.dumps(made)))
 
 
 def test_both_readers_have_the_same_sentences_and_the_page_has_them(check):
-    """Written down three times on purpose: a reader does not take its statement from another."""
+    """They are written three times on purpose: a checker does not import its statement."""
     marks = {"scene": "*scene*", "n": "*n*", "free": "*free*"}
-    what = {kind: words.format(scene="S", n="N", free="F") for kind, words in files.WORDS.items()}
+    what = {kind: words.format(scene="S", n="N", free="F") for kind, words in SENTENCES.items()}
     read = {
         kind: words.format(scene="S", n="N", free="F", what=check.WHAT.get(kind)) for kind, words in check.SAYS.items()
     }
 
     assert {kind: what[kind] for kind in read} == read
-    for words in files.WORDS.values():
+    for words in SENTENCES.values():
         assert words.format(**marks) in PAGE
 
 
 def test_the_page_names_every_kind_entry_and_item(check):
-    items = {item for kind in check.KINDS.values() for item in kind} | set(ITEMS)
+    items = {item for kind in check.KINDS.values() for item in kind} | {*Tangency.hypotheses()}
     parts = ("zero", "tangency", "scene", "manifold")
     entries = {name for part in parts for name in SCHEMA["$defs"][part]["properties"]}
 
@@ -170,7 +134,7 @@ def test_the_page_names_every_kind_entry_and_item(check):
 
 
 def test_every_table_has_one_definition_in_both_readers(check):
-    """The five formulas of the second reader, at points, against the package's exact tables."""
+    """The checker's five formulas at points, against the package's exact tables."""
     from symbolic import tables
 
     for name, (letter, _) in check.PAPER.items():

@@ -1,14 +1,12 @@
-"""Each hypothesis of the theorems that the second reader quotes: where it fails, nothing is proved."""
+"""Each hypothesis of the theorems that the independent checker uses: where it fails, nothing is proved."""
 
 import json
 import random
 from fractions import Fraction
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-
-FOLDER = Path(__file__).parents[2] / "certificates"
+from committed import document
 
 
 @pytest.mark.parametrize(
@@ -28,9 +26,10 @@ FOLDER = Path(__file__).parents[2] / "certificates"
 def test_a_normal_form_has_one_critical_multiplier_and_a_coefficient_that_is_not_zero(
     check, kind, other, cubic, answer
 ):
-    """Of a round with the multipliers 1 or -1 and another: `(x, y) -> (m*x + cubic*x**3, other*y)`, in intervals.
+    """A round `(x, y) -> (m*x + cubic*x**3, other*y)` with `m` 1 or -1, in intervals.
 
-    The coordinates are `x + 2*y` and `x + 3*y`, for which the matrix has four entries."""
+    The coordinates are `x + 2*y` and `x + 3*y`, for which the matrix has four entries.
+    """
     number = lambda text: check.I.of(Fraction(text), 100).wide(check.I.of(Fraction(1, 2**80), 100))  # noqa: E731
     u, v = (check.Jet.of(number("0"), 1, k) for k in (0, 1))
     x, y = (u * 3 - v * 2) * number("1" if kind == "fold" else "-1"), (v - u) * number(other)
@@ -51,7 +50,7 @@ def test_a_normal_form_has_one_critical_multiplier_and_a_coefficient_that_is_not
     [("1/2", 0, True), ("1", 0, False), ("-1", 1, False), ("2", 1, False), ("-3", 2, False)],
 )
 def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, zero, unknown, holds):
-    """Of `x - zero`, in one of three unknowns, over [-1, 1]: at an end of it, or beyond, nothing is proved."""
+    """The system `x - zero`, in one of three unknowns, over [-1, 1]: a zero at an end, or beyond, is not proved."""
     box = [check.I.of(-1, 60).hull(check.I.of(1, 60))] * 3
     asked = []
 
@@ -82,50 +81,10 @@ def test_a_bounce_may_run_over_the_seam_where_a_whole_turn_changes_neither_curve
     assert check.read_scene(scene, "", 60)[0].closed == [closed]
 
 
-@pytest.mark.parametrize(("cubic", "degenerate"), [("-1/9", True), ("1/9", False), ("0", False)])
-def test_the_cubic_coefficient_of_a_doubling_counts_what_the_quadratic_terms_add(check, cubic, degenerate):
-    """Of a round `(x, y) -> (-x + x**2/3 + cubic*x**3, y/2)`: its coefficient is `1/9 + cubic`."""
-    number = lambda text: check.I.of(Fraction(text), 100).wide(check.I.of(Fraction(1, 2**80), 100))  # noqa: E731
-    around = lambda x, y: (x * x * x * number(cubic) + x * x * number("1/3") - x, y * number("1/2"))  # noqa: E731
-    image = [check.I.of(0, 100)] * 3
-    cycle = check.Cycle.__new__(check.Cycle)
-    cycle.p, cycle.sign, cycle.kind, cycle.way, cycle.names = 100, 1, "flip", [], lambda letter: {}
-    cycle.run = lambda *_: [None, around(*(check.Jet.of(image[k], 1, k) for k in (0, 1)))]
-    launched = lambda launch, at, d: around(*launch(*(check.Jet.of(x, d, k) for k, x in enumerate(at)))[:2])  # noqa: E731
-    cycle.table = SimpleNamespace(orbit=lambda launch, at, way, d, states: [None, launched(launch, at, d)])
-
-    if degenerate:
-        with pytest.raises(check.Unproved, match="nondegenerate"):
-            cycle.generic(image)
-    else:
-        cycle.generic(image)
-
-
-def test_the_derivative_of_a_quotient_is_that_of_the_quotient_rule(check):
-    found = check.evaluate(check.parse("cos(theta)/(2 + sin(theta))"), {"theta": check.I.of(Fraction(1, 3), 100)}, 100)[
-        1
-    ]
-    s, c = check.I.of(Fraction(1, 3), 100).sin_cos()
-
-    assert 0 in found * (s + 2) * (s + 2) + s * 2 + 1
-    assert 0 not in found * (s + 2) * (s + 2) + s * 2 + Fraction(1001, 1000)
-    assert 0 in s * s + c * c - 1
-
-
-@pytest.mark.parametrize("bits", [60, 200, 1000, 3000])
-def test_an_angle_is_enclosed_as_tightly_as_its_tangent(check, bits):
-    x = check.I.of(Fraction(5, 7), bits)
-    angle = x.atan()
-    s, c = angle.sin_cos()
-
-    assert 0 in s - x * c
-    assert angle.hi - angle.lo < 2**12
-
-
 def test_a_fold_names_what_varies(check):
-    given = json.loads((FOLDER / "saddle-node.json").read_text())
+    given = document("saddle-node")
     for free in ("", 3, ["lam"], None):
-        with pytest.raises(check.Wrong, match="free or radius is out of range"):
+        with pytest.raises(check.Wrong, match=r"free, radius or centre is out of range|free must be of type string"):
             check.checked(given | {"free": free})
 
 
@@ -136,7 +95,7 @@ def test_the_status_of_the_second_reader_is_1_where_anything_is_not_proved(check
 
 
 def test_interval_newton_encloses_the_zero_of_any_three_equations_that_are_independent(check):
-    """`A*x = A*zero` plus squares that vanish there, for random matrices; with two rows alike nothing is proved."""
+    """`A*x = A*zero` plus squares that vanish there, for random matrices; with two equal rows nothing is proved."""
     chance, p = random.Random(1), 100
     box = [check.I.of(-1, p).hull(check.I.of(1, p))] * 3
     for turn in range(20):
@@ -163,9 +122,9 @@ def test_interval_newton_encloses_the_zero_of_any_three_equations_that_are_indep
 @pytest.mark.parametrize("spare", ["0", "1/50", "-1/50"])
 @pytest.mark.parametrize("turn", range(6))
 def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, spare):
-    """Of `(x, y) -> (-x + a*x**2 + b*x*y + c*x**3, m*y + d*x**2)` it is `c + a**2 + b*d/(1 - m)`.
+    """For `(x, y) -> (-x + a*x**2 + b*x*y + c*x**3, m*y + d*x**2)` it is `c + a**2 + b*d/(1 - m)`.
 
-    For on the curve `y = h*x**2` that is kept, `h = d/(1 - m)`. Coordinates are changed by a matrix.
+    This follows on the invariant curve `y = h*x**2`, `h = d/(1 - m)`. A matrix changes the coordinates.
     """
     chance, p = random.Random(turn), 120
     a, b, d, m = (Fraction(chance.randint(1, 9), 10) * chance.choice([-1, 1]) for _ in range(4))
@@ -200,7 +159,7 @@ def test_the_coefficient_of_a_doubling_is_found_in_any_coordinates(check, turn, 
     [("0", True), ("1/2", True), ("-1", True), ("3", False), ("-3", False), ("7", False), ("31/5", False)],
 )
 def test_a_flight_runs_forwards_from_the_inward_side_and_its_angle_is_named_once(check, psi, arrives):
-    """In the circle it lands opposite, less two angles; backwards it lands too, and a turn more is no angle."""
+    """In the circle it lands opposite minus two angles; a backward line or an angle with another turn is refused."""
     p, scene = 100, {"polar": "1 + 0*cos(theta)", "lam": "1/3"}
     table, lam, _ = check.read_scene(scene, "", p)
     names = table.letters | {"lam": lam}
@@ -229,52 +188,23 @@ def test_a_flight_runs_forwards_from_the_inward_side_and_its_angle_is_named_once
 
 
 @pytest.mark.parametrize(
-    "changed",
-    [
-        {"mirror": 1}, {"mirror": None}, {"components": [0]}, {"components": [0] * 1025}, {"components": "00"},
-        {"components": 2}, {"components": None}, {"components": [0, False]}, {"components": [0, 0.0]},
-        {"components": [0, 1]}, {"components": [0, -1]}, {"components": [0, True]}, {"bits": 15}, {"bits": True},
-        {"bits": 160.0}, {"digits": 10.0}, {"digits": "10"},
-        {"digits": 0}, {"bits": 10**6}, {"digits": 10**6}, {"radius": ["0", "0"]}, {"radius": ["-1", "-9"]},
-        {"radius": ["3", "0"]}, {"centre": [["1", "30"], ["0", "0"]]}, {"free": "lam"}, {"free": 3}, {"schema": 3},
-        {"kind": "tangency"}, {"kind": "orbit"}, {"checks": {}}, {"name": "lambda-c"}, {"statement": ""}, {"more": 1},
-    ],
-    ids=str,
-)  # fmt: skip
-def test_an_entry_out_of_its_range_is_wrong_and_says_so(check, changed):
-    given = json.loads((FOLDER / "minor-axis.json").read_text())
-    assert "last bounce at -1.57079632" in check.checked(given) or "last bounce at 4.71238898" in check.checked(given)
-    with pytest.raises(check.Wrong):
-        check.checked(given | changed)
-
-
-@pytest.mark.parametrize(
     ("entry", "accepted", "refused"),
     [
-        ("bits", [16, 200_000], [15, 200_001]), ("digits", [1, 60_000], [0, 60_001]),
-        ("radius", [["1", "0"], ["1", "-500000"]], [["2", "0"], ["1", "-500001"], ["0", "0"]]),
+        ("bits", [16, 16_000], [15, 200_000, 200_001]), ("digits", [1, 60_000], [0, 60_001]),
+        ("radius", [["1", "0"], ["1", "-16000"]], [["2", "0"], ["1", "-16400"], ["1", "-500000"], ["0", "0"]]),
         ("components", [[0] * 1024], [[0] * 1025]), ("mirror", [False, True], [0, None]), ("free", [""], ["lam", "a"]),
         ("centre", [[["999999", "0"]] * 2], [[["1000000", "0"]] * 2, [["-1000000", "0"]] * 2]),
     ],
 )  # fmt: skip
 def test_an_entry_at_the_end_of_its_range_is_read_on_and_one_beyond_it_is_not(check, entry, accepted, refused):
-    """Read on, the documents are refused for what they state."""
-    given = json.loads((FOLDER / "minor-axis.json").read_text()) | {"statement": ""}
+    """Documents with entries in range are refused later, for their statement."""
+    given = document("minor-axis") | {"statement": "so"}
     for value in accepted:
         with pytest.raises(check.Wrong, match=r"the statement must be|do not fit"):
             check.checked(given | {entry: value})
     for value in refused:
-        with pytest.raises(check.Wrong, match="out of range"):
+        with pytest.raises(check.Wrong, match=r"out of range|up to 16384 bits|too many digits|not of its format"):
             check.checked(given | {entry: value})
-
-
-@pytest.mark.parametrize("text", ["lambda-star", "phi-star", "saddle-node", "minor-axis"])
-def test_a_document_of_one_kind_is_refused_under_each_of_the_others(check, text):
-    """By its entries, its free letter, or the number of its unknowns: before anything is computed."""
-    given = json.loads((FOLDER / f"{text}.json").read_text())
-    for kind in {*check.KINDS} - {given["kind"]}:
-        with pytest.raises(check.Wrong):
-            check.checked(given | {"kind": kind, "checks": dict.fromkeys(check.KINDS[kind], True)})
 
 
 @pytest.mark.parametrize(
@@ -284,7 +214,7 @@ def test_a_document_of_one_kind_is_refused_under_each_of_the_others(check, text)
     ids=str,
 )  # fmt: skip
 def test_the_corner_orbit_is_one_of_the_cuspless_cardioid_and_closed_by_its_mirror(check, change):
-    given = json.loads((FOLDER / "lambda-star.json").read_text())
+    given = document("lambda-star")
     with pytest.raises(check.Wrong, match=r"do not fit|out of range"):
         check.checked(given | change)
 
@@ -300,30 +230,16 @@ def test_what_is_no_document_is_refused_and_not_read_on(check, given, tmp_path, 
             check.checked(given)
 
 
-def test_sums_differences_and_products_of_intervals_and_jets_do_not_depend_on_the_order(check):
-    p = 80
-    x, jet = check.I.of(Fraction(1, 3), p), check.Jet.of(check.I.of(Fraction(2, 7), p), 1, 0)
-    for one, other in ((x + jet, jet + x), (x - jet, -(jet - x)), (x * jet, jet * x)):
-        assert [getattr(c, "lo", c) for c in one.c] == [getattr(c, "lo", c) for c in other.c]
-        assert [getattr(c, "hi", c) for c in one.c] == [getattr(c, "hi", c) for c in other.c]
-    assert check.value(x + jet).lo <= Fraction(13, 21) * 2**p <= check.value(x + jet).hi
-    assert check.value(x - jet).lo <= Fraction(1, 21) * 2**p <= check.value(x - jet).hi
-    assert check.value(x * jet).lo <= Fraction(2, 21) * 2**p <= check.value(x * jet).hi
+TURNS = ["1/3", "1/3+2", "1/3+4"]
 
 
 @pytest.mark.parametrize(
     ("table", "what", "bounces", "sign", "name"),
     [
-        ("egg", ("fold", "lam"), ["1/3", "1/3+2", "1/3+4"], 1, "saddle-node"),
+        ("egg", ("fold", "lam"), TURNS, 1, "saddle-node"),
         ("egg", ("fold", "lam"), ["1/3", "2/3+2", "1/3+4"], 1, "fold of a cycle of period 3 in lam: title"),
-        (
-            "egg",
-            ("fold", "lam"),
-            ["1/3", "1/3+2", "1/3+4"],
-            -1,
-            "fold of half of a symmetric cycle, of period 3 in lam: title",
-        ),
-        ("egg", ("flip", "lam"), ["1/3", "1/3+2", "1/3+4"], 1, "flip of a cycle of period 3 in lam: title"),
+        ("egg", ("fold", "lam"), TURNS, -1, "fold of half of a symmetric cycle, of period 3 in lam: title"),
+        ("egg", ("flip", "lam"), TURNS, 1, "flip of a cycle of period 3 in lam: title"),
         ("cuspless", ("flip", "lam"), ["0", "0"], 1, "lambda-c"),
         ("cuspless", ("flip", "lam"), ["0", "1/9"], 1, "flip of a cycle of period 2 in lam: title"),
         ("cuspless", ("flip", "lam"), ["0", "0"], -1, "flip of half of a symmetric cycle, of period 2 in lam: title"),
@@ -335,7 +251,7 @@ def test_sums_differences_and_products_of_intervals_and_jets_do_not_depend_on_th
     ],
 )
 def test_a_value_has_its_name_by_symmetry_and_any_other_by_what_is_stated(check, table, what, bounces, sign, name):
-    """`+2` and `+4` are two and four thirds of pi more, `3` is pi."""
+    """Bounces `+2` and `+4` are two and four thirds of pi further, `3` is pi."""
     p = 100
     third = lambda text: [part.strip() for part in (text + "+0").split("+")[:2]]  # noqa: E731
     at = [check.I.of(Fraction(a), p) + check.pi(p) * Fraction(int(b), 3) for a, b in map(third, bounces)]
@@ -353,8 +269,8 @@ def test_a_value_has_its_name_by_symmetry_and_any_other_by_what_is_stated(check,
 
 @pytest.mark.parametrize("which", [1, 2])
 def test_a_cycle_is_proved_only_where_each_of_its_bounces_is_in_the_box(check, which):
-    """The landings of the one cycle there is lie four radii away from what the file says of one of them."""
-    given = json.loads((FOLDER / "egg-triangle.json").read_text())
+    """One bounce of the only cycle lies four radii away from its place in the file."""
+    given = document("egg-triangle")
     (m, e), (r, s) = given["centre"][which], given["radius"]
     assert check.checked(given)
     given["centre"][which] = [str(int(m) * 2 ** max(0, int(e) - int(s)) + 4 * int(r) * 2 ** max(0, int(s) - int(e))),

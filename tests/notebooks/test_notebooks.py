@@ -1,4 +1,4 @@
-"""The notebooks run from their first cell to the last, and each is the same as its text."""
+"""The notebooks run from their first cell to the last, and each agrees with its text form."""
 
 import importlib.util
 from pathlib import Path
@@ -17,6 +17,7 @@ def sources(path):
     return [(cell.cell_type, cell.source) for cell in jupytext.read(path).cells]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", TEXTS, ids=lambda path: path.stem)
 def test_a_notebook_derives_what_it_says(text):
     notebook = execute.executed(text)

@@ -1,8 +1,7 @@
-"""Scenes that the tests share, and a cache folder of the tests' own."""
+"""Fixtures: scenes that tests share, and a separate cache folder."""
 
 import os
 import tempfile
-from pathlib import Path
 from types import SimpleNamespace
 
 import mpmath
@@ -12,21 +11,14 @@ import pytest
 os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
 
 from numeric import PinballMap
-from numeric.backends.scalars import ArrayBackend, ScalarBackend
+from numeric.backends.scalars import ScalarBackend
 from numeric.kernels.machine import KernelSpec
-from numeric.kernels.text import kernel_text, operations
 
-SHAPES = {
-    "circle": {},
-    "ellipse": {"a": "3/2"},
-    "cardioid": {},
-    "cuspless": {},
-    "egg": {"alpha": "0.08"},
-}
+SHAPES = {"circle": {}, "ellipse": {"a": "3/2"}, "cardioid": {}, "cuspless": {}, "egg": {"alpha": "0.08"}}
 
 
 def starts(map, count, seed, steepest=1.0):
-    """Random particles: component, theta and phi; `sin(phi)` is uniform below `sin` of the steepest angle."""
+    """Random particles: component, theta and phi; `sin(phi)` is uniform below the sine of the steepest angle."""
     rng = np.random.default_rng(seed)
     component = rng.integers(0, len(map.states.ends), count)
     ends = np.array(map.states.ends)[component]
@@ -35,7 +27,7 @@ def starts(map, count, seed, steepest=1.0):
 
 
 def boundary(name, where, theta, shape):
-    """Point, unit tangent, curvature in the paper's sign and speed, from the polar form of each table."""
+    """Point, unit tangent, curvature with the paper's sign, and speed, from the polar form of each table."""
     zero = 0 * theta
     if name == "ellipse":
         (a,) = shape
@@ -62,7 +54,7 @@ def boundary(name, where, theta, shape):
 
 
 def inside(name, x, y, shape):
-    """How far a point lies within the table, in no unit; negative outside."""
+    """A measure of how far a point lies within the table, without unit; negative outside."""
     if name == "ellipse":
         return 1 - (x / shape[0]) ** 2 - y**2
     radius, angle = np.hypot(x, y), np.arctan2(y, x)
@@ -74,7 +66,7 @@ def inside(name, x, y, shape):
 
 
 class Bounced:
-    """One bounce of many particles, and what the definition of the map says of it, table by table in plain words."""
+    """One bounce of many particles, with the values that the definition of the map gives for each table."""
 
     def __init__(self, map, where, theta, phi):
         name, law = map.ir.table, map.law
@@ -87,9 +79,9 @@ class Bounced:
         self.where, self.theta = map.states.place(fields)
         self.phi = map.states.exit(self.where, self.theta, fields, law)
         there = boundary(name, self.where, self.theta, map.shape)
-        (x, y), (tx, ty), self.curvature0, _ = here
+        (x, y), (tx, ty), *_ = here
         v = np.sin(phi) * tx - np.cos(phi) * ty, np.sin(phi) * ty + np.cos(phi) * tx
-        (x1, y1), (tx, ty), self.curvature1, _ = there
+        (x1, y1), (tx, ty), *_ = there
         self.off_the_line = abs((x1 - x) * v[1] - (y1 - y) * v[0])
         self.length = (x1 - x) * v[0] + (y1 - y) * v[1]
         self.eta = -np.arctan2(v[0] * tx + v[1] * ty, v[0] * ty - v[1] * tx)
@@ -97,16 +89,9 @@ class Bounced:
         share = np.linspace(0.02, 0.98, 25)[:, None]
         self.depth = np.min(inside(name, x + share * (x1 - x), y + share * (y1 - y), map.shape), axis=0)
 
-    def matrix(self, lam, phi):
-        """The derivative matrix in `(s, phi)` by the paper's formula. Paper: eq. (derivative_of_map)."""
-        k0, k1, t, c0, c1 = self.curvature0, self.curvature1, self.length, np.cos(phi), np.cos(self.eta)
-        a = t * k0 + c0
-        rows = [[a, t], [lam * (k1 * a + k0 * c1), lam * (k1 * t + c1)]]
-        return np.moveaxis(-np.array(rows) / c1, (0, 1), (-2, -1))
-
 
 def rounding(map, where, theta, phi):
-    """What rounding does to the fields of a landing, in eps: the step on arrays against the step with 40 digits."""
+    """Rounding errors of the fields of a landing, in eps: the step on arrays against the step with 40 digits."""
     context = mpmath.MPContext()
     context.dps = 40
     own = map.states.enter(where, theta, phi, map.law)
@@ -128,51 +113,9 @@ def rounding_():
     return rounding
 
 
-class Watching(ArrayBackend):
-    """Arrays that keep the masks of the branches that are rarely taken."""
-
-    def __init__(self):
-        self.masks = []
-
-    def when(self, mask, values, changed):
-        self.masks.append(np.array(mask))
-        return super().when(mask, values, changed)
-
-
-@pytest.fixture
-def as_on_the_page():
-    """Whether one bounce takes the operations that docs/kernels.md has for it, under every law."""
-    page = (Path(__file__).parent.parent.parent / "docs" / "kernels.md").read_text().splitlines()
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in page if line.startswith("| ")]
-
-    def compare(name, **shape):
-        for lam in (0, "1/2", 1):
-            map = PinballMap(name, lam=lam, **shape)
-            found = operations(kernel_text(map.family, map.engine.names, KernelSpec(map.law, exponents=True)))
-            (row,) = (row[3:] for row in rows if row[:3] == [name, map.law, "exponents"])
-            assert [str(count) for count in found.values()] == row
-
-    return compare
-
-
-@pytest.fixture
-def unsettled():
-    """The share of random particles whose flight needs the bracket, after the steps that every flight takes."""
-
-    def share(map, slap=False, branch=0, count=20_000):
-        component, theta, phi = starts(map, count, seed=1)
-        own = map.states.enter(component, theta, phi * (not slap), "pinball")
-        ops, at = Watching(), len(map.family.position)
-        with np.errstate(all="ignore"):
-            map.family.fly(ops, map.shape, "pinball", own[:at], own[at:])
-        return float(np.mean(ops.masks[branch]))
-
-    return share
-
-
 @pytest.fixture
 def bounced():
-    """Bounces with what the definition says of them."""
+    """Bounces with the values that the definition gives."""
     return Bounced
 
 

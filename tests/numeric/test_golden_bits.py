@@ -1,8 +1,8 @@
-"""The last bits of the kernels, written down once: starts, bounces and tangent vectors as hexadecimal floats.
+"""The exact bits of the kernels, stored once: starts, bounces and tangent vectors as hexadecimal floats.
 
-Kernels set no fast-math flag, so their bits depend on no processor; the starts are stored as kernel fields, because
-NumPy's own sine may round differently elsewhere. After a change that is meant to move bits, write the file anew:
-`python tests/numeric/test_golden_bits.py`, from the repository's root.
+Kernels set no fast-math flag, so their bits depend on no processor. The starts are stored as kernel fields because
+NumPy's sine may round differently elsewhere. After an intended change of bits, write the file anew from the
+repository's root: `python tests/numeric/test_golden_bits.py`.
 """
 
 import json
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sympy import Rational, cos, pi, sin
+from sympy import Rational, cos
 
 from numeric import PinballMap
 from numeric.kernels.machine import KernelSpec, starting
@@ -19,13 +19,6 @@ from symbolic import tables
 from symbolic.tables.table import theta
 
 FILE = Path(__file__).parent / "golden_bits.json"
-STADIUM = tables.piecewise(
-    tables.arc("right", 1 + cos(theta), sin(theta), -pi / 2, pi / 2),
-    tables.arc("top", -theta, 1, -1, 1),
-    tables.arc("left", -1 - cos(theta), -sin(theta), -pi / 2, pi / 2),
-    tables.arc("bottom", theta, -1, -1, 1),
-    name="stadium",
-)
 LENS = tables.piecewise(  # of two parabolas, which have no closed form of their own
     tables.arc("lower", theta, (theta**2 - 1) / 2, -1, 1),
     tables.arc("upper", -theta, (1 - theta**2) / 2, -1, 1),
@@ -38,7 +31,7 @@ SCENES = {
     "cuspless": ("cuspless", {}),
     "egg": ("egg", {"alpha": "2/25"}),
     "limacon, not convex": (tables.polar(1 + Rational(3, 5) * cos(theta), name="limacon"), {}),
-    "stadium": (STADIUM, {}),
+    "stadium": (tables.stadium(), {}),
     "lens, any boundary": (LENS, {}),
 }
 LAMS = {"slap": 0, "pinball": 0.7, "elastic": 1}
@@ -56,16 +49,16 @@ def unhexed(rows):
 
 
 def begun(scene, law):
-    """The fields of particles that start anywhere, and the `N0` of their departures."""
+    """The fields of particles with random starts, and the numbers `N0` of their departures."""
     table, shape = SCENES[scene]
     map = PinballMap(table, lam=LAMS[law], **shape)
     starts = phase_starts(map, COUNT, seed=11)
     own = map.states.enter(starts.component, starts.theta, starts.phi * (law != "slap"), law)
-    return {"own": hexed(own), "n0": hexed([map.states.departure(own, law)])}
+    return {"own": hexed(own), "n0": hexed([map.states.exit_normal_speed(own, law)])}
 
 
 def ended(scene, law, start):
-    """One bounce, many bounces, and many bounces with a tangent vector: every row, by name."""
+    """All rows by name after one bounce, after many bounces, and after many bounces with a tangent vector."""
     table, shape = SCENES[scene]
     map = PinballMap(table, lam=LAMS[law], **shape)
     own, (n0,) = unhexed(start["own"]), unhexed(start["n0"])
@@ -84,7 +77,7 @@ def ended(scene, law, start):
 
 @pytest.fixture(scope="module")
 def golden():
-    """What was written down."""
+    """The content of the stored file."""
     return json.loads(FILE.read_text())
 
 

@@ -1,4 +1,4 @@
-"""What the live table asks: a choice of table, law, contraction and particle, and what is computed for its pictures."""
+"""The state of the live table (table, law, contraction and particle), and the data of its pictures."""
 
 import shlex
 from collections.abc import Iterator, Mapping
@@ -27,7 +27,7 @@ STEEPEST = 0.999 * np.pi / 2
 OWN = "polar formula"
 TABLES = (*PAPER, *GALLERY, OWN)
 DEFAULTS = {"a": "1.5", "alpha": "0.08"}
-KEPT = ("table", "formula", "law", "shape", "lam", "component", "theta", "phi", "bounces")  # of an address
+KEPT = ("table", "formula", "law", "shape", "lam", "component", "theta", "phi", "bounces")  # in an address
 MOST = 500  # bounces drawn
 
 
@@ -35,7 +35,7 @@ MOST = 500  # bounces drawn
 class Choice:
     """A table by name or formula, its shape and contraction as text, where the particle starts and how far it flies.
 
-    The first particle ends on a triangle.
+    The default particle ends on the triangle, a cycle of period 3.
     """
 
     table: str = "egg"
@@ -54,7 +54,7 @@ class Choice:
         return next(iter(PAPER.get(self.table, ())), None)
 
     def scene(self) -> Scene:
-        """The scene; `ValueError` with one sentence when there is none."""
+        """The scene of the choice; `ValueError` with one sentence where its texts give none."""
         given = {name: self.shape if name == self.parameter else None for name in DEFAULTS}
         law = None if self.law == UNIFORM else self.law
         if self.table == OWN:
@@ -66,7 +66,7 @@ class Choice:
         return PinballMap(self.scene())
 
     def command(self) -> str:
-        """The command line for this particle.
+        """The `pinball orbit` command for this particle.
 
         >>> Choice("ellipse", shape="1.5", lam="0.9", theta=0.5, phi=-0.25, bounces=10).command()
         'pinball orbit ellipse --a 1.5 --lam 0.9 --start=0.5,-0.25 --bounces 10'
@@ -79,7 +79,7 @@ class Choice:
         return shlex.join(["pinball", "orbit", *table, *shape, *law, "--lam", self.lam, *part, *start])
 
     def python(self) -> str:
-        """The same in Python.
+        """Python code for this particle.
 
         >>> print(Choice("cardioid", lam="0.5", theta=0.5, phi=0.0, bounces=10).python())
         from numeric import PinballMap
@@ -100,7 +100,7 @@ class Choice:
         return "\n".join([*head, "", *body])
 
     def address(self) -> dict[str, str]:
-        """What an address says of it: whatever is not as at first.
+        """The fields that differ from the default, as text, for the address of the page.
 
         >>> Choice(lam="0.5", theta=0.25).address()
         {'lam': '0.5', 'theta': '0.25'}
@@ -110,7 +110,7 @@ class Choice:
 
     @classmethod
     def of_address(cls, said: Mapping[str, Any]) -> "Choice":
-        """The choice that an address holds; what it does not know or cannot read is left out.
+        """The choice that an address describes; unknown and unreadable fields are left out.
 
         >>> Choice.of_address({"lam": "0.5", "phi": "steep", "who": "?"}) == Choice(lam="0.5")
         True
@@ -134,15 +134,15 @@ SETTLING = 4000  # bounces after which an orbit is where it ends
 
 
 @dataclass(frozen=True)
-class Particle:
-    """A place on the boundary and an exit angle."""
+class BoundaryParticle:
+    """A particle on the boundary: component, parameter and exit angle."""
 
     component: int
     theta: float
     phi: float
 
 
-def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> Particle:
+def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> BoundaryParticle:
     """The particle on the boundary point nearest to `(x, y)` that flies towards a point.
 
     >>> particle = particle_at(PinballMap("circle", lam=1), 0.0, 2.0, (0.0, 0.0))
@@ -159,11 +159,11 @@ def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float
     tx, ty = (float(value[0]) for value in map.states.tangent(where, theta))
     vx, vy = towards[0] - px, towards[1] - py
     phi = float(elementary.arctan2(vx * tx + vy * ty, vy * tx - vx * ty))
-    return Particle(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
+    return BoundaryParticle(int(where[0]), float(theta[0]), float(np.clip(phi, -STEEPEST, STEEPEST)) + 0.0)
 
 
 def placed(map: PinballMap, choice: Choice) -> Choice:
-    """The choice with its particle on the boundary: in the middle of its component, where it is none of that one's.
+    """The choice with `theta` moved to the middle of its component where it is outside its range.
 
     >>> from symbolic.tables.gallery import GALLERY
     >>> placed(PinballMap(GALLERY["diamond"]()), Choice("diamond")).theta == 3 * np.pi / 4
@@ -175,7 +175,7 @@ def placed(map: PinballMap, choice: Choice) -> Choice:
     return replace(choice, theta=float(low + high) / 2)
 
 
-def tip(map: PinballMap, particle: Particle, length: float) -> tuple[float, float]:
+def tip(map: PinballMap, particle: BoundaryParticle, length: float) -> tuple[float, float]:
     """The point at `length` from the particle in its direction of flight."""
     where, theta = np.array([particle.component]), np.array([particle.theta])
     x, y = map.states.point(where, theta)
@@ -184,20 +184,20 @@ def tip(map: PinballMap, particle: Particle, length: float) -> tuple[float, floa
 
 
 def phase(map: PinballMap, orbit: Orbit) -> Curve:
-    """`s` from `-L/2` to `L/2` and `sin(phi)` of every bounce that was made."""
+    """`s` from `-L/2` to `L/2`, with `L` the perimeter, and `sin(phi)`, at every bounce until the particle stops."""
     made = orbit.code == 0
     return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
 
 
-def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> Particle:
-    """The particle at a point of phase space."""
+def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> BoundaryParticle:
+    """The particle at the point `(s, sin(phi))` of phase space."""
     component, theta = boundary(map, np.array([s]))
     phi = float(elementary.arcsin(np.clip(sin_phi, -0.999, 0.999)))
-    return Particle(int(component[0]), float(theta[0]), phi)
+    return BoundaryParticle(int(component[0]), float(theta[0]), phi)
 
 
 def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
-    """Phase space in portions, for ever: random particles, each portion a few bounces further."""
+    """Endless portions of phase space `(s, sin(phi))`: random particles, each portion a few bounces further."""
     starts = interior_starts(map, particles, seed)
     component, theta, phi = starts.component, starts.theta, starts.phi
     while True:
@@ -206,28 +206,29 @@ def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int =
         component, theta, phi = orbit.component[-1], orbit.theta[-1], orbit.phi[-1]
 
 
-def cycle_near(map: PinballMap, particle: Particle) -> Cycle | None:
-    """The attracting cycle that the particle's orbit ends on, or else the one that Newton's method finds from its
-    nearest return; None when there is neither.
+def cycle_near(map: PinballMap, particle: BoundaryParticle) -> Cycle | None:
+    """The attracting cycle on which the particle's orbit ends, or another one near its nearest return; None if none.
 
-    >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), Particle(0, 1.5, 0.01))
+    >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), BoundaryParticle(0, 1.5, 0.01))
     >>> axis.period
     2
     """
     at = np.array([particle.theta]), np.array([particle.phi]), np.array([particle.component])
     end = map.exponents(at[0], at[1], 1, SETTLING, at[2])
     if not end.code[0]:
-        found = _returning(map, Particle(int(end.component[0]), float(end.theta[0]), float(end.phi[0])), SETTLED)
+        found = _returning(
+            map, BoundaryParticle(int(end.component[0]), float(end.theta[0]), float(end.phi[0])), SETTLED
+        )
         if found is not None and abs(found.multipliers[0]) < 1:
             return found
     return _returning(map, particle, np.inf)
 
 
-SETTLED = 1e-4  # of a return, in lengths and radians: what an orbit that has settled comes within
+SETTLED = 1e-4  # in lengths and radians: an orbit that has settled returns to within this
 
 
-def _returning(map: PinballMap, particle: Particle, within: float) -> Cycle | None:
-    """The cycle near one of the returns of a particle, the nearest first."""
+def _returning(map: PinballMap, particle: BoundaryParticle, within: float) -> Cycle | None:
+    """The cycle that Newton's method finds from one of the particle's returns, nearest first; None without one."""
     orbit = map.orbit(particle.theta, particle.phi, LONGEST, particle.component)
     if orbit.code[-1]:
         return None
@@ -244,9 +245,9 @@ LAMS, EACH, SHOWN = 201, 6, 48  # contractions of the strip, particles of each, 
 
 
 def strip(choice: Choice, seed: int = 1) -> tuple[Curve, Array, Array]:
-    """Where particles are after a long time against the contraction, in `s`; and the contractions with their exponent.
+    """Points `(lam, s)` of orbits after a long time; the contractions; the largest exponent at each of them.
 
-    It is the largest of the particles'. `ValueError` where the law is none for some contraction.
+    `ValueError` where the formula is no law at some contraction.
     """
     map = replace(choice, lam="1").map()
     lams = np.linspace(0, 1, LAMS)
@@ -267,8 +268,8 @@ def strip(choice: Choice, seed: int = 1) -> tuple[Curve, Array, Array]:
     return Curve(lam, s), lams, np.where(np.isfinite(nu), nu, np.nan)
 
 
-def exponents_of(map: PinballMap, particle: Particle) -> str:
-    """Both exponents of a particle's orbit in words, with their standard errors."""
+def exponents_of(map: PinballMap, particle: BoundaryParticle) -> str:
+    """Both exponents of a particle's orbit in words, with their standard errors; empty if it stops."""
     at = np.array([particle.component]), np.array([particle.theta]), np.array([particle.phi])
     with np.errstate(invalid="ignore", divide="ignore"):  # at lam = 0
         found = measured(map, Starts(*at, np.zeros(1), np.zeros(1)), 4000, 1000)
@@ -285,7 +286,7 @@ CELLS = (120, 60)  # of a picture of basins
 
 
 def basins_of(map: PinballMap, seed: int = 1) -> tuple[NDArray[np.int64], float, list[str]]:
-    """The attractor that each cell of phase space reaches, half the perimeter, and the attractors in words."""
+    """The index of the attractor that each cell of phase space reaches, half the perimeter, the attractors in words."""
     attractors = find(map, 200, seed, images=True)
     half = map.arclength.perimeter / 2
     s, sine = ((np.arange(n) + 0.5) / n * 2 - 1 for n in CELLS)

@@ -1,4 +1,4 @@
-"""`pinball`: one command for each question, and what every command says.
+"""`pinball`: the command line, with the output and the errors that all commands share.
 
 A command is imported when it is called, so `pinball --help` loads no mathematics. People read text and a bar,
 programs read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
@@ -6,12 +6,15 @@ programs read JSON. Whatever goes wrong is one sentence on standard error; `PINB
 
 import gc
 import json
+import logging
 import os
+import shutil
 import sys
 import tempfile
 import traceback
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, wraps
 from importlib import import_module
@@ -22,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from numeric.lowering.files import json_text, write_whole
 from symbolic.tables.definition import like
 from verification.app.lines import console, on_terminal
 from verification.arithmetic.iteration import heard
@@ -31,15 +35,22 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 LARGEST = 1 << 26  # bytes of a sweep's results that are written as JSON
-RARELY = 50_000, 20, 20  # objects between searches for unused cycles: SymPy makes many, and hardly any is unused
+RARELY = 50_000, 20, 20  # objects between garbage collections: SymPy makes many, and hardly any is unused
+NARROWEST, WIDEST = 20, 10_000  # letters of a line
+DIGITS = 30  # of a whole number that is typed
 PATIENCE = 2.0  # seconds before a progress bar appears
+
+
+def columns() -> int:
+    """The width of the terminal, or COLUMNS where it is set, within bounds."""
+    return min(max(shutil.get_terminal_size().columns, NARROWEST), WIDEST)
 
 
 @dataclass(frozen=True)
 class Output:
-    """Where a command writes: `console` for people, the file that `--json` names, and the picture of `--plot`.
+    """The outputs of a command: `console` for people, the file of `--json`, and the picture of `--plot`.
 
-    `kind` says which module and function of `verification.plots` draws the results.
+    `kind` is the module and function of `verification.plots` that draws the results.
     """
 
     path: str | None = None
@@ -48,14 +59,20 @@ class Output:
 
     @cached_property
     def console(self) -> "Console":
-        """Standard output, or standard error when the JSON document has standard output to itself."""
+        """The console for people: standard output, or standard error when `--json -` writes to standard output."""
         from rich.console import Console
 
-        people = Console(stderr=self.path == "-", highlight=False, markup=False, soft_wrap=True)
-        return console(people.stderr) if people.is_terminal else people
+        on_error, width = self.path == "-", columns()
+        people = Console(stderr=on_error, highlight=False, markup=False, soft_wrap=True, width=width)
+        return console(on_error, width) if people.is_terminal else people
+
+    @property
+    def wanted(self) -> bool:
+        """Is a document or a picture asked for?"""
+        return self.path is not None or self.plot is not None
 
     def write(self, document: Mapping[str, Any], *results: Any) -> None:
-        """Writes the JSON document where `--json` said, and where `--plot` said the picture of the same results."""
+        """Writes the JSON document to the file of --json, and the picture of `results` to that of --plot."""
         self._write(document)
         if self.plot is None or not results:
             return
@@ -69,32 +86,31 @@ class Output:
     def _write(self, document: Mapping[str, Any]) -> None:
         if self.path is None:
             return
-        text = json.dumps(document, indent=2, allow_nan=False) + "\n"
+        text = json_text(document, indent=2) + "\n"
         if self.path == "-":
             sys.stdout.write(text)
             return
         try:
             write_whole(Path(self.path), text)
         except OSError as error:
-            with tempfile.NamedTemporaryFile("w", suffix=".json", delete=False) as rescue:
-                rescue.write(text)
-            reason = error.strerror or error
-            raise ValueError(
-                f"--json {self.path} cannot be written ({reason}); the result is in {rescue.name}"
-            ) from None
+            said = f"--json {self.path} cannot be written ({error.strerror or error})"
+            try:
+                rescue = Path(tempfile.mkdtemp(prefix="pinball-")) / "result.json"
+                write_whole(rescue, text)
+            except OSError:
+                raise ValueError(said) from None
+            raise ValueError(f"{said}; the result is in {rescue}") from None
 
     @contextmanager
     def progress(self, about: str, total: float) -> Iterator[Callable[..., None]]:
-        """A verb to call with a word on each step done, and its size where that is not 1.
+        """Context with a function `step(word, size=1)` to call after each step; a terminal shows a bar after 2 seconds.
 
-        A bar shows on a terminal after two seconds.
-
-        What a long proof tells of itself within a step (`verification.arithmetic.iteration`) moves the bar as well.
+        Progress that a long proof reports within a step (`verification.arithmetic.iteration`) moves the bar as well.
         """
         from rich.console import Console
         from rich.progress import Progress
 
-        console = Console(stderr=True)
+        console = Console(stderr=True, width=columns())
         if not console.is_terminal:
             yield lambda step, size=1: None
             return
@@ -121,31 +137,21 @@ class Output:
             bar.stop()
 
 
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Writes a file at once: a reader finds the old content or the new, and never half of either."""
-    content = content.encode() if isinstance(content, str) else content
-    if path.exists() and not path.is_file():  # a pipe or a device
-        path.write_bytes(content)
-        return
-    path = path.resolve()
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_bytes(content)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
 def _writable(context: click.Context, option: click.Parameter, value: str | None) -> Output:
-    """Refuses an unwritable file before any work is done for it."""
+    """The output for --json FILE; a file that cannot be written is refused before any work."""
     if value is not None and value != "-":
         _refuse(value, "a file, or - for standard output")
     return Output(value)
 
 
 def _refuse(value: str, accepted: str) -> Path:
-    """The file as a path, when it may be written."""
+    """The path of a file that may be written; any other is refused."""
     path = Path(value)
+    try:
+        path.exists()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise click.BadParameter(f"{value!r} cannot be written ({reason}); accepted: {accepted}") from None
     if path.is_dir():
         raise click.BadParameter(f"{value!r} is a directory; accepted: {accepted}")
     if not path.parent.is_dir():
@@ -156,7 +162,7 @@ def _refuse(value: str, accepted: str) -> Path:
 
 
 def _drawable(context: click.Context, option: click.Parameter, value: str | None) -> Path | None:
-    """Refuses, before any work is done for it, a picture of an unknown kind, or one that cannot be drawn or written."""
+    """The path of a picture; one of unknown format, or that cannot be drawn or written, is refused before any work."""
     if value is None:
         return None
     from verification.plots.sheet import FORMATS
@@ -169,6 +175,20 @@ def _drawable(context: click.Context, option: click.Parameter, value: str | None
     return _refuse(value, f"a file that ends in {known}")
 
 
+class Whole(click.IntRange):
+    """A whole number in a range; text with more than `DIGITS` digits is refused unread, as reading it takes long.
+
+    >>> Whole(1, 9).convert(" 7 ", None, None)
+    7
+    """
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number; click's error, with what is accepted, for anything else."""
+        if isinstance(value, str) and len(value) > DIGITS:
+            self.fail(f"{value[:DIGITS]!r}... has {len(value)} digits", param, ctx)
+        return super().convert(value, param, ctx)
+
+
 json_option = click.option(
     "--json",
     "output",
@@ -179,7 +199,7 @@ json_option = click.option(
 
 
 def plot_option(kind: str, about: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Gives a command `--plot FILE`: what it hands to `Output.write` beside the document is drawn as `kind` says."""
+    """Decorator that gives a command `--plot FILE`, where `Output.write` draws its results by the function `kind`."""
 
     def given(command: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(command)
@@ -192,28 +212,41 @@ def plot_option(kind: str, about: str) -> Callable[[Callable[..., Any]], Callabl
     return given
 
 
-COMMANDS = {
-    "verify": "Is each claim of the paper true?",
-    "claims": "A folder for another paper: its sentences, and who judges them.",
-    "report": "What becomes of this table? One page for all questions.",
-    "locate": "Where does it happen, to N certified digits?",
-    "check": "Does a certificate still hold, without the search?",
-    "orbit": "Where does this particle go?",
-    "cycles": "Which cycles are there, up to a period?",
-    "follow": "What becomes of this cycle as lambda changes?",
-    "lyapunov": "The two exponents, with error bars.",
-    "attractor": "Where do particles end, and in how many ways?",
-    "slap": "The slap map: what remains at lambda = 0.",
-    "basins": "Which attractor does each start reach?",
-    "bifurcation": "The attractors against the contraction.",
-    "morse": "Which attractors and repellers are proved, and in what order?",
-    "sweep": "Grids of tasks, on all cores or a Dask cluster.",
-    "figure": "One of the paper's figures, or the data behind it.",
-    "explore": "A live table on a page of this machine.",
-    "bench": "Error against run time, for every arithmetic and every kernel.",
-    "work": "Error against run time for a whole question, as a diagram.",
-    "cache": "Where compiled kernels are kept, and how to remove them.",
+GROUPS = {
+    "Orbits": {
+        "orbit": "Where does this particle go?",
+        "cycles": "Which cycles are there, up to a period?",
+        "lyapunov": "The two exponents, with error bars.",
+        "slap": "The slap map: what remains at lambda = 0.",
+        "explore": "A live table on a page of this machine.",
+    },
+    "Attractors": {
+        "attractor": "Where do particles end, and in how many ways?",
+        "basins": "Which attractor does each start reach?",
+        "report": "What becomes of this table? One page for all questions.",
+    },
+    "Bifurcations": {
+        "bifurcation": "The attractors against the contraction.",
+        "follow": "What becomes of this cycle as lambda changes?",
+        "locate": "Where does it happen, to N certified digits?",
+        "sweep": "Grids of tasks, on all cores or a Dask cluster.",
+    },
+    "Proofs": {
+        "morse": "Which attractors and repellers are proved, and in what order?",
+        "check": "Does a certificate still hold, without the search?",
+    },
+    "The paper": {
+        "verify": "Is each claim of the paper true?",
+        "claims": "A folder for another paper: its sentences, and who judges them.",
+        "figure": "One of the paper's figures, or the data behind it.",
+    },
+    "Tools": {
+        "work": "Error against run time for a whole question, as a diagram.",
+        "bench": "Error against run time, for every arithmetic and every kernel.",
+        "cache": "Where compiled kernels are kept, and how to remove them.",
+    },
 }
+COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
 HOMES = {  # commands that share a module
     "attractor": ("lyapunov", "attractor_command"),
     "work": ("bench", "work_command"),
@@ -231,12 +264,12 @@ DONE, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
 EXTRAS = {"matplotlib": "plot", "panel": "explore", "bokeh": "explore", "svgelements": "outline", "ezdxf": "outline"}
 EXTRAS |= {"pyarrow": "table", "hypothesis": "hypothesis"}
 EXTRAS |= dict.fromkeys(("xarray", "zarr", "dask", "distributed", "filelock"), "sweep")
-COMPLETE = "_PINBALL_COMPLETE"  # the variable of the environment by which a shell asks
-LONGEST = 600  # characters of a sentence; a reader sees the end of it
+COMPLETE = "_PINBALL_COMPLETE"  # the variable of the environment by which a shell asks for completions
+LONGEST = 600  # characters of an error; of a longer one the middle is left out
 
 
 class Questions(click.Group):
-    """A group that knows the names and one-line helps of its commands without importing them."""
+    """A command group with its commands' names and one-line helps, which imports a command only when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -250,8 +283,10 @@ class Questions(click.Group):
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+        wide = max(map(len, COMMANDS))  # the same column in all groups
+        for title, commands in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(name.ljust(wide), about) for name, about in commands.items()])
 
 
 @click.group(
@@ -269,29 +304,64 @@ def pinball(context: click.Context) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The exit status of `pinball`: 0 done, 1 something is open or failed, 2 bad input."""
+    """Runs `pinball` and returns its exit status: 0 done, 1 something is open or failed, 2 bad input."""
     gc.set_threshold(*RARELY)
+    if sys.stdout is None or sys.stderr is None:
+        return _no_streams()
     try:
-        status = run(sys.argv[1:] if arguments is None else arguments)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of NumPy, on numbers that are then not finite
+            warnings.showwarning = _print_warning
+            status = run(sys.argv[1:] if arguments is None else arguments)
         sys.stdout.flush()
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the last flush complains
+        _discard_output()
         return BROKEN_PIPE
     except (KeyboardInterrupt, click.Abort) as stop:
-        return _told(str(stop) or "interrupted", INTERRUPTED)
+        logging.getLogger("asyncio").setLevel(logging.CRITICAL)  # no messages about unfinished reads and writes
+        return _print_error(str(stop) or "interrupted", INTERRUPTED)
     except click.ClickException as error:
-        return _told(sentence(error), BAD_INPUT)
+        return _print_error(sentence(error), BAD_INPUT)
     except ValueError as error:
-        return _told(str(error), BAD_INPUT)
+        return _print_error(str(error), BAD_INPUT)
     except ModuleNotFoundError as error:
-        return _told(missing(error), BAD_INPUT)
+        return _print_error(missing(error), BAD_INPUT)
+    except OSError as error:
+        if error.filename is None:
+            _discard_output()
+        where = "standard output cannot be written" if error.filename is None else f"{error.filename} cannot be used"
+        return _print_error(f"{where}: {error.strerror or error}", FAILED)
+    except RecursionError:
+        return _print_error(
+            "a formula or a file is nested too deeply; accepted: at most some hundred levels", BAD_INPUT
+        )
+    except MemoryError:
+        return _print_error("there is too little memory for this; accepted: fewer points, digits or cells", FAILED)
     except Exception as error:
-        return _told(f"an unexpected {type(error).__name__}: {error}; PINBALL_DEBUG=1 shows where", FAILED)
+        return _print_error(f"an unexpected {type(error).__name__}: {error}; PINBALL_DEBUG=1 shows where", FAILED)
     return status
 
 
+def _no_streams() -> int:
+    """Prints that standard output is closed, unless standard error is too; the status of bad input."""
+    if sys.stderr is not None:
+        sys.stderr.write("pinball: standard output is closed; accepted: an open one, or > FILE\n")
+    return BAD_INPUT
+
+
+def _discard_output() -> None:
+    """Discards what is left to be written, since the last flush would fail."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Prints a warning as one sentence."""
+    click.echo(on_terminal(f"pinball: {message}", sys.stderr, columns()), err=True)
+
+
 def run(arguments: Sequence[str]) -> int:
-    """Runs one command line; errors are left to `main`."""
+    """Runs one command line and returns its exit status; errors are raised."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
@@ -307,7 +377,7 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def missing(error: ModuleNotFoundError) -> str:
-    """Which package is not there, and the command that brings it.
+    """A sentence that names the missing package and the command that installs it.
 
     >>> missing(ModuleNotFoundError(name="zarr.storage"))
     "zarr is missing; install it with: pip install 'pinball-billiards[sweep]'"
@@ -318,7 +388,7 @@ def missing(error: ModuleNotFoundError) -> str:
 
 
 def sentence(error: click.ClickException) -> str:
-    """What is wrong and what would be accepted; click leaves out the second half.
+    """A sentence that says what is wrong and what would be accepted, which click leaves out.
 
     >>> digits = click.Option(["--digits"], type=click.IntRange(1, 9))
     >>> sentence(click.BadParameter("'x' is not a valid integer range.", param=digits))
@@ -340,54 +410,46 @@ def sentence(error: click.ClickException) -> str:
     return message
 
 
-def _told(message: str, status: int) -> int:
-    """Prints `message` as one sentence, and gives `status` back."""
+def _print_error(message: str, status: int) -> int:
+    """Prints `message` as one sentence and returns `status`."""
     message = " ".join(message.split())
     message = message if len(message) <= LONGEST else message[: LONGEST - 200] + " ... " + message[-195:]
     if os.environ.get("PINBALL_DEBUG") == "1":
         traceback.print_exc()
-    click.echo(on_terminal(f"pinball: {message}", sys.stderr), err=True)
+    click.echo(on_terminal(f"pinball: {message}", sys.stderr, columns()), err=True)
     return status
 
 
-def finite(values: Any) -> Any:
-    """Nested lists in which null stands for what is no finite number.
-
-    >>> finite([1.0, [float("nan"), float("-inf")]])
-    [1.0, [None, None]]
-    """
-    if isinstance(values, list):
-        return [finite(value) for value in values]
-    return values if abs(values) < float("inf") else None
-
-
 def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
-    """The JSON document: coordinates, fields with units, and their values unless they are in a store."""
+    """The results of a sweep as JSON: coordinates, fields with units, and their values unless they are in a store."""
     fields: dict[str, Any] = {}
     for name, values in found.data_vars.items():
         units, about = values.attrs["units"], values.attrs["long_name"]
         fields[str(name)] = {"dims": list(values.dims), "units": units, "about": about}
         if store is None and found.nbytes <= LARGEST:
-            fields[str(name)]["values"] = finite(values.values.tolist())
+            fields[str(name)]["values"] = values.values.tolist()
     coords: Mapping[str, Any] = {str(name): values.values.tolist() for name, values in found.coords.items()}
     labels = {str(key): _read(value) for key, value in found.attrs.items()}
     return {**labels, "coords": coords, "fields": fields} | ({} if store is None else {"store": str(store)})
 
 
 def _read(value: Any) -> Any:
-    """What an attribute says; those that hold JSON are read."""
+    """The value of an attribute; JSON text is read."""
     return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
 
 
 async def refusal(words: Sequence[str], seconds: float) -> str | None:
-    """Runs a command in a process of its own, and gives the sentence with which it fails; None when all is well.
+    """Runs a command in another process; returns the error that it prints, or None if it succeeds.
 
-    It is ended after so many seconds. What it reads, proves and compiles is kept on disk for whoever asks next.
+    The process is ended after `seconds`. What it reads, proves and compiles stays in the cache on disk.
     """
     import asyncio
 
+    from numeric.sweeps.workers import own_command
+
+    command, environment = own_command("verification", *words)
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "verification", *words, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE
+        *command, env=environment, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE
     )
     try:
         _, said = await asyncio.wait_for(process.communicate(), seconds)

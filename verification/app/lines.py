@@ -1,19 +1,20 @@
 """Tables and sentences for people, which fit the terminal that they are printed on."""
 
 import re
-import shutil
 import textwrap
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+FAR = 1e9  # from here on a number is shown with a power of ten
 PLACES = range(6, 1, -1)  # decimals of float64, as many as fit
 
 
-def console(stderr: bool = False) -> "Console":
-    """Where people read: a terminal, whose lines break at words, or a file, with one line for each sentence."""
+def console(stderr: bool = False, width: int | None = None) -> "Console":
+    """A console for people: on a terminal lines break at words, in a file each sentence is one line."""
     from rich.console import Console
 
     class Lines(Console):
@@ -22,16 +23,16 @@ def console(stderr: bool = False) -> "Console":
                 objects = tuple(wrapped(each, self.width) if isinstance(each, str) else each for each in objects)
             super().print(*objects, **options)
 
-    return Lines(stderr=stderr, highlight=False, markup=False, soft_wrap=True)
+    return Lines(stderr=stderr, highlight=False, markup=False, soft_wrap=True, width=width)
 
 
-def on_terminal(text: str, stream: TextIO) -> str:
-    """The text, in lines that fit where the stream is a terminal."""
-    return wrapped(text, shutil.get_terminal_size().columns) if stream.isatty() else text
+def on_terminal(text: str, stream: TextIO, width: int) -> str:
+    """The text, broken into lines of `width` letters if the stream is a terminal."""
+    return wrapped(text, width) if stream.isatty() else text
 
 
 def wrapped(text: str, width: int) -> str:
-    """The text with its long lines broken at words; what follows stands below a line's last column, or is indented.
+    """The text with long lines broken at words; continuation lines start at the last column, or are indented.
 
     >>> print(wrapped("egg   a table with three points that is convex", 30))
     egg   a table with three
@@ -40,15 +41,15 @@ def wrapped(text: str, width: int) -> str:
       proved: one cycle
         of period 2
     """
-    return "\n".join(part for line in text.split("\n") for part in _broken(line, width))
+    return "\n".join(part for line in text.split("\n") for part in _wrap_line(line, width))
 
 
-def _broken(line: str, width: int) -> list[str]:
+def _wrap_line(line: str, width: int) -> list[str]:
     if len(line) <= width:
         return [line]
-    columns = [found.end() for found in re.finditer(r"(?<=\S)  +(?=\S)", line) if found.end() <= width // 2]
-    begin = columns[-1] if columns else len(line) - len(line.lstrip())
-    below = " " * (begin if columns else begin + 2)
+    places = [found.end() for found in re.finditer(r"(?<=\S)  +(?=\S)", line) if found.end() <= width // 2]
+    begin = places[-1] if places else len(line) - len(line.lstrip())
+    below = " " * (begin if places else begin + 2)
     return textwrap.wrap(
         line[begin:],
         width,
@@ -60,7 +61,7 @@ def _broken(line: str, width: int) -> list[str]:
 
 
 def table(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows under their names, each column as wide as its longest text.
+    """Lines of a table: the names above the rows, each column as wide as its longest text.
 
     >>> table(("cycle", "stable"), (("2", "yes"), ("12", "no")))
     ['cycle  stable', '2      yes', '12     no']
@@ -75,10 +76,10 @@ def widest(lines: Sequence[str]) -> int:
 
 
 def of_bounces(entries: Sequence[Mapping[str, Any]], keys: Sequence[str], width: int) -> list[str]:
-    """A line for each bounce, with all digits where `width` letters hold them.
+    """Lines of text for bounces, one each with all digits where these fit `width` letters.
 
-    Elsewhere numbers of float64 are rounded, and a component or a status that all bounces share is said once.
-    Numbers of more digits, which were asked for, have a line each.
+    Elsewhere float64 numbers are rounded, and a component or status that all bounces share is printed once; numbers of
+    more digits have a line each.
 
     >>> rows = [{"component": "egg", "theta": x, "status": "regular"} for x in (0.1, -2.25)]
     >>> of_bounces(rows, ("component", "theta", "status"), 80)[1:]
@@ -100,15 +101,16 @@ def of_bounces(entries: Sequence[Mapping[str, Any]], keys: Sequence[str], width:
     same = [key for key in ("component", "status") if key in keys and len({entry[key] for entry in entries}) == 1]
     said = "".join(f"{key} {entries[0][key]}, " for key in same) + ("throughout; " if same else "")
     left = [key for key in keys if key not in same]
+    sizes = {key: max((abs(e[key]) for e in entries if isinstance(e[key], float)), default=0.0) for key in left}
     for places in PLACES:
-        short = _numbered([[_rounded(entry[key], places) for key in left] for entry in entries], left)
-        if widest(short) <= width:
+        rows = _numbered([[short(entry[key], places, sizes[key]) for key in left] for entry in entries], left)
+        if widest(rows) <= width:
             break
-    return [f"{said}rounded, --json FILE has all digits", *short]
+    return [f"{said}rounded, --json FILE has all digits", *rows]
 
 
 def _one(index: int, entry: Mapping[str, Any], keys: Sequence[str]) -> list[str]:
-    """A bounce whose numbers have a line each."""
+    """The lines of a bounce whose numbers have a line each."""
     words = [str(entry[key]) for key in ("component", "status") if key in keys]
     numbers = [key for key in keys if key not in ("component", "status") and entry[key] is not None]
     wide = max(len(key) for key in numbers)
@@ -125,5 +127,16 @@ def _exact(value: Any) -> str:
     return f"{value:.16g}" if isinstance(value, float) else str(value)
 
 
-def _rounded(value: Any, places: int) -> str:
-    return f"{value:.{places}f}" if isinstance(value, float) else _exact(value)
+def short(value: Any, places: int = 6, size: float | None = None) -> str:
+    """A number with `places` decimals, or with a power of ten where it is too small or large for them; text unchanged.
+
+    `size` is the largest number of its column, where that is not the number itself.
+
+    >>> short(0.25), short(-1.5e-9), short(2.5e12), short(0.0), short(None)
+    ('0.250000', '-1.50e-09', '2.50e+12', '0.000000', '-')
+    """
+    if not isinstance(value, float):
+        return _exact(value)
+    size = abs(value) if size is None else size
+    small = size != 0 and not 10.0 ** (1 - places) <= size < FAR
+    return f"{value:.{max(places - 4, 0)}e}" if small and isfinite(value) else f"{value:.{places}f}"

@@ -21,8 +21,8 @@ from verification.app.choice import (
     OWN,
     SETTLING,
     TABLES,
+    BoundaryParticle,
     Choice,
-    Particle,
     basins_of,
     cycle_near,
     exponents_of,
@@ -53,7 +53,7 @@ body { margin: 0; }
 """
 HANDLE = ".noUi-handle { background-color: #0072b5; }"  # of a slider: the blue of the button, seen in the dark as well
 READY = """
-function named(root) {  // what the widgets leave without a name, for those who listen to the page
+function named(root) {  // names for screen readers, where the widgets have none
   for (const each of root.querySelectorAll("*")) {
     if (each.shadowRoot) named(each.shadowRoot);
     if (each.classList.contains("noUi-handle"))
@@ -66,12 +66,12 @@ document.body.firstElementChild.setAttribute("role", "main");
 
 
 class LiveTable:
-    """One visitor's table: what was picked, and the page that shows it."""
+    """One visitor's live table: the current choice, and the page that shows it."""
 
     def __init__(self, choice: Choice | None = None) -> None:
         self.choice = Choice()
         self.map: PinballMap = self.choice.map()
-        self.drawn = ""  # the scene of the strip
+        self.drawn = ""  # the scene of the bifurcation diagram
         self.portions: Iterator[Any] = iter(())
         self.left = 0
         self.tried = ("", "")  # the formulas that another process has read
@@ -143,7 +143,7 @@ class LiveTable:
             each.on_event(Tap, self._picked)
 
     def view(self) -> Any:
-        """The page; on a phone the table comes before the controls, and the texts to copy come last."""
+        """The page; on a narrow window the table comes before the controls, and the texts to copy come last."""
         controls = (self.table, self.formula, self.shape, self.law, self.lam, self.bounces)
         texts = (self.command, self.copies[0], self.python, self.copies[1])
         narrow = {"flex": "1 1 300px", "max-width": "360px"}
@@ -165,7 +165,7 @@ class LiveTable:
     # ---- what changes
 
     def rebuild(self) -> None:
-        """Another table, shape or contraction; what is no scene is said in one sentence, and the old one stays."""
+        """Takes another table, shape or contraction; for bad input shows a sentence and keeps the old scene."""
         if self.table.value != self.choice.table:
             self._other_table()
             return
@@ -207,7 +207,7 @@ class LiveTable:
         self.portions, self.left = filling(self.map), PORTIONS
 
     def _strip(self) -> None:
-        """The bifurcation diagram, anew for another table or law; the line that says where the contraction is."""
+        """Draws the bifurcation diagram anew for another table or law, and moves the line at the contraction."""
         for mark in self.marks:
             mark.location = self.lam.value
         family = str(self.choice.scene().at(lam=0))
@@ -222,7 +222,7 @@ class LiveTable:
         self.diagram.data, self.growth.data = dict(zip("xy", points, strict=True)), {"x": lams, "y": nu}
 
     def _restored(self, choice: Choice) -> None:
-        """The page as an address says; formulas in it are read as if they had been typed."""
+        """Sets the page to a choice, such as an address gives; formulas in it are read as if they had been typed."""
         self.choice = replace(choice, law=self.choice.law)
         self.table.value, self.formula.visible = choice.table, choice.table == OWN
         self.formula.value, self.shape.value, self.law.value = choice.formula, choice.shape, choice.law
@@ -243,7 +243,7 @@ class LiveTable:
             self.rebuild()
 
     def redraw(self) -> None:
-        """The orbit, the particle and the texts; the cycle that was found is forgotten."""
+        """Draws the orbit and the particle, writes the texts, and removes the cycle that was found."""
         self.choice = replace(self.choice, bounces=self.bounces.value)
         orbit = self.map.orbit(self.choice.theta, self.choice.phi, self.choice.bounces, self.choice.component)
         made = orbit.code == 0
@@ -265,13 +265,13 @@ class LiveTable:
         self.python.value = self.choice.python()
 
     def fill(self) -> None:
-        """One more portion of phase space."""
+        """Draws one more portion of phase space."""
         if self.left > 0:
             self.left -= 1
             self.cloud.stream(dict(zip("xy", next(self.portions), strict=True)))
 
     def find_cycle(self) -> None:
-        """The cycle near the particle, with its multipliers."""
+        """Draws the cycle near the particle, and writes its multipliers."""
         cycle = cycle_near(self.map, self._particle())
         if cycle is None:
             self.said.object = "No cycle was found from here; start nearer to one, or let the orbit settle first."
@@ -288,7 +288,7 @@ class LiveTable:
         self.said.object = f"{where} a cycle of period {cycle.period}, {kind}: multipliers {numbers}."
 
     def show_basins(self) -> None:
-        """The attractor that each cell of phase space reaches, a colour for each."""
+        """Draws the attractor that each cell of phase space reaches, a colour for each."""
         label, half, words = basins_of(self.map)
         colours = [int(colour[1:], 16) for colour in PALETTE]
         image = np.zeros(label.shape, dtype=np.uint32)
@@ -302,10 +302,10 @@ class LiveTable:
     # ---- what the visitor does
 
     def _picked(self, event: Any) -> None:
-        """A click on the diagram sets the contraction."""
+        """Sets the contraction to the place of a click on the diagram."""
         self.lam.value = round(float(np.clip(event.x, 0, 1)), 3)
 
-    def start(self, particle: Particle) -> None:
+    def start(self, particle: BoundaryParticle) -> None:
         """Starts the orbit anew from `particle`."""
         before = self.choice
         self.choice = replace(before, component=particle.component, theta=particle.theta, phi=particle.phi)
@@ -316,8 +316,8 @@ class LiveTable:
             self.redraw()
             self.said.object = str(error)
 
-    def _particle(self) -> Particle:
-        return Particle(self.choice.component, self.choice.theta, self.choice.phi)
+    def _particle(self) -> BoundaryParticle:
+        return BoundaryParticle(self.choice.component, self.choice.theta, self.choice.phi)
 
     def _dragged(self, _: str, old: Any, new: Any) -> None:
         x, y = list(new["x"]), list(new["y"])
@@ -333,7 +333,7 @@ class LiveTable:
 
 
 def in_turn(change: Callable[[], None]) -> None:
-    """Makes a change when the page's lock is ours: Panel calls a widget's watchers without it, amid other writes."""
+    """Makes a change when this page's lock is held; Panel calls a widget's watchers without it."""
     pn.state.execute(change, schedule=True)
 
 
@@ -343,13 +343,13 @@ def _pane(picture: Any) -> Any:
 
 
 def _column(parts: Sequence[Any], styles: dict[str, str], phone: int = 0) -> Any:
-    """Parts below each other; on a phone columns come in the order of that number."""
+    """Parts below each other; on a narrow window columns are ordered by `phone`."""
     order = f"@media (max-width: {PHONE}px) {{ :host {{ order: {phone}; }} }}"
     return pn.Column(*parts, sizing_mode="stretch_width", styles=styles, stylesheets=[order])
 
 
 def page() -> Any:
-    """A visitor's own page, as its address says."""
+    """A new page for a visitor, showing the choice in its address."""
     location = pn.state.location
     said = dict(parse_qsl(location.search.lstrip("?"))) if location is not None and location.search else {}
     if pn.state.curdoc is not None:
@@ -357,15 +357,15 @@ def page() -> Any:
     return LiveTable(Choice.of_address(said)).view()
 
 
-FROM_OUTSIDE = ("BOKEH_ALLOW_WS_ORIGIN", "BOKEH_ADDRESS")  # would let pages of other addresses in
+FROM_OUTSIDE = ("BOKEH_ALLOW_WS_ORIGIN", "BOKEH_ADDRESS")  # these would let pages of other addresses in
 FORGOTTEN = 15_000  # milliseconds after which the table of a visitor who left is given up
 
 
 def serve(port: int, show: bool, **more: Any) -> Any:
     """Serves the page on this machine only, until it is interrupted.
 
-    A page of another address that a browser shows cannot talk to it: its origin is not among those allowed, and what
-    the environment says of origins and addresses is not heard.
+    Pages of other addresses cannot talk to it: only its own origin is allowed, and the variables of the environment
+    that would allow others are removed.
     """
     pn.config.raw_css = [STYLE]
     for name in FROM_OUTSIDE:

@@ -1,10 +1,12 @@
-"""A scene as the options of a command line, and what the commands that sweep over scenes have in common.
+"""Scenes from the options of a command line, and the options that commands share.
 
 Table, shape and contraction are exact all the way: a decimal is the decimal it shows. None of the paper's tables
 imports SymPy. From the options come the scene, a starting point as exact numbers, and the axes of a sweep.
 """
 
 import json
+import re
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from fractions import Fraction
@@ -19,6 +21,8 @@ from symbolic import tables
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text, range_ends, range_text
 from symbolic.tables.law import Law, parameters_of_law
 from symbolic.tables.scene import Scene
+from verification.app.cli import Whole, columns
+from verification.app.lines import on_terminal
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,6 +41,7 @@ def scene(
     given: tuple[str, ...] = (),
     drawn: "Table | None" = None,
     formula: str | None = None,
+    corners: str | None = None,
     /,
     **shape: str | None,
 ) -> Scene:
@@ -47,19 +52,30 @@ def scene(
     >>> scene("circle", None, None, None, "0.5", None, ("b=0.1",), None, "-lam*eta - b*sin(2*eta)")
     Scene('circle', b='1/10', law='-b*sin(2*eta) - eta*lam', lam='1/2')
     """
-    options = ("polar", polar), ("parametric", parametric), (table, table), ("scene", file), ("data", drawn)
+    options = (
+        ("polar", polar),
+        ("parametric", parametric),
+        (table, table),
+        ("scene", file),
+        ("data", drawn),
+        ("polygon", corners),
+    )
     named = [name for name, said in options if said]
     if len(named) != 1 or named[0] is None:
         many = " and ".join(str(name) for name in named) or "none"
         raise ValueError(
             f"one table is needed, {many} given; accepted: {', '.join(PAPER)}, --polar or --parametric, "
-            f"{', '.join(GALLERY)}, --scene, --data"
+            f"{', '.join(GALLERY)}, --scene, --data, --polygon"
         )
     name = named[0]
     values = dict(map(_shape_value, given))
     if file is not None:
         return _from_file(file, lam, values, K, shape, formula)
     law = UNIFORM if formula is None else _law(formula).formula
+    if corners is not None:
+        from verification.app.points import polygon_of
+
+        name, drawn = "data", polygon_of(corners)
     own: dict[str, Any] = {n: values[n] for n in parameters_of_law(law) if n in values and name in BUILT}
     values = {n: text for n, text in values.items() if n not in own or n in _lengths(name)}  # one number for both
     if drawn is not None:
@@ -90,25 +106,35 @@ def scene(
 
 
 def _known(table: str | None, *others: Any, **shape: str | None) -> Scene:
-    """The scene of the options. What needs SymPy to be read and proved is kept between runs, and read without it."""
-    *said, file, given, drawn, formula = others
-    if drawn is not None or (table in PAPER and formula is None):
+    """The scene of the options; one that needs SymPy is kept on disk between runs, and then read without it."""
+    *said, file, given, data, formula, corners = others
+    if data is None and corners is None and table in PAPER and formula is None:
         return scene(table, *others, **shape)
     content = None
-    if file is not None:
-        with suppress(OSError, UnicodeDecodeError):
-            content = Path(file).read_text(encoding="utf-8")
+    if source := file if file is not None else data and data.path:
+        with suppress(OSError):
+            content = Path(source).read_bytes().hex() if Path(source).is_file() else None
     from numeric.lowering import cache
 
     key = (
-        json.dumps([table, *said, file, content, given, formula, shape]),
+        json.dumps([table, *said, file, content, given, formula, shape, data, corners]),
         cache.sources("symbolic", "verification/app"),
     )
     kept = cache.read("scene", *key)
     if kept is not None:
-        return Scene.proved(kept.decode())
-    found = scene(table, *others, **shape)
-    cache.write("scene", *key, found.text.encode())
+        text, *notes = kept.decode().split("\n")
+        found = Scene.proved(text)
+    else:
+        outline, notes = None, []
+        if data is not None:
+            from verification.app.outline import read
+
+            outline, notes = read(data)
+        arguments = table, *said, file, given, outline, formula, corners
+        found = scene(*arguments, **shape)
+        cache.write("scene", *key, "\n".join([found.text, *notes]).encode())
+    for note in notes:
+        click.echo(on_terminal(f"{Path(data.path).name}: {note}", sys.stderr, columns()), err=True)
     return found
 
 
@@ -120,7 +146,7 @@ def _law(formula: str) -> Law:
 
 
 def _shape_value(text: str) -> tuple[str, str]:
-    """`NAME=VALUE`, or `NAME=VALUE:LOW..HIGH` with its range, as a pair."""
+    """Name and value of the text `NAME=VALUE`, or `NAME=VALUE:LOW..HIGH` with a range."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip().isidentifier():
         raise ValueError(f"--shape {text!r} sets nothing; give NAME=VALUE such as b=1/10")
@@ -128,7 +154,7 @@ def _shape_value(text: str) -> tuple[str, str]:
 
 
 def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
-    """What --shape sets, and what it varies: `[NAME=]LOW:HIGH` for a branch, `NAME=LOW:HIGH:N` for a sweep.
+    """The texts of --shape that set a parameter, and the one that varies one: `LOW:HIGH`, or `LOW:HIGH:N` in a sweep.
 
     >>> parted(("b=0.1:0..1/4", "c=0:1/8"))
     (('b=0.1:0..1/4',), 'c=0:1/8')
@@ -140,9 +166,9 @@ def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
 
 
 def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool) -> tuple[str, ...]:
-    """What --shape sets, with the lower end for the parameter that varies where nothing else gives it a number.
+    """The texts of --shape, with the lower end of `axis` for the parameter that it varies, if no number is given.
 
-    A length of a table `by_name` is a parameter because it varies: it is given the ends for its range.
+    A length of a table `by_name` becomes a parameter by this: it is given the ends as its range.
 
     >>> _starting(("straight=2",), "straight=1:3:9", set(), True)
     ('straight=2:1..3',)
@@ -162,7 +188,7 @@ def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool)
 def _from_file(
     file: str, lam: str | None, values: dict[str, str], K: int | None, shape: dict[str, Any], formula: str | None
 ) -> Scene:
-    """The scene of a file; a law, a contraction and shape parameters on the command line come before its own."""
+    """The scene of a file; a law, a contraction and shape parameters on the command line replace its own."""
     for key, text in {"K": K, **shape}.items():
         if text is not None:
             raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
@@ -176,12 +202,12 @@ def _from_file(
 
 
 def _lengths(name: str) -> tuple[str, ...]:
-    """The names of a built table's numbers, which for those of the gallery are lengths."""
+    """The names of a table's shape parameters, which for tables of the gallery are lengths."""
     return tuple(signature(tables.GALLERY[name]).parameters) if name in GALLERY else PAPER.get(name, ())
 
 
 def _of_gallery(name: str, values: dict[str, str]) -> "tuple[Table, dict[str, str]]":
-    """One of the gallery's tables, with the lengths that were given; those with a range stay free, and have text."""
+    """One of the gallery's tables with the lengths given, and the texts of those with a range, which stay free."""
     from sympy import Interval, Symbol
 
     from symbolic.tables.table import Shape
@@ -201,7 +227,7 @@ def _of_gallery(name: str, values: dict[str, str]) -> "tuple[Table, dict[str, st
 
 
 def _fitting(name: str, known: tuple[str, ...], shape: dict[str, str | None]) -> dict[str, str]:
-    """The shape parameters that were given, when they are the ones the table has."""
+    """The shape parameters that were given; `ValueError` unless they are those of the table."""
     given = {key: text for key, text in shape.items() if text is not None}
     for key in known:
         if key not in given:
@@ -227,14 +253,23 @@ TABLE = (
     click.argument("table", required=False, type=click.Choice(NAMED)),
     click.option("--a", metavar="NUMBER", help="Half the major axis of the ellipse, at least 1."),
     click.option("--alpha", metavar="NUMBER", help="Shape of the egg, from 0 to 1/(1 + K^2)."),
-    click.option("--K", "K", type=click.IntRange(2), metavar="INTEGER", help="Points of the egg; the paper's has 3."),
+    click.option("--K", "K", type=Whole(2), metavar="INTEGER", help="Points of the egg; the paper's has 3."),
     click.option("--polar", metavar="FORMULA", help="Your own table: the radius, a formula in theta."),
     click.option("--parametric", nargs=2, metavar="X Y", help="Your own table: a closed curve in theta on [-pi, pi)."),
     click.option("--scene", "file", metavar="FILE", help="A scene file: any table, its shape, law and contraction."),
-    click.option("--data", metavar="FILE", help="A measured table: points in CSV; or a drawn one: SVG or DXF."),
-    click.option("--smoothness", type=click.IntRange(0, 2), help="Of the spline through the points of --data; or 2."),
-    click.option("--degree", type=click.IntRange(1, 64), help="Of a Fourier sum near the points of --data, instead."),
+    click.option("--polygon", metavar="X,Y ...", help="Your own table: the corners of a polygon, exact numbers."),
+    click.option("--data", metavar="FILE", help="A table from points (CSV), GeoJSON, WKT, or a drawing (SVG, DXF)."),
+    click.option(
+        "--units", metavar="UNIT", help="Of lengths from a drawing: mm, cm, m, in, ... [default: the file's]."
+    ),
+    click.option("--layer", multiple=True, metavar="NAME", help="Read this layer of a drawing only."),
+    click.option("--curve", multiple=True, type=Whole(1), metavar="N", help="Read this curve of a drawing only."),
+    click.option("--smoothness", type=Whole(0, 2), help="Of the spline through the points of --data; or 2."),
+    click.option("--degree", type=Whole(1, 64), help="Of a Fourier sum near the points of --data, instead."),
     click.option("--law", metavar="FORMULA", help="The exit angle: a formula in eta, lam, theta, s; or else -lam*eta."),
+)
+TOLERANCE = click.option(
+    "--tolerance", metavar="T", help="In --data: gaps that are closed, joins made smooth [default: 1e-9 of it]."
 )
 SHAPE = click.option(
     "--shape",
@@ -246,12 +281,14 @@ SHAPE = click.option(
 CONTRACTION = click.option("--lam", metavar="NUMBER", help="Contraction of the angle, from 0 to 1.")
 
 
-def table_options(command: Command, varies: bool = False, optional: bool = False) -> Command:
-    """Gives `command` the arguments of a table, as a keyword `scene` whose `lam` is 0.
+def table_options(command: Command, varies: bool = False, optional: bool = False, contracted: bool = False) -> Command:
+    """Decorator that gives a command the arguments of a table as a keyword `scene`; its `lam` is 0 unless `contracted`.
 
-    Where a parameter `varies`, what --shape says of it is a keyword `axis`, None where lambda varies. Where a table is
-    `optional`, the scene is None without one, and a keyword `bare` has --K, --alpha, --lam, --law.
+    With `varies`, a keyword `axis` has the text of --shape for the parameter that varies, None where lambda varies.
+    With `optional`, the scene is None without a table, and a keyword `bare` has --K, --alpha, --lam, --law.
     """
+
+    own = any(option.name == "tolerance" for option in getattr(command, "__click_params__", ()))
 
     @wraps(command)
     def called(
@@ -265,6 +302,11 @@ def table_options(command: Command, varies: bool = False, optional: bool = False
         data: str | None,
         smoothness: int | None,
         degree: int | None,
+        polygon: str | None,
+        units: str | None,
+        layer: tuple[str, ...],
+        curve: tuple[int, ...],
+        tolerance: str | None = None,
         lam: str | None = "0",
         given: tuple[str, ...] = (),
         law: str | None = None,
@@ -279,42 +321,63 @@ def table_options(command: Command, varies: bool = False, optional: bool = False
         elif axis is not None:
             raise ValueError(f"--shape {axis} varies a parameter; this command takes one number, as in b=1/10")
         if optional:
-            others["bare"], lam = {"K": K, "alpha": alpha, "lam": lam, "law": law}, "0"
-            if not (table or polar or parametric or file or data):
+            others["bare"] = {"K": K, "alpha": alpha, "lam": lam, "law": law}
+            lam = lam if contracted else "0"
+            if not (table or polar or parametric or file or data or polygon):
                 for option, said in (("a", a), ("shape", axis or next(iter(given), None))):
                     if said is not None:
-                        raise ValueError(f"--{option} {said} says something of a table, and none is given")
+                        raise ValueError(f"--{option} {said} is for a table, and none is given")
                 return command(scene=None, **others)
-        measured = None
-        if data is not None or smoothness is not None or degree is not None:
-            from verification.app.outline import drawn
+        reading = None
+        if data is not None:
+            from verification.app.outline import Data
 
-            measured = drawn(data, smoothness, degree)
-        options = table, polar, parametric, K, lam, file, given, measured, law
+            reading = Data(data, smoothness, degree, tolerance, units, layer, curve)
+        for option, value in (("units", units), ("layer", "".join(layer[:1])), ("curve", "".join(map(str, curve[:1])))):
+            if value and data is None:
+                raise ValueError(
+                    f"--{option} = {value} says how a drawing is read; give one with --data FILE.svg or .dxf"
+                )
+        for option, number in (("smoothness", smoothness), ("degree", degree)):
+            if number is not None and data is None:
+                said = "says how points are fitted; give a file of them with --data FILE.csv"
+                raise ValueError(f"--{option} = {number} {said}")
+        if tolerance is not None and data is None and not own:
+            raise ValueError(
+                f"--tolerance = {tolerance} is the largest gap that is closed in a file; give the file as --data FILE"
+            )
+        if own:
+            others["tolerance"] = tolerance if data is None else None
+        options = table, polar, parametric, K, lam, file, given, reading, law, polygon
         return command(scene=_known(*options, a=a, alpha=alpha), **others)
 
-    for option in reversed((*TABLE, SHAPE)):
+    for option in reversed((*TABLE, SHAPE) if own else (*TABLE, TOLERANCE, SHAPE)):
         called = option(called)
     return called
 
 
 def varied_options(command: Command) -> Command:
-    """Gives `command` the arguments of a table with a parameter that varies, as keywords `scene` and `axis`."""
+    """Decorator that gives a command a table with a parameter that varies, as keywords `scene` and `axis`."""
     return table_options(command, varies=True)
 
 
 def optional_options(command: Command) -> Command:
-    """The same where a table may be left out."""
+    """Decorator that gives a command a table with a parameter that varies; the table may be left out."""
     return table_options(command, varies=True, optional=True)
 
 
+def optional_scene_options(command: Command) -> Command:
+    """Decorator that gives a command the arguments of a scene, which may be left out."""
+    return CONTRACTION(table_options(command, optional=True, contracted=True))
+
+
 def scene_options(command: Command) -> Command:
-    """Gives `command` the arguments of a scene, as a keyword `scene`."""
+    """Decorator that gives a command the arguments of a scene, as a keyword `scene`."""
     return CONTRACTION(table_options(command))
 
 
 def start_of(text: str) -> tuple[Any, Any]:
-    """`THETA,PHI` as two exact numbers.
+    """The two exact numbers of the text `THETA,PHI`.
 
     >>> start_of("1/3,0.25")
     (Fraction(1, 3), Fraction(1, 4))
@@ -330,7 +393,7 @@ MOST = 1_000_000  # values of an axis
 
 
 def span(label: str, text: str, low: Fraction | None = Fraction(0), high: Fraction | None = Fraction(1)) -> list[float]:
-    """The numbers that `LOW:HIGH:N` says, equally spaced with both ends, or one number; each the nearest to the exact.
+    """The numbers of `LOW:HIGH:N`, equally spaced with both ends, or one number; each is the double nearest to it.
 
     >>> span("--lams", "0:0.3:4"), span("--lams", "1/2")
     ([0.0, 0.1, 0.2, 0.3], [0.5])
@@ -338,7 +401,7 @@ def span(label: str, text: str, low: Fraction | None = Fraction(0), high: Fracti
     parts = text.split(":")
     if len(parts) == 1:
         parts = [text, text, "1"]
-    if len(parts) != 3 or not (parts[2].isascii() and parts[2].isdigit() and 1 <= int(parts[2]) <= MOST):
+    if len(parts) != 3 or not (re.fullmatch("[0-9]{1,9}", parts[2]) and 1 <= int(parts[2]) <= MOST):
         raise ValueError(f"{label} {text!r} is no range; accepted: LOW:HIGH:N such as 0:1:101, or one number")
     first, last = (Fraction(_rational(label, part)) for part in parts[:2])
     if first > last:
@@ -350,7 +413,7 @@ def span(label: str, text: str, low: Fraction | None = Fraction(0), high: Fracti
 
 
 class Varied(NamedTuple):
-    """What a sweep varies in a scene, as the sweep labels it: the parameter, its values, and the one contraction."""
+    """What a sweep varies: the scene as text, the parameter's name, its values, and the one contraction."""
 
     text: str
     parameter: str
@@ -359,7 +422,7 @@ class Varied(NamedTuple):
 
 
 def over(scene: Scene, lams: str, axis: str | None) -> Varied:
-    """The contractions, or `NAME=LOW:HIGH:N` in their place; a bad shape is refused before anything runs."""
+    """What a sweep varies, by --lams or by `NAME=LOW:HIGH:N`; a bad shape is refused before anything runs."""
     import numpy as np
 
     from numeric.sweeps.sweep import map_of, text_of
@@ -378,7 +441,7 @@ def over(scene: Scene, lams: str, axis: str | None) -> Varied:
 
 
 def along(scene: Scene, axis: str) -> "tuple[Scene, str, NDArray[np.float64]]":
-    """The scene with the range that `NAME=LOW:HIGH:N` says, its parameter, and the values."""
+    """The scene with the range of `NAME=LOW:HIGH:N`, the parameter's name, and its N values."""
     import numpy as np
 
     name, equals, ends = axis.partition("=")

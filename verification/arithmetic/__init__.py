@@ -1,4 +1,4 @@
-"""Numbers that know what they promise: balls, working precision, jets and Taylor models."""
+"""Arithmetics with error bounds or derivatives: balls, working precision, jets and Taylor models."""
 
 import lazy_loader
 

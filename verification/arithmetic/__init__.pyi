@@ -5,6 +5,7 @@ from .arrays import (
     ArrayOps,
     BallArray,
     Compiled,
+    WideOps,
     common_part,
     direction,
     exactly,
@@ -19,8 +20,8 @@ from .balls import (
     FLOAT64,
     FUNCTIONS,
     Arithmetic,
+    BallWords,
     Box,
-    Words,
     as_ball,
     between,
     bisected,
@@ -35,9 +36,9 @@ from .balls import (
     real_ball,
     working,
 )
-from .iteration import Iteration, Stop, Tick, Vector, heard, in_rows, iterated, largest, silent, telling
+from .iteration import Iteration, Stop, Tick, Vector, bracketed, heard, in_rows, iterated, largest, silent, telling
 from .linear import approximated, solved
-from .series import SERIES, Function, Jet, along, expanded, in_series, jets
+from .series import SERIES, Function, Jet, along, coefficients, expanded, in_series, jets, taylor
 
 __all__ = [
     "ARRAYS",
@@ -48,6 +49,7 @@ __all__ = [
     "Arithmetic",
     "ArrayOps",
     "BallArray",
+    "BallWords",
     "Box",
     "Compiled",
     "Function",
@@ -56,13 +58,15 @@ __all__ = [
     "Stop",
     "Tick",
     "Vector",
-    "Words",
+    "WideOps",
     "along",
     "approximated",
     "as_ball",
     "between",
     "bisected",
     "bits_of",
+    "bracketed",
+    "coefficients",
     "common_part",
     "cuts",
     "decimal",
@@ -86,6 +90,7 @@ __all__ = [
     "silent",
     "solved",
     "spread",
+    "taylor",
     "telling",
     "turned",
     "unpaired",

@@ -1,12 +1,12 @@
-"""Balls by the hundred thousand, in float64 with proved rounding, and functions of them as machine code.
+"""Arrays of balls in float64 with proved rounding, and functions of them as machine code.
 
-A ball with midpoint `m` and radius `r` holds every real number within `r` of `m`. Two facts are used of float64: the
+A ball with midpoint `m` and radius `r` holds every real number within `r` of `m`. Two facts about float64 are used: the
 sum, difference, product, quotient and square root are the doubles nearest to the true ones, and adding two doubles
-never gets the sign wrong. So an operation on midpoints errs by at most `ROUNDING` times its result, and by `TINY`
-where that underflows; the few roundings in the radius itself are covered by `GROWTH`. Sine, cosine and exponential
-are our own polynomials, since nobody proves a bound for those of a library: `UNIT_ERROR` and `EXPONENTIAL_ERROR` bound
-reduction, Taylor remainder and rounding together (docs/global.md has the count). A radius of infinity, or nan, says
-that nothing is known; every question here asks for what is certain, so that nan answers no.
+never gets the sign wrong. So an operation on midpoints errs by at most `ROUNDING` times its result, and by `TINY` where
+that underflows; the few roundings in the radius itself are covered by `GROWTH`. Sine, cosine and exponential are our
+own polynomials, since nobody proves a bound for those of a library: `UNIT_ERROR` and `EXPONENTIAL_ERROR` bound
+reduction, Taylor remainder and rounding together (docs/global.md has the count). A radius of infinity or nan means that
+nothing is known; every test here is for what is certain, and nan gives False.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -26,18 +26,18 @@ ROUNDING = 2.0**-52  # twice the largest relative error of one operation
 GROWTH = 1.0 + 2.0**-48  # covers sixteen roundings of a radius
 TINY = 1e-300
 GUESS = ArrayBackend()
-UNIT_ERROR = 2.0**-49  # of sine and cosine at a double below LARGEST
+UNIT_ERROR = 2.0**-49  # error of sine and cosine at a double below LARGEST
 LARGEST = 64.0
 HALF_PI = tuple(map(float.fromhex, ("0x1.921fb54400000p+0", "0x1.0b4611a600000p-34", "0x1.3198a2e037073p-69")))
 SINE = [(-1.0) ** k / float(np.prod(np.arange(1.0, 2 * k + 2))) for k in range(10)]
 LN2 = tuple(map(float.fromhex, ("0x1.62e42fee00000p-1", "0x1.a39ef35793c76p-33")))
 EXPONENTIAL = [1.0 / float(np.prod(np.arange(1.0, k + 1))) for k in range(15)]
-EXPONENTIAL_ERROR = 2.0**-48  # of the exponential at a double below LARGEST, relative
+EXPONENTIAL_ERROR = 2.0**-48  # relative error of the exponential at a double below LARGEST
 COSINE = [(-1.0) ** k / float(np.prod(np.arange(1.0, 2 * k + 1))) for k in range(11)]
 
 
 class BallArray:
-    """Balls, one for each entry of two arrays that broadcast against each other.
+    """Balls with midpoints `m` and radii `r`: arrays or floats that broadcast against each other.
 
     >>> x = BallArray(np.array([1.0, 3.0]), 0.5)
     >>> (x * x).lower() <= 0.25, (x * x).upper() >= 2.25
@@ -109,28 +109,28 @@ class BallArray:
         return found
 
     def positive(self) -> NDArray[np.bool_]:
-        """Where every number is positive; False says only that this is not known."""
+        """True where every number of a ball is positive; False where that is not known."""
         known: NDArray[np.bool_] = self.m - self.r > 0  # not where the radius is infinite or nan
         return known
 
     def negative(self) -> NDArray[np.bool_]:
-        """Where every number is negative; False says only that this is not known."""
+        """True where every number of a ball is negative; False where that is not known."""
         known: NDArray[np.bool_] = self.m + self.r < 0
         return known
 
     def magnitude(self) -> Array:
-        """Doubles above the absolute value of every number."""
+        """Doubles above the absolute value of every number of each ball."""
         found: Array = (np.abs(self.m) + self.r) * GROWTH
         return found
 
 
 def ball(x: Any) -> BallArray:
-    """A ball array as it is; a float, or whole numbers below 2**53, as balls of radius 0."""
+    """The number as a ball array; a float, or whole numbers below 2**53, become balls of radius 0."""
     return x if isinstance(x, BallArray) else BallArray(x)
 
 
 def exactly(number: Fraction) -> BallArray:
-    """A rational number, enclosed.
+    """A ball that holds a rational number.
 
     >>> float(exactly(Fraction(1, 2)).r), bool(exactly(Fraction(1, 3)).r > 0)
     (0.0, True)
@@ -151,7 +151,7 @@ def hull(low: Any, high: Any) -> BallArray:
 
 
 def common_part(x: BallArray, y: BallArray) -> BallArray:
-    """What two enclosures of one number have in common; one where the other knows nothing."""
+    """Balls that hold the intersection of two enclosures of a number; one of infinite or nan radius is ignored."""
     low = np.fmax(np.where(np.isfinite(x.r), x.lower(), -np.inf), np.where(np.isfinite(y.r), y.lower(), -np.inf))
     high = np.fmin(np.where(np.isfinite(x.r), x.upper(), np.inf), np.where(np.isfinite(y.r), y.upper(), np.inf))
     with np.errstate(invalid="ignore"):
@@ -159,14 +159,14 @@ def common_part(x: BallArray, y: BallArray) -> BallArray:
 
 
 def spread(value: Any, like: Array) -> BallArray:
-    """A ball array of the shape of another; programs give one ball for a coordinate that is constant."""
+    """The ball array `value` in the shape of `like`; a program returns a single ball for a constant coordinate."""
     value = value if isinstance(value, BallArray) else BallArray(value)
     m, r = np.broadcast_arrays(value.m, value.r, like)[:2]
     return BallArray(m, r)
 
 
 class Compiled:
-    """A function of balls that gives balls, in one loop of machine code; `rows` is how many numbers it takes.
+    """A function from ball arrays to ball arrays, compiled to one loop of machine code.
 
     >>> (square,) = Compiled(lambda x: [x * x])(BallArray(np.array([1.0, 3.0]), 0.5))
     >>> bool((square.m == [1, 9]).all()), bool((square.upper() >= [2.25, 12.25]).all())
@@ -181,53 +181,53 @@ class Compiled:
 
 
 def unpaired(balls: Iterable[BallArray]) -> list[Any]:
-    """Of each ball its midpoints and its radii, in turn."""
+    """The list `[m, r, m, r, ...]` of midpoints and radii of the balls."""
     return [half for each in balls for half in (each.m, each.r)]
 
 
 def paired(rows: Sequence[Any]) -> list[BallArray]:
-    """Midpoints and radii in turn, as balls."""
+    """The balls whose midpoints and radii are `[m, r, m, r, ...]`."""
     return [BallArray(m, r) for m, r in zip(rows[::2], rows[1::2], strict=True)]
 
 
 class ArrayOps:
-    """What a program of `numeric.lowering` needs of ball arrays: constants, roots and the functions of a formula.
+    """Operations on ball arrays that a program of `numeric.lowering` calls: constants, roots and elementary functions.
 
-    Of a library's logarithm or root only a guess is used, which the exponential or a power then judges.
+    A library's logarithm or root serves only as a guess, which the exponential or a power then checks.
     """
 
     @staticmethod
     @cache
     def q(p: int, n: int) -> BallArray:
-        """`p/n`, enclosed."""
+        """A ball that holds `p/n`."""
         return exactly(Fraction(p, n))
 
     @property
     def pi(self) -> BallArray:
-        """Pi, enclosed."""
+        """A ball that holds pi."""
         return BallArray(np.pi, 2.0**-51)
 
     def sqrt(self, x: BallArray) -> BallArray:
-        """The square root; nothing is known where the ball reaches below zero."""
+        """The square root; the radius is infinite where the ball does not lie above zero."""
         with np.errstate(all="ignore"):
             m = np.sqrt(x.m)
             r = (x.r / m + ROUNDING * m) * GROWTH
         return BallArray(m, np.where(x.m - x.r > 0, r, np.inf))
 
     def sin(self, x: BallArray) -> BallArray:
-        """The sine: of the midpoint, and it moves by no more than the radius."""
+        """The sine of the midpoint; its radius grows by no more than the radius of `x`, as the slope is at most 1."""
         return self.turned(x)[1]
 
     def cos(self, x: BallArray) -> BallArray:
-        """The cosine."""
+        """The cosine, enclosed like the sine."""
         return self.turned(x)[0]
 
     def turned(self, x: BallArray) -> tuple[BallArray, BallArray]:
-        """Both, at the cost of one."""
+        """Cosine and sine, at the cost of one."""
         return turned(x)
 
     def exp(self, x: BallArray) -> BallArray:
-        """The exponential: of the midpoint, by powers of 2 and Taylor's sum, times `exp(r) <= 1 + r + r**2`."""
+        """The exponential of the midpoint, by powers of 2 and a Taylor sum; the radius by `exp(r) <= 1 + r + r**2`."""
         m, r = np.broadcast_arrays(np.asarray(x.m, dtype=float), x.r)
         with np.errstate(all="ignore"):
             k = np.rint(m / LN2[0])
@@ -236,7 +236,10 @@ class ArrayOps:
         return BallArray(value, np.where((np.abs(m) < LARGEST) & (r <= 1), radius, np.inf))
 
     def log(self, x: BallArray) -> BallArray:
-        """The logarithm: a guess `w`, and `y - 1` with `y = x*exp(-w)`, within `(y - 1)**2` while that is small."""
+        """The logarithm as `w + (y - 1)`, where `w` is a guess and `y = x*exp(-w)`.
+
+        The error is at most `(y - 1)**2` where `abs(y - 1) <= 1/2`; elsewhere the radius is infinite.
+        """
         with np.errstate(all="ignore"):
             w = elementary.log(np.asarray(x.m, dtype=float))
             gap = x * self.exp(BallArray(-w)) - 1
@@ -244,7 +247,7 @@ class ArrayOps:
         return BallArray(w + 0 * size, np.where(size <= 0.5, size**2 * GROWTH, np.inf)) + gap
 
     def atan(self, x: BallArray) -> BallArray:
-        """The angle of the vector `(1, x)`."""
+        """The arc tangent, as the angle of the vector `(1, x)`."""
         return direction(BallArray(np.ones_like(x.m)), x)
 
     def sinh(self, x: BallArray) -> BallArray:
@@ -262,11 +265,14 @@ class ArrayOps:
         return 1 - 2 / (self.exp(x * 2) + 1)
 
     def Abs(self, x: BallArray) -> BallArray:
-        """The absolute value, which moves by no more than its argument."""
+        """The absolute value of the midpoint, with the ball's radius."""
         return BallArray(np.abs(x.m), x.r)
 
     def root(self, x: BallArray, n: int) -> BallArray:
-        """A guess `w`, times `(1 + d)**(1/n)` with `1 + d = x/w**n`, within `d**2` of `1 + d/n` while `d` is small."""
+        """The root as `w*(1 + d/n)`, where `w` is a guess and `1 + d = x/w**n`.
+
+        The error of the bracket is at most `d**2` where `abs(d) <= 1/2`; elsewhere the radius is infinite.
+        """
         with np.errstate(all="ignore"):
             w = power = BallArray(elementary.root(x.m, n))
             for _ in range(n - 1):
@@ -276,8 +282,27 @@ class ArrayOps:
             return w * (1 + d / n + BallArray(0.0, np.where(size <= 0.5, size**2 * GROWTH, np.inf)))
 
 
+class WideOps(ArrayOps):
+    """The operations of `ArrayOps`, sharper where balls are wide, at twice the cost.
+
+    >>> bool(WideOps().cos(BallArray(0.0, 0.1)).r < 0.006), bool(WideOps().atan(BallArray(3.0, 1.0)).r < 0.12)
+    (True, True)
+    """
+
+    def turned(self, x: BallArray) -> tuple[BallArray, BallArray]:
+        """Cosine and sine of balls, by Taylor's theorem: `|cos(m + e) - cos(m)| <= |sin(m)|*|e| + e**2/2`."""
+        c, s = turned(BallArray(x.m))
+        moved = (np.minimum(x.r, other.magnitude() * x.r + x.r * x.r / 2) * GROWTH for other in (s, c))
+        return tuple(BallArray(at.m, (at.r + by) * GROWTH) for at, by in zip((c, s), moved, strict=True))  # type: ignore[return-value]
+
+    def atan(self, x: BallArray) -> BallArray:
+        """The arc tangent: it increases, so that the ends of a ball give the ends of its image."""
+        low, high = (direction(BallArray(np.ones_like(x.m)), BallArray(end)) for end in (x.lower(), x.upper()))
+        return hull(low.lower(), high.upper())
+
+
 def turned(x: BallArray) -> tuple[BallArray, BallArray]:
-    """Cosine and sine.
+    """Cosine and sine of balls whose midpoints are below `LARGEST`; the radius is infinite elsewhere.
 
     >>> c, s = turned(BallArray(np.array([0.0, 1.0])))
     >>> bool((c * c + s * s - 1).magnitude().max() < 1e-14)
@@ -298,7 +323,7 @@ def turned(x: BallArray) -> tuple[BallArray, BallArray]:
 
 
 def direction(c: BallArray, s: BallArray) -> BallArray:
-    """The angle of the vectors `(c, s)`, near `arctan2` of the midpoints; nothing is known where one may turn back.
+    """Angle of the vectors `(c, s)`, near `arctan2` of the midpoints; infinite radius where a right angle is possible.
 
     The guess is any double `w`. Turned by `-w`, the vector has a small angle, the arc tangent of a quotient `x`, which
     lies within `|x|**3/3` of `x`.

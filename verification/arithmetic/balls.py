@@ -4,18 +4,22 @@
 comes in as a context object, balls with their number of bits. Ball operations between formulas round at the global
 `flint.ctx`, so whoever computes with balls does it inside `working(bits)`, which puts the old precision back.
 
-With balls come the enclosure of an exact expression, decimals with a radius, and intervals cut into touching balls.
+Also here: the enclosure of an exact expression, decimals with a radius, and intervals cut into touching balls.
 """
 
+import copyreg
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache
 from itertools import pairwise
+from threading import RLock
 from typing import Any, Generic, TypeVar
 
-from flint import acb, arb, ctx, fmpq
+import mpmath
+from flint import acb, arb, arb_mat, ctx, fmpq
 from sympy import (
     Abs,
     Add,
@@ -34,14 +38,30 @@ from sympy import (
 )
 
 from symbolic.expressions import text as vocabulary
+from symbolic.tables.definition import exact
 
+
+def ball_of(*parts: Any) -> arb:
+    """The ball of a midpoint and a radius, each `(mantissa, exponent)`; or of a text, where the ball is not finite."""
+    return arb(*parts)
+
+
+def _parts(ball: arb) -> tuple[Callable[..., arb], tuple[Any, ...]]:
+    """Function and arguments by which pickle restores a ball bit for bit; python-flint cannot pickle one."""
+    if not ball.is_finite():
+        return ball_of, (str(ball),)
+    return ball_of, tuple(tuple(map(int, half.man_exp())) for half in (ball.mid(), ball.rad()))
+
+
+copyreg.pickle(arb, _parts)
 FUNCTIONS = tuple(vocabulary.FUNCTIONS.values())
+_ONE_PRECISION = RLock()
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Words(Generic[T]):
-    """The closed vocabulary over numbers of type `T`: a `symbolic.expressions.numbers.NumberSystem`, word by word."""
+class BallWords(Generic[T]):
+    """An arithmetic: constants and functions of the formulas' closed vocabulary over numbers of type `T`."""
 
     pi: T
     q: Callable[[int, int], T]
@@ -57,8 +77,8 @@ class Words(Generic[T]):
     tanh: Callable[[Any], T]
 
 
-Arithmetic = Words[Any]
-FLOAT64: Words[float] = Words(
+Arithmetic = BallWords[Any]
+FLOAT64: BallWords[float] = BallWords(
     pi=math.pi,
     q=lambda p, n: p / n,
     root=lambda x, n: math.pow(x, 1 / n),
@@ -81,7 +101,7 @@ def __getattr__(name: str) -> Any:
 
 
 def multiprecision(context: Any) -> Arithmetic:
-    """Numbers of an mpmath context, at the precision that this context has when they are used.
+    """Arithmetic of an mpmath context, at the precision that this context has when it is used.
 
     >>> import mpmath
     >>> fifty = mpmath.MPContext()
@@ -89,7 +109,7 @@ def multiprecision(context: Any) -> Arithmetic:
     >>> multiprecision(fifty).q(1, 3)
     mpf('0.33333333333333333333333333333333333333333333333333311')
     """
-    return Words(
+    return BallWords(
         pi=context.pi,
         q=lambda p, n: context.mpf(p) / n,
         root=context.root,
@@ -97,8 +117,8 @@ def multiprecision(context: Any) -> Arithmetic:
     )
 
 
-def balls(bits: int) -> Words[arb]:
-    """Balls that contain the true value; constants are enclosed with `bits` bits.
+def balls(bits: int) -> BallWords[arb]:
+    """Arithmetic of balls, which contain the true value; constants are enclosed with `bits` bits.
 
     >>> third = balls(128).q(1, 3)
     >>> with working(128):
@@ -107,19 +127,59 @@ def balls(bits: int) -> Words[arb]:
     """
 
     @cache
-    def rational(p: int, n: int) -> arb:  # a kernel has few, and asks for them at every call
-        with ctx.workprec(bits):
+    def rational(p: int, n: int) -> arb:  # a kernel has few, and needs them at every call
+        with working(bits):
             return arb(fmpq(p, n))
 
-    with ctx.workprec(bits):
+    with working(bits):
         pi = arb.pi()
     words = {word: _of_ball(word) for word in FUNCTIONS}
-    return Words(pi=pi, q=rational, root=lambda x, n: arb(x).root(n), **words)
+    return BallWords(pi=pi, q=rational, root=lambda x, n: arb(x).root(n), **words)
+
+
+def mpmath_arithmetic(digits: int) -> tuple[Arithmetic, Callable[..., Any]]:
+    """Arithmetic of mpmath numbers of `digits` digits, and `run(function, arguments, shape)` that evaluates with it."""
+    context = mpmath.MPContext()
+    context.dps = digits
+
+    def run(function: Callable[..., Any], arguments: Sequence[Any], shape: Sequence[int] | None) -> Any:
+        values = function(*(context.mpmathify(x) for x in arguments))
+        return values[0] if shape is None else context.matrix(_rows(values, shape))
+
+    return multiprecision(context), run
+
+
+def ball_arithmetic(digits: int) -> tuple[BallWords[arb], Callable[..., Any]]:
+    """Arithmetic of balls of `digits` digits, and its `run`, as for mpmath; text is the exact number that it shows."""
+    bits = bits_of(digits, 10)
+
+    def run(function: Callable[..., Any], arguments: Sequence[Any], shape: Sequence[int] | None) -> Any:
+        with working(bits):
+            values = function(*map(_as_given, arguments))
+            return values[0] if shape is None else arb_mat(_rows(values, shape))
+
+    return balls(bits), run
+
+
+def _as_given(x: Any) -> arb:
+    """A number as a ball: a float is its exact value, text the number that it shows."""
+    if isinstance(x, str):
+        found = exact("argument", x)
+        return _as_given(found) if isinstance(found, Fraction) else real_ball(found)
+    return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
+
+
+def _rows(values: Sequence[Any], shape: Sequence[int]) -> list[list[Any]]:
+    rows, columns = shape
+    return [list(values[i * columns : (i + 1) * columns]) for i in range(rows)]
 
 
 @contextmanager
 def working(bits: int) -> Iterator[None]:
-    """Ball arithmetic rounds to `bits` bits inside, and as before outside, whatever happens.
+    """Context in which ball arithmetic rounds to `bits` bits; the old precision is restored afterwards.
+
+    The precision of `flint` is one for the whole process, so other threads wait until this one leaves. Proofs that are
+    to run at the same time need a process each.
 
     >>> before = ctx.prec
     >>> with working(333):
@@ -128,12 +188,12 @@ def working(bits: int) -> Iterator[None]:
     >>> ctx.prec == before
     True
     """
-    with ctx.workprec(bits):
+    with _ONE_PRECISION, ctx.workprec(bits):
         yield
 
 
 def bits_of(digits: int, guard: int = 0) -> int:
-    """The bits that hold `digits` decimal digits, and `guard` more.
+    """The number of bits that hold `digits` decimal digits, plus `guard`.
 
     >>> bits_of(50), bits_of(50, 30)
     (167, 197)
@@ -168,12 +228,12 @@ def enclose(expression: Expr, values: Mapping[Symbol, Expr] | None = None, digit
     >>> (enclose(sqrt(Integer(2))) ** 2 - 2).contains(0)
     True
     """
-    with ctx.workprec(bits_of(digits, 20)):
+    with working(bits_of(digits, 20)):
         return _ball(expression.subs(values or {}))
 
 
 def real_ball(number: Expr | Callable[[int], arb], digits: int = 30) -> arb:
-    """A real number, exact or given as balls of any number of digits, as a ball.
+    """A ball that holds a real number, given as an exact expression or as a function from digits to balls.
 
     >>> real_ball(Integer(2)) == 2
     True
@@ -236,7 +296,7 @@ def decimal(value: arb, digits: int) -> tuple[str, str]:
     >>> decimal(arb(1) / 3, 5)
     ('0.33333', '3.5e-6')
     """
-    with ctx.workprec(bits_of(digits, 64)):
+    with working(bits_of(digits, 64)):
         known = digits if value.is_exact() else max(int(0.302 * value.rel_accuracy_bits()) + 2, 1)
         shown = value.mid().str(min(digits, known), radius=False)
         gap = abs(value - arb(shown))
@@ -258,7 +318,7 @@ Box = tuple[tuple[float, float], ...]  # midpoint and half width of each unknown
 
 
 def bisected(box: Box, side: int | None = None) -> list[Box]:
-    """A box, cut across its longest side, or across the one that is named.
+    """The two halves of a box, cut across its longest side or across the one of index `side`.
 
     >>> bisected(((0.0, 1.0), (3.0, 2.0)))
     [((0.0, 1.0), (2.0, 1.0)), ((0.0, 1.0), (4.0, 1.0))]
@@ -269,7 +329,7 @@ def bisected(box: Box, side: int | None = None) -> list[Box]:
 
 
 def cuts(low: float, high: float, longest: float) -> list[arb]:
-    """A stretch as touching balls, none of them much longer than `longest`.
+    """The interval from `low` to `high` as touching balls, none of them much longer than `longest`.
 
     >>> len(cuts(0.0, 1.0, 0.3))
     4
@@ -280,7 +340,7 @@ def cuts(low: float, high: float, longest: float) -> list[arb]:
 
 
 def halves(x: arb) -> list[arb]:
-    """Two touching balls that hold a ball."""
+    """Two touching balls that together hold the ball `x`."""
     low, middle, high = x.lower(), arb(x.mid()), x.upper()
     return [low.union(middle), middle.union(high)]
 

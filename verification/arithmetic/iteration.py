@@ -1,12 +1,10 @@
-"""Work that goes on in steps: iterations that end in rounding, and how far a long proof has come.
+"""Newton's method and other iterations, with one stopping rule; and progress of long proofs.
 
-Newton's method and every other iteration have one loop and one rule for its end. The unknowns are a list of numbers of
-any kind, or of arrays. Near a simple zero each correction is about the square of the one before, until rounding takes
-over. So an iteration has settled when a correction is as small as is wanted, or when corrections that were small shrink
-no more. At a double zero they halve, which is still shrinking.
+The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square of
+the one before, until rounding takes over. So an iteration has converged when a correction is as small as is wanted, or
+when small corrections shrink no more. At a double zero they halve, which is still shrinking.
 
-A proof calls its `tick` with each share of its work that is done and knows of no progress bar; `telling` makes such a
-function.
+A proof calls a function `tick` with each share of its work that is done; `telling` makes such a function.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -20,21 +18,22 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-SHRINKS = 0.75  # of the correction before: what is larger no longer shrinks
+SHRINKS = 0.75  # a correction above this share of the one before no longer shrinks
 Vector = list[Any]
 
 Tick = Callable[[float], None]
 Hearer = Callable[[str, float], None]
 _hearer: ContextVar[Hearer | None] = ContextVar("hearer", default=None)
-STEP = 1e-3  # a bar shows no smaller share
+STEP = 1e-3  # the least share of the work that is reported
 
 
 @dataclass(frozen=True)
 class Stop:
-    """When an iteration has settled, and when it is given up.
+    """Conditions under which an iteration has converged, and under which it is given up.
 
     A correction of at most `enough` is the last one. One below `small` that is no smaller than the one before is
-    rounding and is not made. After so many `steps` nothing has settled. No unknown moves farther than `reach` at once.
+    rounding and is not made. After `steps` steps the iteration is given up. No unknown moves farther than `reach` in a
+    step.
     """
 
     small: float = 0.0
@@ -43,13 +42,13 @@ class Stop:
     reach: float = inf
 
     def rounding(self, size: Any, before: Any) -> bool:
-        """Is a correction of this size, after the one before, nothing but rounding?"""
+        """True if a correction of size `size`, after one of size `before`, is nothing but rounding."""
         return bool(size < self.small and not size < SHRINKS * before)
 
 
 @dataclass(frozen=True)
 class Iteration:
-    """Where an iteration ended, the sizes of the corrections it made, and how many it computed."""
+    """Result of an iteration: the last `x`, whether it converged, the sizes of its corrections, and its steps."""
 
     x: Vector
     settled: bool
@@ -64,10 +63,10 @@ def iterated(
     size: Callable[[Sequence[Any]], Any] | None = None,
     kept: Callable[[Any], Any] = lambda x: x,
 ) -> Iteration:
-    """The iteration `x - correction(x)` from `start` until it settles.
+    """Result of the iteration `x -> x - correction(x)` from `start`, until it converges or is given up.
 
-    `size` measures a correction, by default by its largest entry; `kept` is what is kept of each unknown, such as the
-    midpoint of a ball. A division by 0 or a correction that is not finite ends it unsettled.
+    `size` measures a correction, by default by its largest entry; `kept` is applied to each new unknown, for instance
+    to take the midpoint of a ball. Division by 0 or a correction that is not finite ends it with `settled` False.
 
     >>> root = iterated(lambda x: [(x[0] * x[0] - 2) / (2 * x[0])], [1.0], Stop(small=1e-6))
     >>> root.x, root.settled
@@ -92,17 +91,55 @@ def iterated(
     return Iteration(x, False, sizes, stop.steps)
 
 
+def bracketed(f: Callable[[float], float], start: float, end: float, small: float, relative: float) -> float:
+    """A zero between two values of opposite signs, by Brent's method.
+
+    To `small + relative*abs(zero)`, with the steps of SciPy's `brentq`, whose import takes half a second.
+    `ValueError` where the signs agree.
+
+    >>> round(bracketed(lambda x: x * x - 2, 0.0, 2.0, 1e-12, 1e-12), 11)
+    1.41421356237
+    """
+    old, here, f_old, f_here = start, end, f(start), f(end)
+    if 0 in (f_old, f_here):
+        return old if f_old == 0 else here
+    if (f_old < 0) == (f_here < 0):
+        raise ValueError(f"no change of sign between {start:.9g} and {end:.9g}")
+    other, f_other, before, step = old, f_old, here - old, here - old
+    for _ in range(100):
+        if f_old and f_here and (f_old < 0) != (f_here < 0):
+            other, f_other, before, step = old, f_old, here - old, here - old
+        if abs(f_other) < abs(f_here):
+            old, here, other, f_old, f_here, f_other = here, other, here, f_here, f_other, f_here
+        near, half = (small + relative * abs(here)) / 2, (other - here) / 2
+        if f_here == 0 or abs(half) < near:
+            return here
+        tried = inf
+        if abs(before) > near and abs(f_here) < abs(f_old):
+            if old == other:
+                tried = -f_here * (here - old) / (f_here - f_old)
+            else:
+                one, two = (f_old - f_here) / (old - here), (f_other - f_here) / (other - here)
+                tried = -f_here * (f_other * two - f_old * one) / (two * one * (f_other - f_old))
+        good = 2 * abs(tried) < min(abs(before), 3 * abs(half) - near)
+        before, step = (step, tried) if good else (half, half)
+        old, f_old = here, f_here
+        here += step if abs(step) > near else near if half > 0 else -near
+        f_here = f(here)
+    raise ValueError(f"no zero is reached between {start:.9g} and {end:.9g}")
+
+
 def in_rows(
     correction: "Callable[[NDArray[np.float64]], NDArray[np.float64]]", start: "NDArray[np.float64]", stop: Stop
 ) -> "tuple[NDArray[np.float64], NDArray[np.bool_]]":
-    """The same in float64 for each row of `start` by itself, and which rows settled by a correction that was `enough`.
+    """Iterates each row of `start` in float64, shape `(rows, unknowns)`; returns the rows and which of them converged.
 
     >>> import numpy as np
     >>> x, settled = in_rows(lambda x: (x * x - 2) / (2 * x), np.array([[1.0], [0.0]]), Stop(enough=1e-11))
     >>> round(float(x[0, 0]), 12), settled.tolist()
     (1.414213562373, [True, False])
     """
-    import numpy as np  # which most iterations do without
+    import numpy as np  # here, since most iterations do without it
 
     x, settled = start.copy(), np.zeros(len(start), dtype=bool)
     with np.errstate(all="ignore"):
@@ -133,7 +170,7 @@ def largest(parts: Sequence[Any]) -> float:
 
 @contextmanager
 def heard(by: Hearer) -> Iterator[None]:
-    """Within, `by` is called with what is being worked at and the share of it that is done.
+    """Context in which `by(about, share)` is called with the name of the current work and the share of it that is done.
 
     >>> heard_of = []
     >>> with heard(lambda about, share: heard_of.append((about, share))):
@@ -151,11 +188,11 @@ def heard(by: Hearer) -> Iterator[None]:
 
 
 def silent(share: float) -> None:
-    """The tick of a proof that nobody asked to tell."""
+    """A `tick` that does nothing, for proofs whose progress is not shown."""
 
 
 def telling(about: str) -> Tick:
-    """A verb to call with each share that is done; it does nothing while nobody listens."""
+    """A function `tick(share)` that adds up the shares done of the work `about` and reports the sum to `heard`."""
     hear, done, told = _hearer.get(), 0.0, 0.0
 
     def tick(share: float) -> None:

@@ -1,9 +1,9 @@
-"""Large systems of linear equations in balls, most of whose entries are 0: solved in floats, and the error enclosed.
+"""Large sparse linear systems in balls: solved in float64, with an enclosure of the error.
 
-With `R` about the inverse of the matrix `A`, the error `d` of any vector `x` obeys `d = R*r + (I - R*A)*d`, where
-`r = b - A*x`. So where `E` bounds `abs(I - R*A)` and `c` bounds `abs(R*r)`, entry by entry, and some `e > 0` has
-`c + E*e < e`, the spectral radius of `E` is below 1, `A` is regular, and `abs(d) <= e` (Collatz and Wielandt). `R` is
-made in float64 and holds for every matrix in the balls: its own errors, those of the products in floats (summed in any
+With `R` an approximate inverse of the matrix `A`, the error `d` of any vector `x` obeys `d = R*r + (I - R*A)*d`, where
+`r = b - A*x`. So where `E` bounds `abs(I - R*A)` and `c` bounds `abs(R*r)`, entry by entry, and some `e > 0` has `c +
+E*e < e`, the spectral radius of `E` is below 1, `A` is regular, and `abs(d) <= e` (Collatz and Wielandt). `R` is made
+in float64 and holds for every matrix in the balls: its own errors, those of the products in floats (summed in any
 order, fused or not: Higham, Accuracy and Stability, section 3.5) and the radii of the balls are all in `E`.
 """
 
@@ -23,7 +23,7 @@ ROUNDS = 12
 
 
 def solved(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> list[list[arb]]:
-    """The solution in balls, for all matrices in those of the rows; `right` has a row for each equation.
+    """Enclosure of the solutions of `A*x = right` for all matrices `A` in the balls `rows`; `right` has shape `(n, k)`.
 
     `ZeroDivisionError` where no bound is found: the matrix may be singular.
 
@@ -47,7 +47,7 @@ def solved(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> lis
 
 
 def approximated(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> list[list[arb]]:
-    """About the solution, to the digits of float64: nothing is proved of it."""
+    """The solution in float64, as balls of radius 0: nothing is proved. `ZeroDivisionError` for a singular matrix."""
     matrix, sides = (np.array([[_middle(x) for x in row] for row in part]) for part in (rows, right))
     try:
         found = np.linalg.solve(matrix, sides)
@@ -66,7 +66,7 @@ def _inverse(matrix: Floats) -> Floats:
 
 
 def _column(sparse: Sparse, inverse: Floats, off: Floats, blanket: float, right: Sequence[arb]) -> list[arb]:
-    """One column of the solution: twice corrected in floats, with what is left of the error around it."""
+    """One column of the solution: corrected twice in float64, then a ball with a bound of the remaining error."""
     x = [arb(0)] * len(sparse)
     for _ in range(2):
         left = np.array([_middle(r) for r in _residual(sparse, x, right)])
@@ -84,7 +84,7 @@ def _column(sparse: Sparse, inverse: Floats, off: Floats, blanket: float, right:
 
 
 def _residual(sparse: Sparse, x: Sequence[arb], right: Sequence[arb]) -> list[arb]:
-    """`b - A*x` in balls."""
+    """The residual `b - A*x` in balls, where `b` is `right`."""
     return [b - sum((a * x[j] for j, a in row), arb(0)) for row, b in zip(sparse, right, strict=True)]
 
 
@@ -93,5 +93,5 @@ def _middle(x: arb) -> float:
 
 
 def _above(x: arb) -> float:
-    """A bound of the size of a ball: what is not finite stays so, and no condition holds of it."""
+    """A float above the absolute value of every number in a ball; not finite where the ball is not."""
     return math.nextafter(float(x.abs_upper()), math.inf)

@@ -1,6 +1,7 @@
 """Truncated Taylor series over any kind of number, and their remainders in balls.
 
-Jets carry a few coefficients through the generated functions; Taylor models add what the truncation leaves out."""
+A `Jet` carries a few coefficients through the generated functions; a `TaylorModel` encloses the truncation error too.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -11,17 +12,17 @@ from typing import Any
 
 from flint import acb, acb_series, arb, arb_series, ctx
 
-from verification.arithmetic.balls import FUNCTIONS, Arithmetic, Words
+from verification.arithmetic.balls import FUNCTIONS, Arithmetic, BallWords
 
 
 class Jet:
-    """`c[0] + c[1]*e + ... + c[n]*e**n`, higher powers dropped."""
+    """The polynomial `c[0] + c[1]*e + ... + c[n]*e**n`; higher powers of `e` are dropped."""
 
     __slots__ = ("c", "turned")
 
     def __init__(self, *c: Any) -> None:
         self.c = c
-        self.turned: tuple[Any, int, Jet, Jet] | None = None  # its sine and cosine over some numbers, once known
+        self.turned: tuple[Any, int, Jet, Jet] | None = None  # arithmetic, bits, sine and cosine, once computed
 
     def __add__(self, other: Any) -> "Jet":
         if isinstance(other, Jet):
@@ -73,7 +74,7 @@ class Jet:
 
 
 def jets(base: Arithmetic) -> Arithmetic:
-    """The words of the kernels for jets over the numbers of `base`.
+    """Arithmetic of jets over the numbers of `base`: the constants and functions that kernels call.
 
     >>> from verification.arithmetic.balls import FLOAT64
     >>> jets(FLOAT64).atan(Jet(0.0, 1.0, 0.0, 0.0)).c[3] * 3
@@ -117,7 +118,7 @@ def jets(base: Arithmetic) -> Arithmetic:
         return Jet(*found)
 
     log = integrated("log", lambda x: 1 / x)
-    return Words(
+    return BallWords(
         pi=base.pi,
         q=base.q,
         root=lambda x, n: exponential(log(x) / n) if isinstance(x, Jet) else base.root(x, n),
@@ -152,7 +153,7 @@ Function = Callable[[arb_series], arb_series]
 
 @contextmanager
 def taylor(order: int) -> Iterator[None]:
-    """Series have `order` coefficients inside, and outside as many as before."""
+    """Context in which FLINT's series have `order` coefficients; the old number is restored afterwards."""
     before = ctx.cap
     ctx.cap = order
     try:
@@ -161,14 +162,14 @@ def taylor(order: int) -> Iterator[None]:
         ctx.cap = before
 
 
-SERIES = {arb: arb_series, acb: acb_series}  # FLINT's own, with balls of each kind for coefficients
-CUT = ("sqrt", "log", "atan")  # what is not analytic everywhere
+SERIES = {arb: arb_series, acb: acb_series}  # FLINT's series with these balls for coefficients
+CUT = ("sqrt", "log", "atan")  # functions that are not analytic everywhere
 
 
 def in_series(base: Arithmetic, made: Any) -> Arithmetic:
-    """The words of the kernels for FLINT's series over the balls of `base`: what `jets` computes, in less time.
+    """Arithmetic of FLINT's series over the balls of `base`: the results of `jets`, in less time.
 
-    A function that `base` does not have at the first coefficient has no coefficient at all.
+    Where `sqrt`, `log` or `atan` of the first coefficient is not finite, no coefficient of the result is.
     """
 
     def word(name: str) -> Callable[[Any], Any]:
@@ -193,7 +194,7 @@ def in_series(base: Arithmetic, made: Any) -> Arithmetic:
 
 
 def along(near: Sequence[Jet], function: Callable[[list[Any]], Sequence[Any]]) -> list[Jet]:
-    """A function of FLINT's series at jets over balls; it is given series, and what comes back are jets again."""
+    """Values, as jets, of a function of FLINT's series at jets over balls."""
     count = len(near[0].c)
     with taylor(count):
         made = SERIES[type(near[0].c[0])]
@@ -201,7 +202,7 @@ def along(near: Sequence[Jet], function: Callable[[list[Any]], Sequence[Any]]) -
 
 
 def coefficients(series: Any, count: int) -> list[Any]:
-    """So many coefficients; none where the series is not known so far, as after a division of one that starts at 0.
+    """The first `count` coefficients of a series; nan beyond those known, as after division by one that starts at 0.
 
     >>> with taylor(3):
     ...     coefficients(arb_series([0, 1, 2]) / arb_series([0, 1]), 3)
@@ -211,15 +212,15 @@ def coefficients(series: Any, count: int) -> list[Any]:
 
 
 @dataclass(frozen=True)
-class Expansion:
-    """A function of `t` between `low < 0` and `high > 0`: the coefficients, the last of them over the whole stretch."""
+class TaylorModel:
+    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last enclosed on all of it."""
 
     low: arb
     high: arb
     terms: tuple[arb, ...]
 
     def size(self) -> arb:
-        """An upper bound of its absolute value."""
+        """An upper bound of the absolute value of the function."""
         return self._upper(self.terms)
 
     def slope(self) -> arb:
@@ -227,7 +228,7 @@ class Expansion:
         return self._upper([k * c for k, c in enumerate(self.terms)][1:])
 
     def integral(self) -> arb:
-        """The integral over the stretch."""
+        """The integral from `low` to `high`, enclosed."""
         *known, last = self.terms
         count = len(self.terms)
         found = sum((c * (self.high ** (k + 1) - self.low ** (k + 1)) / (k + 1) for k, c in enumerate(known)), arb(0))
@@ -238,8 +239,8 @@ class Expansion:
         return arb(sum((abs(c) * farthest**k for k, c in enumerate(terms)), arb(0)).abs_upper())
 
 
-def expanded(function: Function, low: arb, high: arb, order: int) -> Expansion:
-    """The expansion of a function between two exact points.
+def expanded(function: Function, low: arb, high: arb, order: int) -> TaylorModel:
+    """Taylor model of a function with `order` coefficients between two exact numbers, about their midpoint.
 
     >>> found = expanded(arb_series.exp, arb(0), arb(1), 12)
     >>> (found.integral() - (arb(1).exp() - 1)).contains(0), found.integral().rad() < 1e-9
@@ -250,4 +251,4 @@ def expanded(function: Function, low: arb, high: arb, order: int) -> Expansion:
     middle = ((low + high) / 2).mid()
     with taylor(order):
         terms, whole = (coefficients(function(arb_series([at, 1])), order) for at in (middle, low.union(high)))
-    return Expansion(low - middle, high - middle, (*terms[:-1], whole[-1]))
+    return TaylorModel(low - middle, high - middle, (*terms[:-1], whole[-1]))

@@ -14,18 +14,19 @@ from .cascade import (
     doublings,
     symmetry_breaking,
 )
-from .cells import Array, fixed_points
+from .cells import Array, CycleType, fixed_points
 from .chain import Chain, Elimination, dot, trace_and_determinant
 from .chords import Chords, chord_angles, landing
 from .critical import Small, corner, corner_angle, focus, polygon, solved
-from .lengths import arc_length
+from .crossing import continued
+from .family import ALIKE, CLOSE, CycleFamily, Interval, closing, left, marks_along, same_event
 from .newton import (
     ATTEMPTS,
     GUARD,
     ROUNDINGS,
     Conditioning,
+    NewtonStep,
     Solution,
-    Step,
     System,
     UnsettledError,
     costs_half,
@@ -41,11 +42,13 @@ from .newton import (
 from .problem import Linearised, NormalForm, Problem, bordering_slopes, mirrored, seen_mirrored
 from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, Terms, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
-from .switching import Box, Curve, Degenerate, Tick, curve, switched
-from .systems import SHAPE, Cycles, reflected, rotations, symmetries
+from .switching import Box, CodimensionOneCurve, Degenerate, Tick, curve, switched
+from .systems import SHAPE, Cycles, reflected, rotations, symmetries, whole
 
 __all__ = [
+    "ALIKE",
     "ATTEMPTS",
+    "CLOSE",
     "FEIGENBAUM",
     "GUARD",
     "HIGHEST",
@@ -62,8 +65,10 @@ __all__ = [
     "Chain",
     "Chords",
     "Closure",
+    "CodimensionOneCurve",
     "Conditioning",
-    "Curve",
+    "CycleFamily",
+    "CycleType",
     "Cycles",
     "Degenerate",
     "Doubling",
@@ -71,8 +76,10 @@ __all__ = [
     "End",
     "Event",
     "Found",
+    "Interval",
     "Linearised",
     "LostError",
+    "NewtonStep",
     "NormalForm",
     "Problem",
     "Recurrence",
@@ -80,18 +87,18 @@ __all__ = [
     "Searched",
     "Small",
     "Solution",
-    "Step",
     "Steps",
     "System",
     "Terms",
     "Tick",
     "UnsettledError",
     "all_cycles",
-    "arc_length",
     "at_contraction",
     "attractor",
     "bordering_slopes",
     "chord_angles",
+    "closing",
+    "continued",
     "corner",
     "corner_angle",
     "costs_half",
@@ -110,7 +117,9 @@ __all__ = [
     "henon",
     "in_floats",
     "landing",
+    "left",
     "levels",
+    "marks_along",
     "mirrored",
     "named",
     "norm_of_inverse",
@@ -119,6 +128,7 @@ __all__ = [
     "refined",
     "reflected",
     "rotations",
+    "same_event",
     "seen_mirrored",
     "settled",
     "solved",
@@ -129,4 +139,5 @@ __all__ = [
     "through",
     "trace_and_determinant",
     "typed",
+    "whole",
 ]

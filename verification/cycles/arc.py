@@ -12,20 +12,19 @@ from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.optimize import brentq
 
-from verification.arithmetic.iteration import Stop, iterated, largest
+from verification.arithmetic.iteration import Stop, bracketed, iterated, largest
 from verification.cycles.cells import above, solved
 from verification.cycles.recurrence import Array
 
 NEWTON = Stop(small=1e-7, enough=1e-11, steps=9)  # in units of the unknowns
-FAR = 1e3  # a correction that large leads nowhere
+FAR = 1e3  # a larger correction means that the iteration diverges
 TURNED = 0.95  # the least cosine between successive tangents
 QUICK, SLOW = 3, 5  # corrector steps that lengthen and shorten the next arc
 
 
 class End(Enum):
-    """Why a path has no further point."""
+    """Reason why a path ends."""
 
     INTERVAL = "an end of the interval"
     CLOSED = "the branch is closed"
@@ -34,33 +33,33 @@ class End(Enum):
     LOST = "the branch was lost"
 
 
-class System(Protocol):
-    """Equations whose solutions are a curve."""
+class CurveSystem(Protocol):
+    """A system of equations whose solutions form a curve."""
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
 
     @property
     def weights(self) -> Array:
-        """What each unknown counts in the length of the curve."""
+        """The weight of each unknown in the length of the curve."""
 
     def linear(self, z: Array) -> tuple[Array, Any]:
         """The values of the equations and their matrix of derivatives, one column more than rows."""
 
     def tests(self, z: Array) -> dict[str, float]:
-        """Functions whose zeros on the curve are events."""
+        """Values of the test functions, whose zeros on the curve are events."""
 
     def obstacle(self, z: Array) -> str:
-        """Why `z` is no solution although the equations hold; empty when nothing is in the way."""
+        """Reason why a solution `z` of the equations is not admissible; empty when it is."""
 
-    def renewed(self, z: Array) -> "System":
+    def renewed(self, z: Array) -> "CurveSystem":
         """The same equations, prepared for the surroundings of `z`."""
 
 
 @dataclass(frozen=True)
 class Steps:
-    """Lengths of arc, and the largest number of points."""
+    """Lengths of arc of a step (the first, the smallest, the largest), and the most points of a path."""
 
     first: float = 0.01
     smallest: float = 1e-8
@@ -69,7 +68,7 @@ class Steps:
 
 
 @dataclass(frozen=True)
-class Point:
+class CurvePoint:
     """A solution with its tangent, the arc length so far, and the test functions there."""
 
     z: Array = field(repr=False)
@@ -80,20 +79,20 @@ class Point:
 
 @dataclass(frozen=True)
 class Path:
-    """The points in order, and how they end."""
+    """The points of a path in order, and the reason why it ends."""
 
-    system: System = field(repr=False)
-    points: tuple[Point, ...] = field(repr=False)
+    system: CurveSystem = field(repr=False)
+    points: tuple[CurvePoint, ...] = field(repr=False)
     end: End
     why: str
 
 
 class LostError(ValueError):
-    """The corrector did not come back to the curve."""
+    """Newton's method did not converge to a point of the curve, or the curve has no tangent there."""
 
 
-def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[Array, int]:
-    """The solution near `guess` on which `row . z = level`, and the Newton steps it took."""
+def corrected(system: CurveSystem, guess: Array, row: Array, level: float) -> tuple[Array, int]:
+    """The solution near `guess` with `row . z = level`, and the number of Newton steps; `LostError` without one."""
     lost = LostError(f"{system.label}: Newton's method no longer converges")
 
     def correction(unknowns: list[Array]) -> list[Array]:
@@ -118,7 +117,7 @@ def corrected(system: System, guess: Array, row: Array, level: float) -> tuple[A
     return found.x[0], found.steps
 
 
-def tangent_at(system: System, z: Array, along: Array) -> Array:
+def tangent_at(system: CurveSystem, z: Array, along: Array) -> Array:
     """The unit tangent at `z` that points the way of `along`."""
     _, matrix = system.linear(z)
     found = solved(above(matrix, along * system.weights), np.append(np.zeros(len(z) - 1), 1.0))
@@ -128,29 +127,32 @@ def tangent_at(system: System, z: Array, along: Array) -> Array:
     return found / length
 
 
-def arc(system: System, start: Point, length: float) -> tuple[Array, int]:
-    """The point of the curve in the plane `length` ahead of `start`."""
+def arc(system: CurveSystem, start: CurvePoint, length: float) -> tuple[Array, int]:
+    """The point of the curve in the plane across the tangent, `length` ahead of `start`; Newton steps."""
     row = start.tangent * system.weights
     guess = start.z + length * start.tangent
     return corrected(system, guess, row, float(row @ guess))
 
 
-def started(system: System, z: Array, direction: Array) -> Point:
+def started(system: CurveSystem, z: Array, direction: Array) -> CurvePoint:
     """The first point of a path: on the curve, in the plane across `direction`."""
     weighted = direction * system.weights
     place, _ = corrected(system, z, weighted, float(weighted @ z))
-    return Point(place, tangent_at(system, place, direction), 0.0, system.tests(place))
+    return CurvePoint(place, tangent_at(system, place, direction), 0.0, system.tests(place))
 
 
 def follow(
-    system: System,
-    first: Point,
+    system: CurveSystem,
+    first: CurvePoint,
     limits: Mapping[int, tuple[float, float]],
     steps: Steps | None = None,
-    tick: Callable[[Point], None] | None = None,
+    tick: Callable[[CurvePoint], object] | None = None,
     other: Callable[[Array], bool] | None = None,
 ) -> Path:
-    """The path from `first` in the direction of its tangent, as far as it goes, and never onto what `other` knows."""
+    """The path from `first` along its tangent, until it ends; `limits` are the ranges of unknowns, by their index.
+
+    `tick` is called with each point, and ends the path when it returns True. No point is taken where `other` is True.
+    """
     steps = steps or Steps()
     points, step = [first], steps.first
     while len(points) < steps.most:
@@ -177,9 +179,9 @@ def follow(
                 step /= 4  # come close before giving up
                 continue
             return Path(system, tuple(points), End.OBSTACLE, why)
-        points.append(Point(z, tangent, here.s + step, tests))
-        if tick is not None:
-            tick(points[-1])
+        points.append(CurvePoint(z, tangent, here.s + step, tests))
+        if tick is not None and tick(points[-1]):
+            return Path(system, tuple(points), End.ENOUGH, "the path was ended here")
         if _closed(system, points, step):
             return Path(system, (*points, first), End.CLOSED, "the branch came back to its start")
         system = system.renewed(z)
@@ -187,8 +189,8 @@ def follow(
     return Path(system, tuple(points), End.ENOUGH, f"{steps.most} points were asked for")
 
 
-def passing(system: System, points: Sequence[Point], index: int, value: float) -> list[Array]:
-    """The solutions between neighbours of a path where the unknown `index` passes `value`, each solved for."""
+def passing(system: CurveSystem, points: Sequence[CurvePoint], index: int, value: float) -> list[Array]:
+    """The solutions on a path at which the unknown `index` has this value, each solved for."""
     found = []
     for a, b in pairwise(points):
         if (a.z[index] - value) * (b.z[index] - value) < 0 or b.z[index] == value:
@@ -199,25 +201,25 @@ def passing(system: System, points: Sequence[Point], index: int, value: float) -
     return found
 
 
-def zero(system: System, start: Point, end: Point, name: str) -> Point:
-    """The point between two neighbours where the test function `name` vanishes."""
+def zero(system: CurveSystem, start: CurvePoint, end: CurvePoint, name: str) -> CurvePoint:
+    """The point between two neighbouring points where the test function `name` vanishes."""
 
     def value(length: float) -> float:
         return system.tests(arc(system, start, length)[0])[name] if length else start.tests[name]
 
     row = start.tangent * system.weights
     whole = float(row @ (end.z - start.z))
-    length = float(brentq(value, 0.0, whole, xtol=1e-13 + 1e-11 * abs(whole), rtol=1e-13))
+    length = bracketed(value, 0.0, whole, 1e-13 + 1e-11 * abs(whole), 1e-13)
     z, _ = arc(system, start, length)
     try:
         tangent = tangent_at(system, z, start.tangent)
     except ValueError:
         tangent = start.tangent  # branches cross there and have no common tangent
-    return Point(z, tangent, start.s + length, system.tests(z))
+    return CurvePoint(z, tangent, start.s + length, system.tests(z))
 
 
-def zero_near(system: System, first: Array, last: Array, name: str) -> Point | None:
-    """The point where a test function vanishes between two guesses, solved for at their parameters; None without."""
+def zero_near(system: CurveSystem, first: Array, last: Array, name: str) -> CurvePoint | None:
+    """The point where a test function vanishes between the solutions near two guesses; None if its sign is the same."""
     row = np.append(np.zeros(len(first) - 1), 1.0 if last[-1] > first[-1] else -1.0)
     try:
         start, end = (started(system, z, row) for z in (first, last))
@@ -226,14 +228,14 @@ def zero_near(system: System, first: Array, last: Array, name: str) -> Point | N
         return None
 
 
-def leaves(point: Point, interval: tuple[float, float]) -> bool:
-    """Is the last unknown on a side of the interval, with a tangent that points outwards?"""
+def leaves(point: CurvePoint, interval: tuple[float, float]) -> bool:
+    """Is the parameter (the last unknown) at an end of the interval, and does the tangent point outwards?"""
     value, slope = point.z[-1], point.tangent[-1]
     return bool((value <= interval[0] and slope < 0) or (value >= interval[1] and slope > 0))
 
 
 def _beyond(here: Array, z: Array, limits: Mapping[int, tuple[float, float]]) -> list[tuple[int, float]]:
-    """The sides of the box that are crossed on the way from `here` to `z`, the first one first."""
+    """The sides (index, value) of the box that are crossed on the way from `here` to `z`, the first one first."""
     crossed = []
     for index, (low, high) in limits.items():
         if not low <= z[index] <= high:
@@ -243,9 +245,13 @@ def _beyond(here: Array, z: Array, limits: Mapping[int, tuple[float, float]]) ->
 
 
 def _landed(
-    system: System, here: Point, z: Array, sides: list[tuple[int, float]], limits: Mapping[int, tuple[float, float]]
-) -> Point:
-    """The point of the curve on the side that it leaves the box by."""
+    system: CurveSystem,
+    here: CurvePoint,
+    z: Array,
+    sides: list[tuple[int, float]],
+    limits: Mapping[int, tuple[float, float]],
+) -> CurvePoint:
+    """The point of the curve on the side by which it leaves the box."""
     for index, side in sides:
         last = _at_side(system, here, z, index, side)
         if not _beyond(here.z, last.z, limits):
@@ -253,8 +259,8 @@ def _landed(
     raise LostError(f"{system.label}: the side of the box was missed")
 
 
-def _at_side(system: System, here: Point, beyond: Array, index: int, side: float) -> Point:
-    """The point of the curve on a side of the box."""
+def _at_side(system: CurveSystem, here: CurvePoint, beyond: Array, index: int, side: float) -> CurvePoint:
+    """The point of the curve where the unknown `index` is `side`, on a side of the box."""
     share = (side - here.z[index]) / (beyond[index] - here.z[index])
     row = np.zeros(len(beyond))
     row[index % len(beyond)] = 1.0
@@ -262,15 +268,15 @@ def _at_side(system: System, here: Point, beyond: Array, index: int, side: float
     z[index] = side
     tangent = tangent_at(system, z, here.tangent)
     length = float((here.tangent * system.weights) @ (z - here.z))
-    return Point(z, tangent, here.s + length, system.tests(z))
+    return CurvePoint(z, tangent, here.s + length, system.tests(z))
 
 
-def _closed(system: System, points: list[Point], step: float) -> bool:
+def _closed(system: CurveSystem, points: list[CurvePoint], step: float) -> bool:
     first, last = points[0], points[-1]
     gap = last.z - first.z
     near = float(np.sqrt(gap @ (system.weights * gap)))
     return len(points) > 6 and near < step and float(first.tangent @ (system.weights * last.tangent)) > TURNED
 
 
-def _lost(here: Point, error: str) -> str:
+def _lost(here: CurvePoint, error: str) -> str:
     return f"{error}, next to the last point, with any step down to the smallest"

@@ -1,4 +1,4 @@
-"""A branch of cycles in one parameter: where it starts, what happens on it, and its points as a table.
+"""A branch of cycles in one parameter: its start, its events (bifurcations), and its points as a table.
 
 It is followed both ways. Each event is a zero of a test function between two points, located on the curve
 (`verification.cycles.recurrence` names them).
@@ -9,6 +9,7 @@ branch; `event` is empty at an ordinary point.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -19,82 +20,102 @@ from symbolic.cycles import cycle as named_cycles
 from symbolic.cycles.cycle import Cycle
 from symbolic.tables.table import Table
 from verification.cycles import arc
-from verification.cycles.arc import End, LostError, Path, Point, Steps
-from verification.cycles.cells import Spectrum
+from verification.cycles.arc import CurvePoint, End, LostError, Path, Steps
+from verification.cycles.cells import CycleType, MonodromyDeterminants
 from verification.cycles.chords import Chords
 from verification.cycles.problem import NormalForm
 from verification.cycles.recurrence import IDENTITY, Array, BifurcationKind, Parameters, Recurrence
-from verification.cycles.systems import Cycles, coefficients, crossed, parts, repeats, whole
+from verification.cycles.systems import Cycles, coefficients, crossed, images, parts, repeats, whole
+from verification.maps.joins import joins
+from verification.maps.one_sided import OneSided, of_rows, verdict
 
 if TYPE_CHECKING:
     import xarray
 
 
 NOISE = 1e-9  # a test function that small has no sign
-APPROACHES = 3  # to a join, whose parameter may depend on that of the branch
-DIFFERENCE = 2.0**-20  # of the parameter, to see how a join moves
-WIDTHS = (1e-4, 1e-3, 1e-2)  # of the parameter, on either side of a birth
-NEARBY = 0.3  # a start that is farther from the cycle it leads to is no start for it
+APPROACHES = 3  # iterations for a join's place, which may depend on the parameter
+DIFFERENCE = 2.0**-20  # step of the parameter, for the derivative of a join's place
+WIDTHS = (1e-4, 1e-3, 1e-2)  # steps of the parameter to either side of a birth
+AGAIN = 1e-6  # in radians and parameter: so near, two events or an event and an image are the same
+NEARBY = 0.3  # largest distance of a start from its cycle
 Interval = tuple[float, float]
+
+
+class Collision(Enum):
+    """What becomes of a cycle whose bounce meets a join where the tangents agree."""
+
+    PERSISTENCE = "persistence: the cycle goes on over the join"
+    FOLD = "nonsmooth fold: two cycles meet on the join, and exist on one side of this value alone"
+    SEVERAL = "more than two cycles meet on joins"
 
 
 @dataclass(frozen=True)
 class Event:
-    """What happens, where, and the coefficients of its normal form where there is one.
+    """An event on a branch: its kind, its place, and the coefficients of its normal form where there is one.
 
     `ring` and `x` are the cycle, or the part of it that flips where a symmetry breaks. When it is not `located` its
-    place is interpolated between two points. At its `birth` a branch turns: `ring` is then the cycle it is born of.
+    place is interpolated between two points. At its `birth` a branch turns, and `ring` is the cycle from which it is
+    born.
     """
 
     kind: BifurcationKind
-    point: Point
+    point: CurvePoint
     ring: Recurrence
     x: Array = field(repr=False)
     form: NormalForm | None = None
     located: bool = True
     birth: bool = False
+    collision: Collision | None = None
 
     @property
     def value(self) -> float:
-        """The parameter."""
+        """The value of the parameter at the event."""
         return float(self.point.z[-1])
 
 
 @dataclass(frozen=True)
 class Branch:
-    """The points in order of arc length, the events among them, and how either end came about.
+    """A branch of cycles: points and events in order of arc length, and the reason of either end.
 
-    At `births` the branch turns: events of the cycles that it is born of, and not its own.
+    At `births` the branch turns: they are events of the cycles from which it is born, and not its own. A family that
+    goes on over joins has `pieces`, each with its own equations; `system` is that of the piece with which it begins.
     """
 
     system: Cycles
-    points: tuple[Point, ...] = field(repr=False)
+    points: tuple[CurvePoint, ...] = field(repr=False)
     events: tuple[Event, ...]
     ends: tuple[tuple[End, str], tuple[End, str]]
     births: tuple[Event, ...] = ()
+    pieces: "tuple[Branch, ...]" = ()
+
+    @property
+    def each(self) -> "tuple[Branch, ...]":
+        """The pieces: itself where it crosses no join."""
+        return self.pieces or (self,)
 
     @property
     def along(self) -> list[Event]:
-        """Events and births, in order."""
+        """The events and the births, in order along the branch."""
         return sorted((*self.events, *self.births), key=lambda event: event.point.s)
 
-    def spectra(self) -> list[Spectrum]:
+    def spectra(self) -> list[MonodromyDeterminants]:
         """The multipliers at each point."""
         return [spectrum_of(point) for point in self.points]
 
     @property
     def values(self) -> Array:
-        """The parameter along the branch."""
+        """The values of the parameter at the points."""
         return np.array([point.z[-1] for point in self.points])
 
     def at(self, value: float) -> list[Array]:
-        """The cycles where the branch passes `value`, each solved for."""
-        return arc.passing(self.system, self.points, -1, value)
+        """The cycles (bounces, then parameter) where the branch passes `value`, each solved for."""
+        return [z for piece in self.each for z in arc.passing(piece.system, piece.points, -1, value)]
 
 
-def spectrum_of(point: Point) -> Spectrum:
+def spectrum_of(point: CurvePoint) -> MonodromyDeterminants:
     """The multipliers at a point of a branch."""
-    return Spectrum(point.tests["one"], point.tests["minus_one"], point.tests["volume"] + 1)
+    return MonodromyDeterminants(point.tests["one"], point.tests["minus_one"], point.tests["volume"] + 1)
 
 
 def branch(
@@ -105,7 +126,7 @@ def branch(
     interval: Interval,
     fixed: Parameters | None = None,
     steps: Steps | None = None,
-    tick: Callable[[Point], None] | None = None,
+    tick: Callable[[CurvePoint], object] | None = None,
 ) -> Branch:
     """The branch through the cycle near `x` at `parameter = value`, both ways, inside `interval`.
 
@@ -144,17 +165,17 @@ def through(
     direction: Array,
     interval: Interval,
     steps: Steps | None = None,
-    tick: Callable[[Point], None] | None = None,
+    tick: Callable[[CurvePoint], object] | None = None,
     ways: tuple[int, ...] = (-1, 1),
 ) -> Branch:
-    """The branch through `z`, followed along `direction` and against it; events included."""
+    """The branch through the cycle `z`, followed along `direction` and against it (`ways`), with its events."""
     limits = {len(z) - 1: interval}
     tangent = arc.tangent_at(system, z, direction)
     ring = system.recurrence
     other = None if repeats(ring, z[:-1]) else lambda at: repeats(ring, at[:-1])
     paths: dict[int, Path] = {}
     for way in ways:
-        first = Point(z, way * tangent, 0.0, system.tests(z))
+        first = CurvePoint(z, way * tangent, 0.0, system.tests(z))
         if arc.leaves(first, interval):
             paths[way] = Path(system, (first,), End.INTERVAL, "the end of the interval was reached")
             continue
@@ -162,20 +183,36 @@ def through(
         if paths[way].end is End.CLOSED:
             paths = {1: paths[way]}
             break
-    one = Path(system, (Point(z, tangent, 0.0, system.tests(z)),), End.INTERVAL, "followed one way only")
+    one = Path(system, (CurvePoint(z, tangent, 0.0, system.tests(z)),), End.INTERVAL, "followed one way only")
     back, forth = paths.get(-1, one), paths.get(1, one)
-    reversed_ = [Point(p.z, -p.tangent, -p.s, p.tests) for p in reversed(back.points[1:])]
-    points = [*reversed_, Point(z, tangent, 0.0, system.tests(z)), *forth.points[1:]]
+    reversed_ = [CurvePoint(p.z, -p.tangent, -p.s, p.tests) for p in reversed(back.points[1:])]
+    points = [*reversed_, CurvePoint(z, tangent, 0.0, system.tests(z)), *forth.points[1:]]
     events = [event for a, b in pairwise(points) for event in between(system, a, b)]
     for path, end in ((back, points[0]), (forth, points[-1])):
         collision = border(system, end) if path.end is End.OBSTACLE else None
         events += [collision] if collision else []
+    events = _each_once(ring, events)
     own, births = (tuple(event for event in events if event.birth == born) for born in (False, True))
     return Branch(system, tuple(points), own, ((back.end, back.why), (forth.end, forth.why)), births)
 
 
-def between(system: Cycles, a: Point, b: Point) -> list[Event]:
-    """The events between two neighbours, in order."""
+def _each_once(ring: Recurrence, events: Sequence[Event]) -> list[Event]:
+    """Events without repetition: a branch may meet one again at an image of its own cycle."""
+    found: list[Event] = []
+    for event in events:
+        z = event.point.z
+        if not any(
+            (event.kind, event.birth) == (one.kind, one.birth)
+            and abs(z[-1] - one.value) < AGAIN
+            and images(ring, one.point.z[:-1], z[:-1], AGAIN)
+            for one in found
+        ):
+            found.append(event)
+    return found
+
+
+def between(system: Cycles, a: CurvePoint, b: CurvePoint) -> list[Event]:
+    """The events between two neighbouring points, in order."""
     found, turns = [], a.tangent[-1] * b.tangent[-1] < 0
     for name in ("one", "minus_one", "volume"):
         before, after = a.tests[name], b.tests[name]
@@ -187,19 +224,19 @@ def between(system: Cycles, a: Point, b: Point) -> list[Event]:
     return sorted(found, key=lambda event: event.point.s)
 
 
-def _located(system: Cycles, a: Point, b: Point, name: str, turns: bool) -> Event:
-    """The event at the zero of a test function; where branches cross the corrector may be lost, and it is estimated."""
+def _located(system: Cycles, a: CurvePoint, b: CurvePoint, name: str, turns: bool) -> Event:
+    """The event at the zero of a test function; interpolated where the corrector fails, as where branches cross."""
     try:
         return _named(system, name, arc.zero(system, a, b, name), turns)
     except ValueError:
         share = a.tests[name] / (a.tests[name] - b.tests[name])
         z = a.z + share * (b.z - a.z)
-        point = Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z))
+        point = CurvePoint(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z))
         return replace(_named(system, name, point, turns), located=False, form=None)
 
 
-def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
-    """The pitchfork between two neighbours, on the part of the cycle that flips there."""
+def _broken(system: Cycles, a: CurvePoint, b: CurvePoint) -> Event | None:
+    """The pitchfork between two neighbouring points, on the part of the cycle that flips there; None without one."""
     ring = system.recurrence
     for part, _ in parts(ring, a.z[:-1]) if isinstance(ring, Chords) else []:
         first, last = (np.append(p.z[: part.period], p.z[-1]) for p in (a, b))
@@ -209,8 +246,8 @@ def _broken(system: Cycles, a: Point, b: Point) -> Event | None:
     return None
 
 
-def _birth(system: Cycles, a: Point, b: Point) -> list[Event]:
-    """Where the branch turns and no multiplier passes 1: there it is born of a cycle that repeats itself, and flips."""
+def _birth(system: Cycles, a: CurvePoint, b: CurvePoint) -> list[Event]:
+    """The birth between two neighbouring points, if any: a flip of the cycle from which the branch starts."""
     for part, x, share in crossed(system.recurrence, a.z[:-1], b.z[:-1]):
         for wide in WIDTHS:
             first, last = (np.append(x, a.z[-1] + side * wide) for side in (-1, 1))
@@ -220,19 +257,19 @@ def _birth(system: Cycles, a: Point, b: Point) -> list[Event]:
     return []
 
 
-def _parted(system: Cycles, part: Chords, there: Point, a: Point, b: Point, share: float) -> Event:
-    """The event of a part that flips, at a share of the way from one neighbour to the other."""
+def _parted(system: Cycles, part: Chords, there: CurvePoint, a: CurvePoint, b: CurvePoint, share: float) -> Event:
+    """The event where `part` flips, put at `share` of the way from point `a` to point `b`."""
     kind = BifurcationKind.FLIP if part.closure == IDENTITY else BifurcationKind.PITCHFORK
     x = there.z[:-1]
     form = _form(
         part, x, {**system.fixed, system.parameter: float(there.z[-1])}, BifurcationKind.FLIP, system.parameter
     )
     z = np.append(whole(part, x, system.recurrence.period)[1], there.z[-1])
-    return Event(kind, Point(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z)), part, x, form)
+    return Event(kind, CurvePoint(z, a.tangent, a.s + share * (b.s - a.s), system.tests(z)), part, x, form)
 
 
-def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
-    ring, x, at = system.recurrence, point.z[:-1], system.at(point.z)
+def _named(system: Cycles, name: str, point: CurvePoint, turns: bool) -> Event:
+    (ring, x), at = _placed(system.recurrence, point.z[:-1]), system.at(point.z)
     if name == "volume":
         what = BifurcationKind.TORUS if abs(spectrum_of(point).trace) < 2 else BifurcationKind.NEUTRAL_SADDLE
         return Event(what, point, ring, x)
@@ -243,6 +280,11 @@ def _named(system: Cycles, name: str, point: Point, turns: bool) -> Event:
     return Event(BifurcationKind.BRANCH_POINT, point, ring, x)
 
 
+def _placed(ring: Recurrence, x: Array) -> tuple[Recurrence, Array]:
+    """The cycle with each bounce on its component, which a branch may have left over a smooth join."""
+    return ring.placed(x) if isinstance(ring, Chords) else (ring, x)
+
+
 def _form(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, parameter: str) -> NormalForm | None:
     try:
         return coefficients(ring, x, at, kind, parameter)
@@ -250,14 +292,19 @@ def _form(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, par
         return None
 
 
-def border(system: Cycles, last: Point) -> Event | None:
-    """The border collision next to the last point of a path, where a bounce lies on the join itself."""
+def border(system: Cycles, last: CurvePoint) -> Event | None:
+    """The border collision next to the last point of a path, where a bounce lies on the join itself.
+
+    In a corner that two bounces reach, and where a flight touches the boundary on its way, the equations have no
+    solution beyond: then the last point is the place, not located.
+    """
     ring, z = system.recurrence, last.z
     if not isinstance(ring, Chords):
         return None
+    beside_it = Event(BifurcationKind.BORDER_COLLISION, last, ring, z[:-1], located=False)
     gaps = [(abs(end - z[i]), i) for i, end in enumerate(ring.nearest_joins(z[:-1], system.at(z))) if end is not None]
     if not gaps or min(gaps)[0] > 1e-3:
-        return None
+        return beside_it
     bounce = min(gaps)[1]
     for _ in range(APPROACHES):
         here, beside = z, np.append(z[:-1], z[-1] + DIFFERENCE)
@@ -267,10 +314,10 @@ def border(system: Cycles, last: Point) -> Event | None:
         try:
             z, _ = arc.corrected(system, z, row, ends[0] + row[-1] * here[-1])
         except LostError:
-            return None
+            return beside_it
         if not row[-1]:
             break
-    return Event(BifurcationKind.BORDER_COLLISION, Point(z, last.tangent, last.s, last.tests), ring, z[:-1])
+    return Event(BifurcationKind.BORDER_COLLISION, CurvePoint(z, last.tangent, last.s, last.tests), ring, z[:-1])
 
 
 # name: the cycle, the table it belongs to, and the contraction at which it is given (None: all of them)
@@ -286,7 +333,7 @@ NAMED: dict[str, tuple[Callable[[], Cycle], str, float | None]] = {
 
 
 def named(name: str, table: Table) -> tuple[Chords, Array, float | None]:
-    """The ring, its bounces, and the contraction it belongs to.
+    """The chord system of a cycle with a name, its bounces, and its contraction (None: any).
 
     >>> from symbolic.tables import cuspless
     >>> named("horizontal", cuspless)[0].components
@@ -303,7 +350,7 @@ def named(name: str, table: Table) -> tuple[Chords, Array, float | None]:
 
 
 def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None = None) -> tuple[Chords, Array]:
-    """The ring of bounces at the parameters `theta`, on the components named; on the first one when none is."""
+    """The chord system of bounces at the parameters `theta` on the named components (None: the first), and `theta`."""
     names = [component.name for component in table.components]
     if len(theta) < 2:
         raise ValueError(f"--start has {len(theta)} bounce; a cycle has at least 2, such as 0.1,3.0")
@@ -320,7 +367,7 @@ def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None
 
 
 def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
-    """The cycle near `x` at the contraction `given`, followed to `lam`; the one that its branch meets there first."""
+    """The cycle near `x` at the contraction `given`, followed to `lam`: the first that its branch meets there."""
     if given == lam:
         return x
     found = branch(ring, x, "lam", given, (min(given, lam), max(given, lam)))
@@ -330,15 +377,15 @@ def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
     return min(there, key=lambda point: abs(point.s)).z[:-1]
 
 
-def rows(branch: Branch) -> list[tuple[Point, Event | None]]:
-    """Points and events in order."""
-    both: list[tuple[Point, Event | None]] = [(point, None) for point in branch.points]
+def rows(branch: Branch) -> list[tuple[CurvePoint, Event | None]]:
+    """The points and the events in order, each with its event or None."""
+    both: list[tuple[CurvePoint, Event | None]] = [(point, None) for point in branch.points]
     both += [(event.point, event) for event in branch.along]
     return sorted(both, key=lambda row: (row[0].s, row[1] is not None))
 
 
 def dataset(branch: Branch) -> "xarray.Dataset":
-    """Dimensions `point`, `bounce` and `which` (multiplier); the parameter and the event are coordinates.
+    """A branch as an xarray Dataset over `point`, `bounce`, `which` (multiplier); parameter and event as coordinates.
 
     >>> from verification.cycles.branch import branch as followed
     >>> from verification.cycles.recurrence import logistic
@@ -373,25 +420,54 @@ def dataset(branch: Branch) -> "xarray.Dataset":
 
 
 def record(branch: Branch) -> dict[str, Any]:
-    """The same for JSON."""
+    """A branch as JSON, with the entries of `dataset`."""
     parameter, points = branch.system.parameter, []
-    for point, event in rows(branch):
+    for system, (point, event) in ((piece.system, row) for piece in branch.each for row in rows(piece)):
         spectrum = spectrum_of(point)
+        kind = CycleType.of(spectrum.multipliers, spectrum.determinant == 1)
+        if sides := sides_at(system, point):
+            kind = CycleType(sides.stability)
         form = event.form if event is not None else None
         points.append(
             {
                 parameter: float(point.z[-1]),
                 "arclength": point.s,
-                "theta": [float(x) for x in point.z[:-1]],
+                **_bounces(system.recurrence, point.z[:-1]),
                 "multipliers": [{"real": m.real, "imaginary": m.imag} for m in spectrum.multipliers],
                 "determinant": spectrum.determinant,
-                "stable": spectrum.stable,
+                "stable": kind is CycleType.STABLE if sides else spectrum.stable,
+                "stability": kind.value,
                 "event": event.kind.value if event is not None else None,
                 "branch_coefficient": form.branch if form is not None else None,
                 "supercritical": form.supercritical if form is not None else None,
             }
         )
     return {"cycle": branch.system.label, "parameter": parameter, **_ended(branch), "points": points}
+
+
+def sides_at(system: Cycles, point: CurvePoint) -> OneSided | None:
+    """What the one-sided derivatives of a cycle say that stays on joins; None where it has one derivative."""
+    ring = system.recurrence
+    if not isinstance(ring, Chords) or ring.shapes or len(ring.table.components) == 1:
+        return None
+    at, x = ring.placed(point.z[:-1])
+    known = joins(ring.table)
+    several = known.sides(at.components, x)
+    if len(several) == 1:
+        return None
+    rings = [(replace(at, components=parts), y) for parts, y in several]
+    rows = [one.terms(y, system.at(point.z), 1).listed().rows for one, y in rings]
+    slopes = [known.slopes(at.components, parts) for parts, _ in several]
+    return verdict([of_rows(row, slope) for row, slope in zip(rows, slopes, strict=True)])
+
+
+def _bounces(ring: Recurrence, x: Array) -> dict[str, Any]:
+    """The boundary parameters of the bounces, and their components where the table has several, as JSON."""
+    at, x = _placed(ring, x)
+    theta: dict[str, Any] = {"theta": [float(value) for value in x]}
+    if isinstance(at, Chords) and len(at.table.components) > 1:
+        theta["components"] = list(at.components)
+    return theta
 
 
 def _ended(branch: Branch) -> dict[str, str]:

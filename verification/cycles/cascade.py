@@ -1,6 +1,6 @@
 """Period-doubling cascades in float64: an attracting cycle is followed to its flip, onto the cycle born there, and on.
 
-Nothing here is proved: each flip is a start that lies in reach of Newton's method. The cascade of the paper (section
+Nothing here is proved: each flip is a start for Newton's method. The cascade of the paper (section
 6.6, `alpha = 0.08`) is the egg's, `lambda_n`, where period `2**(n-1)` becomes `2**n`. `lambda_2`, where it exists, is
 the flip of the diameter; from `lambda_3` on the cycles are followed from an attractor of period 4.
 """
@@ -26,11 +26,11 @@ from verification.cycles.recurrence import MIRROR, BifurcationKind
 
 FEIGENBAUM = 4.6692
 SETTLE = 3000  # bounces thrown away before an attractor is looked at
-SAME = 1e-7  # radians: an orbit that returns this close is taken for a cycle
+SAME = 1e-7  # radians: an orbit that returns this close counts as a cycle
 
 
 def attractor(table: Table, lam: float, start: tuple[float, float], longest: int = 64) -> list[float]:
-    """The cycle that a particle settles on, as bounce parameters; empty when none of `longest` bounces.
+    """The cycle that a particle settles on, as bounce parameters; empty when it has more than `longest` bounces.
 
     For tables of one convex component; `start` are two successive bounces.
 
@@ -70,7 +70,7 @@ def characteristic(
 
 
 def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple[int, ...] = ()) -> list[float]:
-    """The cycle near `theta` at contraction `lam`, in float64; on one component when none are given."""
+    """The cycle near `theta` at contraction `lam`, in float64; without `components`, on the first one."""
     return floats(Problem(table, components or (0,) * len(theta), lam=Rational(lam)), theta)
 
 
@@ -108,7 +108,7 @@ def next_critical(table: Table, theta: Sequence[float], lam: float, step: float,
 
 
 def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tuple[list[float], float]:
-    """The cycle of twice the period that a flip bears, near `lam + distance`, and that `lam`.
+    """The cycle of twice the period that is born at a flip, near `lam + distance`, and its `lam`.
 
     The branch is `lam + c*e**2`, with `c` from the third-order terms; it may lie on either side.
     """
@@ -129,7 +129,7 @@ def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tup
 GRID = [k / 25 for k in range(20, -1, -1)]
 START = 0.05, 3.1  # two successive bounces near a diameter
 TRIED = f"a particle settles on at lam = {GRID[-1]}, ..., {GRID[0]} in steps of 0.04"
-HIGHEST = 17  # the n of the doubling whose period, 2**16, still takes minutes
+HIGHEST = 17  # n of the last doubling: from period 2**16, which takes minutes
 
 
 @dataclass(frozen=True)
@@ -141,17 +141,17 @@ class Doubling:
 
     @property
     def n(self) -> int:
-        """`lambda_n` is where period `2**(n-1)` doubles."""
+        """The `n` of `lambda_n`, where period `2**(n-1)` doubles."""
         return self.problem.period.bit_length()
 
     @property
     def lam(self) -> float:
-        """The contraction."""
+        """The contraction of the flip."""
         return self.start[-1]
 
 
 def doublings(table: Table, theta: Sequence[float], lam: float, step: float) -> Iterator[Doubling]:
-    """The flips of an attracting cycle at `lam` and of those born at each, the first one sought in steps of `step`."""
+    """The flips of an attracting cycle at `lam` and of the cycles born at each, sought first in steps of `step`."""
     critical = next_critical(table, theta, lam, step, BifurcationKind.FLIP)
     gap = (critical[-1] - lam) / 4
     while True:
@@ -163,7 +163,7 @@ def doublings(table: Table, theta: Sequence[float], lam: float, step: float) -> 
 
 
 def cascade(alpha: Expr) -> Iterator[Doubling]:
-    """The egg's, from `lambda_3` on.
+    """The doublings of the egg's cascade, from `lambda_3` on.
 
     >>> from sympy import Rational
     >>> members = cascade(Rational(2, 25))
@@ -176,7 +176,7 @@ def cascade(alpha: Expr) -> Iterator[Doubling]:
 
 
 def _back_after_four(table: Table) -> list[float]:
-    """Where on the grid a particle near a diameter is back after four bounces, in one float64 run."""
+    """The contractions of `GRID` at which a particle near a diameter is back after four bounces, in float64."""
     from numeric import PinballMap
 
     theta = np.full(len(GRID), START[1])
@@ -188,7 +188,7 @@ def _back_after_four(table: Table) -> list[float]:
 
 
 def stable_four(table: Table) -> tuple[float, list[float]]:
-    """The largest contraction of a coarse grid with an attracting cycle of period 4 near a diameter."""
+    """The largest contraction of `GRID` with an attracting cycle of period 4 near a diameter, and that cycle."""
     for lam in _back_after_four(table):
         cycle = attractor(table, lam, START, 16)
         if len(cycle) == 4:
@@ -200,7 +200,7 @@ def stable_four(table: Table) -> tuple[float, list[float]]:
 
 
 def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
-    """Where the mirror-symmetric cycle of period 4 bears two that are not: a flip of half the cycle.
+    """Problem and start for the pitchfork of the mirror-symmetric cycle of period 4: a flip of half the cycle.
 
     A symmetric cycle cannot double its period: half of it would need the multipliers `i` and `-i`,
     whose product is 1. It loses its symmetry first, and what is born there doubles.
@@ -221,7 +221,7 @@ def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
 
 
 def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
-    """What `lambda_n` solves, and where to start."""
+    """The problem that `lambda_n` solves, and a start for its solution."""
     if not 2 <= n <= HIGHEST:
         raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
     if n == 2:
@@ -231,7 +231,7 @@ def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
 
 
 def doubling(alpha: Expr, n: int) -> Doubling:
-    """`lambda_n` of the egg in float64; those before it are computed once."""
+    """The flip `lambda_n` of the egg in float64; those before it are computed once and kept."""
     known, more = _known(alpha)
     tick = telling("doublings in float64")
     while len(known) < n - 2:

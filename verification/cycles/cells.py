@@ -16,13 +16,12 @@ symmetry in common with the search.
 """
 
 from dataclasses import dataclass
+from enum import Enum
 from math import pi
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from numeric import PinballMap
 from numeric.backends import elementary
@@ -42,14 +41,22 @@ def solved(matrix: Any, right: Array) -> Array:
     try:
         if matrix.shape[0] <= DENSE:
             return np.linalg.solve(matrix, right)
-        found: Array = splu(sparse.csc_matrix(matrix)).solve(right)
+        found: Array = _factors(matrix).solve(right)
     except (np.linalg.LinAlgError, RuntimeError):
         raise ValueError("a singular matrix") from None
     return found
 
 
+def _factors(matrix: Any) -> Any:
+    """The LU factors of a sparse matrix. SciPy's sparse part is imported only here: most cycles do without."""
+    from scipy import sparse
+    from scipy.sparse.linalg import splu
+
+    return splu(sparse.csc_matrix(matrix))
+
+
 def ring_matrix(terms: Terms[Array], closure: Closure, sign: int = 1) -> Any:
-    """The linearised rules on vectors that come back multiplied by `sign`; sparse when it is large.
+    """The matrix of the linearised rules on vectors that close with a factor `sign`; sparse when it is large.
 
     >>> one = np.ones(3)
     >>> t = Terms(one, (one, 2 * one, 3 * one), {}, {}, {})
@@ -64,6 +71,8 @@ def ring_matrix(terms: Terms[Array], closure: Closure, sign: int = 1) -> Any:
     rows, columns = np.tile(at, 3), np.concatenate([at, (at - 1) % n, (at + 1) % n])
     values = np.concatenate([diagonal, lower * back, upper * forth])
     if n > DENSE:
+        from scipy import sparse
+
         return sparse.csc_matrix((values, (rows, columns)), shape=(n, n))
     made = np.zeros((n, n))
     np.add.at(made, (rows, columns), values)
@@ -71,26 +80,30 @@ def ring_matrix(terms: Terms[Array], closure: Closure, sign: int = 1) -> Any:
 
 
 def beside(matrix: Any, column: Array) -> Any:
-    """A matrix with one column more."""
-    if sparse.issparse(matrix):
-        return sparse.hstack([matrix, column[:, None]], format="csc")
-    return np.hstack([matrix, column[:, None]])
+    """The matrix with one column added on the right."""
+    if isinstance(matrix, np.ndarray):
+        return np.hstack([matrix, column[:, None]])
+    from scipy import sparse
+
+    return sparse.hstack([matrix, column[:, None]], format="csc")
 
 
 def above(matrix: Any, row: Array) -> Any:
-    """A matrix with one row more."""
-    if sparse.issparse(matrix):
-        return sparse.vstack([matrix, row[None, :]], format="csc")
-    return np.vstack([matrix, row])
+    """The matrix with one row added below."""
+    if isinstance(matrix, np.ndarray):
+        return np.vstack([matrix, row])
+    from scipy import sparse
+
+    return sparse.vstack([matrix, row[None, :]], format="csc")
 
 
 def dense(matrix: Any) -> Array:
-    """A matrix as an array."""
-    return np.asarray(matrix.toarray() if sparse.issparse(matrix) else matrix, dtype=np.float64)
+    """The matrix as a dense array."""
+    return np.asarray(matrix if isinstance(matrix, np.ndarray) else matrix.toarray(), dtype=np.float64)
 
 
 @dataclass(frozen=True)
-class Spectrum:
+class MonodromyDeterminants:
     """`det(M - 1)`, `det(M + 1)` and `det M` of a cycle's monodromy matrix `M`."""
 
     at_one: float
@@ -99,14 +112,14 @@ class Spectrum:
 
     @property
     def trace(self) -> float:
-        """`mu_1 + mu_2`."""
+        """The sum of the multipliers."""
         return (self.at_minus_one - self.at_one) / 2
 
     @property
     def multipliers(self) -> tuple[complex, complex]:
-        """The larger one in modulus first.
+        """The multipliers, the one larger in modulus first.
 
-        >>> Spectrum(0.5, 4.5, 0.0).multipliers
+        >>> MonodromyDeterminants(0.5, 4.5, 0.0).multipliers
         ((2+0j), 0j)
         """
         half, det = self.trace / 2, self.determinant
@@ -116,12 +129,35 @@ class Spectrum:
 
     @property
     def stable(self) -> bool:
-        """Both multipliers inside the unit circle (Jury's criterion)."""
+        """Are both multipliers inside the unit circle (Jury's criterion)?"""
         return self.at_one > 0 and self.at_minus_one > 0 and self.determinant < 1
 
 
-def spectrum(terms: Terms[Array], closure: Closure) -> Spectrum:
-    """The three numbers, from determinants of the ring: none cancels where a multiplier nears 1 or -1."""
+class CycleType(Enum):
+    """Stability of a cycle: elliptic, hyperbolic and parabolic where the map preserves areas.
+
+    >>> CycleType.of((-1 + 0j, -1 + 0j), elastic=True), CycleType.of((0.5j, -0.5j), elastic=False)
+    (<CycleType.PARABOLIC: 'parabolic'>, <CycleType.STABLE: 'stable'>)
+    """
+
+    STABLE = "stable"
+    UNSTABLE = "unstable"
+    ELLIPTIC = "elliptic"
+    HYPERBOLIC = "hyperbolic"
+    PARABOLIC = "parabolic"
+    UNDECIDED = "undecided"  # its derivatives on the two sides of a join disagree
+
+    @classmethod
+    def of(cls, multipliers: tuple[complex, complex], elastic: bool) -> "CycleType":
+        """The type of a cycle with these multipliers, the larger in modulus first; if `elastic`, their product is 1."""
+        large = multipliers[0]
+        if not elastic:
+            return cls.STABLE if max(map(abs, multipliers)) < 1 else cls.UNSTABLE
+        return cls.ELLIPTIC if large.imag else cls.PARABOLIC if abs(large) == 1 else cls.HYPERBOLIC
+
+
+def spectrum(terms: Terms[Array], closure: Closure) -> MonodromyDeterminants:
+    """The spectrum from determinants of the ring's matrices, accurate also where a multiplier is near 1 or -1."""
     lower, _, upper = terms.slope
     n = len(lower)
     sign_u, log_u = np.prod(np.sign(upper)), np.sum(elementary.log(np.abs(upper)))
@@ -129,7 +165,7 @@ def spectrum(terms: Terms[Array], closure: Closure) -> Spectrum:
     for s in (1, -1):
         sign, log = _determinant(ring_matrix(terms, closure, s))
         at.append(float(s * closure.turn * (-1) ** (n + 1) * sign * sign_u * elementary.exp(min(log - log_u, 700.0))))
-    return Spectrum(at[0], at[1], float(np.prod(lower / upper)))
+    return MonodromyDeterminants(at[0], at[1], float(np.prod(lower / upper)))
 
 
 def _determinant(matrix: Any) -> tuple[float, float]:
@@ -138,7 +174,7 @@ def _determinant(matrix: Any) -> tuple[float, float]:
         sign, log = np.linalg.slogdet(matrix)
         return float(sign), float(log)
     try:
-        factors = splu(sparse.csc_matrix(matrix))
+        factors = _factors(matrix)
     except RuntimeError:
         return 0.0, -np.inf
     diagonal = factors.U.diagonal()
@@ -157,7 +193,7 @@ def _parity(permutation: Array) -> int:
 
 
 def null_vectors(matrix: Any) -> tuple[Array, Array]:
-    """Right and left vectors of the smallest singular value, of root mean square 1."""
+    """Right and left singular vectors of the smallest singular value, of root mean square 1."""
     left, _, right = np.linalg.svd(dense(matrix))
     scale = np.sqrt(len(left))
     return right[-1] * scale, left[:, -1] * scale
@@ -167,16 +203,16 @@ NEWTON = Stop(enough=1e-11, steps=14, reach=0.5)
 
 
 class Corrector:
-    """The chord system of a table at one contraction, for many cycles at a time."""
+    """Newton's method on the chord system of a table at one contraction, for many cycles at a time."""
 
     def __init__(self, table: Table, lam: float, law: Law = PAPERS_LAW) -> None:
         self.table, self.lam, self.law = table, lam, law
 
     def closed(self, components: tuple[int, ...], seeds: Array, known: Array | None = None) -> Array:
-        """The cycles that Newton's method reaches from the rows of `seeds`; rows that do not settle are dropped.
+        """The cycles that Newton's method reaches from the rows of `seeds`; rows that do not converge are dropped.
 
-        With `known` rows the equations are deflated: multiplied by `1 + 1/distance**2` for each of them, so that
-        those cycles are zeros no more and a seed next to one is driven on to another (Farrell, Birkisson and Funke).
+        With `known` rows the equations are deflated: multiplied by `1 + 1/distance**2` for each of them, so that those
+        cycles are no zeros any more and a seed next to one leads to another (Farrell, Birkisson and Funke).
 
         >>> from symbolic.tables import ellipse
         >>> axes = Corrector(ellipse.at(a=2), 0.5).closed((0, 0), np.array([[1.4, -1.6], [0.1, 3.0]]))
@@ -194,7 +230,7 @@ class Corrector:
         return kept
 
     def diagonals(self, components: tuple[int, ...], x: Array) -> tuple[Array, Array, Array, Array]:
-        """The rules at each bounce and their derivatives by the bounce before, the bounce, and the one after."""
+        """Values of the rule at each bounce, and derivatives by the bounce before, the bounce, and the one after."""
         n, rule = len(components), Chords(self.table, components, law=self.law).over(ARRAYS)
         value, lower, middle, upper = (np.empty_like(x) for _ in range(4))
         for i in range(n):
@@ -203,14 +239,16 @@ class Corrector:
             value[:, i], (lower[:, i], middle[:, i], upper[:, i]) = terms.value, terms.slope
         return value, lower, middle, upper
 
+    def at_one(self, components: tuple[int, ...], x: Array) -> Array:
+        """The modulus of `det(1 - M)`, with the monodromy matrix `M` of the cycle in each row."""
+        _, *bands = self.diagonals(components, x)
+        with np.errstate(all="ignore"):
+            log = np.linalg.slogdet(_rings(*bands))[1] - np.sum(elementary.log(np.abs(bands[2])), axis=1)
+            return np.asarray(elementary.exp(np.minimum(log, 700.0)), dtype=np.float64)
+
     def _correction(self, components: tuple[int, ...], x: Array) -> Array:
-        value, lower, middle, upper = self.diagonals(components, x)
-        n = len(components)
-        matrix = np.zeros((len(x), n, n))
-        for i in range(n):
-            matrix[:, i, i] += middle[:, i]
-            matrix[:, i, i - 1] += lower[:, i]
-            matrix[:, i, (i + 1) % n] += upper[:, i]
+        value, *bands = self.diagonals(components, x)
+        n, matrix = len(components), _rings(*bands)
         good = np.all(np.isfinite(matrix), axis=(1, 2)) & np.all(np.isfinite(value), axis=1)
         matrix[~good] = np.eye(n)
         value[~good] = np.nan
@@ -224,38 +262,52 @@ class Corrector:
         return np.asarray(step[:, :, 0], dtype=np.float64)
 
     def exits(self, components: tuple[int, ...], x: Array) -> Array:
-        """Exit angles at each bounce."""
+        """The exit angles at each bounce of each row."""
         n, angle = len(components), chord_angles(self.table, ARRAYS)
-        ahead = [angle(components[i], components[(i + 1) % n], 0)(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
+        with np.errstate(all="ignore"):  # where bounces meet
+            ahead = [angle(components[i], components[(i + 1) % n], 0)(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
         return np.stack(ahead, axis=1)
 
 
-def deflation(x: Array, step: Array, known: Array) -> Array:
-    """What each Newton step is multiplied by when the known zeros are divided out, on a closed boundary.
+def _rings(lower: Array, middle: Array, upper: Array) -> Array:
+    """The cyclic tridiagonal matrix of each row of diagonals."""
+    count, n = middle.shape
+    matrix = np.zeros((count, n, n))
+    for i in range(n):
+        matrix[:, i, i] += middle[:, i]
+        matrix[:, i, i - 1] += lower[:, i]
+        matrix[:, i, (i + 1) % n] += upper[:, i]
+    return matrix
 
-    Half way to a zero that is known, Newton's own step would get there; the deflated one turns back.
+
+def deflation(x: Array, step: Array, known: Array) -> Array:
+    """The factor of each Newton step, when the known zeros on a closed boundary are divided out.
+
+    Half way to a zero that is known, Newton's own step would get there; the deflated one turns back. Sines and cosines
+    of differences are products of matrices, of all rows with all known ones.
 
     >>> bool(deflation(np.array([[0.1, 0.1]]), np.array([[0.1, 0.1]]), np.zeros((1, 2)))[0] < 0)
     True
     """
-    slope = np.zeros(len(x))
-    for row in known:
-        gap = x - row
-        squared = np.sum(4 * np.sin(gap / 2) ** 2, axis=1)
-        slope -= np.sum(2 * np.sin(gap) * step, axis=1) / (squared * (squared + 1) + 1e-300)
+    turned = np.concatenate([np.cos(x), np.sin(x)], axis=1)
+    moved = np.concatenate([-np.sin(x) * step, np.cos(x) * step], axis=1)
+    zeros = np.concatenate([np.cos(known), np.sin(known)], axis=1)
+    squared = np.maximum(2 * x.shape[1] - 2 * np.einsum("ik,jk->ij", turned, zeros), 0)  # on one core, unlike `@`
+    ahead = -2 * np.einsum("ik,jk->ij", moved, zeros)
+    slope = -np.sum(ahead / (squared * (squared + 1) + 1e-300), axis=1)
     return np.asarray(1 / (1 + slope), dtype=np.float64)
 
 
 COLUMNS, ROWS = 96, 48
 DEPTH = 16  # quarterings of a cell at most
-MOST = 100_000  # cells of one level
-POINTS = 60_000  # of the circle, at lam = 0
+MOST = 100_000  # cells of one level, at most
+POINTS = 60_000  # on the boundary, at lam = 0
 SAME = 1e-6
 
 
 @dataclass(frozen=True)
 class Zeros:
-    """Fixed points with index 1 and -1, and the cells that stayed open: the counts are whole when none did."""
+    """Numbers of fixed points with index 1 and -1, and of cells left open: the counts are complete when none is."""
 
     positive: int
     negative: int
@@ -263,7 +315,7 @@ class Zeros:
 
 
 def fixed_points(map: PinballMap, n: int) -> Zeros:
-    """The fixed points of `T**n` on a smooth convex table of one component, by their indices.
+    """Numbers of fixed points of `T**n` on a smooth convex table of one component, by their index.
 
     >>> fixed_points(PinballMap("ellipse", lam=0.5, a=1.5), 2)
     Zeros(positive=2, negative=2, open=0)
@@ -288,7 +340,7 @@ def fixed_points(map: PinballMap, n: int) -> Zeros:
 
 
 def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np.bool_]]:
-    """`v` at phase points, and whether the return is near the start rather than opposite."""
+    """The displacement `v` at phase points, and whether the return is near the start rather than opposite."""
     theta, phi = np.mod(at[..., 0].ravel() + pi, 2 * pi) - pi, np.clip(at[..., 1].ravel(), -1.57, 1.57)
     place, out = theta, phi
     for _ in range(n):
@@ -299,7 +351,7 @@ def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np
 
 
 def _examined(map: PinballMap, cells: Array, half: Array, n: int) -> tuple[Array, Array]:
-    """The zeros in settled cells, and the cells that are not settled."""
+    """The zeros in cells that are decided, and the cells that are not."""
     points = np.array([[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
     v, near = _displacement(map, cells[:, None, :] + points[None] * half, n)
     centre, corners = v[:, 0], v[:, 1:]
@@ -338,7 +390,7 @@ def _examined(map: PinballMap, cells: Array, half: Array, n: int) -> tuple[Array
 
 
 def _each_once(map: PinballMap, zeros: Array, n: int) -> Array:
-    """The indices of the zeros, each polished by Newton's method on the map itself and counted once."""
+    """The index of each distinct zero, after Newton's method on the map itself."""
     if not len(zeros):
         return np.zeros(0)
     h, at = 1e-7, zeros
@@ -360,9 +412,9 @@ def _each_once(map: PinballMap, zeros: Array, n: int) -> Array:
 
 
 def _on_the_circle(map: PinballMap, n: int) -> Zeros:
-    """At `lam = 0` the exit is the normal, and sign changes along the boundary count.
+    """The count at `lam = 0`, where every exit is normal: sign changes along the boundary of `T0**n` less the identity.
 
-    The transverse multiplier is 0, so the index of a crossing is 1 where `T0**n - 1` falls.
+    The transverse multiplier is 0, so the index of a sign change is 1 where this falls.
     """
     theta = -pi + (np.arange(POINTS) + 0.123) * 2 * pi / POINTS
     place = theta

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from verification.arithmetic.iteration import Vector
 
-SMALL_PIVOT = 1 << 10  # times which it is below what stands beside it
+SMALL_PIVOT = 1 << 10  # a small pivot is so many times smaller than the entry beside it
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,16 @@ class Chain:
 
     @property
     def back(self) -> Any:
-        """The factor the other way round, `x[-1] = back*x[n-1]`: 1 over the sign."""
+        """The factor in `x[-1] = back*x[n-1]`: 1 over the sign."""
         return self.sign.conjugate()
 
     @property
     def rows(self) -> list[tuple[Any, Any, Any]]:
-        """The three entries of each row."""
+        """The three entries of each row, as tuples."""
         return list(zip(self.lower, self.diagonal, self.upper, strict=True))
 
     def times(self, x: Sequence[Any]) -> Vector:
-        """The matrix times `x`.
+        """The product of the matrix with the vector `x`.
 
         >>> Chain([1, 1, 1], [2, 2, 2], [3, 3, 3], -1).times([1, 0, 0])
         [2, 1, -3]
@@ -57,7 +57,7 @@ class Chain:
 def trace_and_determinant(rows: Iterable[tuple[Any, Any, Any]], turn: int = 1) -> tuple[Any, Any]:
     """Trace and determinant of the monodromy matrix, from the three derivatives of the rule at each bounce.
 
-    Where the orbit closes by a symmetry the matrix is that of the map followed by the symmetry undone: `turn` is -1
+    Where the orbit closes by a symmetry the matrix is that of the map followed by the inverse symmetry: `turn` is -1
     for a mirror.
 
     >>> trace_and_determinant([(2, 3, 1), (2, 3, 1)])
@@ -72,7 +72,7 @@ def trace_and_determinant(rows: Iterable[tuple[Any, Any, Any]], turn: int = 1) -
 
 
 class Elimination:
-    """A chain with all unknowns but the last eliminated; the last one's pivot is the `bordering` function.
+    """A chain in which all unknowns but the last are eliminated; the pivot of the last one is called `bordering`.
 
     `right` and `left` are the vectors with last entry 1 that the matrix, from either side, maps to
     `(0, ..., 0, bordering)`. The matrix is singular exactly when that is 0; they span its kernels then.
@@ -102,7 +102,7 @@ class Elimination:
         self.bordering = self.last + dot(self.row, self.right)
 
     def inner(self, r: Sequence[Any]) -> Vector:
-        """The solution of the rows but the last, with the last unknown 0."""
+        """The solution of all rows but the last, with the last unknown set to 0."""
         if not self.pivots:
             return []
         x = [r[0]]
@@ -124,7 +124,7 @@ class Elimination:
         return x
 
     def solve(self, r: Sequence[Any]) -> Vector:
-        """`x` with `chain.times(x) = r`."""
+        """The solution `x` of `chain.times(x) = r`."""
         return self.bordered([], [], [], r)
 
     def bordered(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
@@ -142,7 +142,7 @@ class Elimination:
         return self._bordered(sides, column, row, corner, r)
 
     def transposed(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
-        """As `bordered`, of the transposed system: of the same `column`, `row` and `corner`, from the same factors.
+        """As `bordered`, for the transposed system with the same `column`, `row` and `corner`, by the same factors.
 
         >>> from fractions import Fraction
         >>> one = Elimination(Chain(*[[Fraction(n)] * 3 for n in (1, 4, 2)]))
@@ -172,10 +172,10 @@ class Elimination:
 
 
 def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vector | None:
-    """The solution of two rows whose first pivot is small, or may be 0; None of any other chain.
+    """The solution of a chain of two rows whose first pivot is small, or may be 0; None for any other chain.
 
-    So it is at a diameter each of whose ends is the centre of curvature of the other, as the ellipse's minor axis at
-    `a = sqrt(2)`: the linearised rules are regular there, though no bounce moves its own.
+    This occurs at a diameter whose two ends are each other's centres of curvature, as the ellipse's minor axis at `a =
+    sqrt(2)`: the diagonal is 0, and yet the matrix is regular.
 
     >>> by_cramer(Chain([1, 2], [0, 0], [1, 2]), [4, 6]), by_cramer(Chain([1, 2], [3, 0], [1, 2]), [4, 6])
     ([1.5, 2.0], None)
@@ -192,7 +192,7 @@ def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vecto
 
 
 class _Sides(NamedTuple):
-    """What stands for a matrix or its transpose: rows but the last solved, the last row, and the kernel's vector."""
+    """For a matrix or its transpose: the solver of all rows but the last, the last row, and the kernel's vector."""
 
     inner: Callable[[Sequence[Any]], Vector]
     far: Vector
@@ -200,7 +200,7 @@ class _Sides(NamedTuple):
 
 
 def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
-    """The sum of products; the longer vector's further entries do not count."""
+    """The sum of products of two vectors; further entries of the longer one are ignored."""
     total: Any = 0
     for p, r in zip(x, y, strict=False):
         total = total + p * r

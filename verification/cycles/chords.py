@@ -1,33 +1,53 @@
 """Periodic orbits of a billiard: the collision rule in the angles of the two chords that meet at each bounce."""
 
+import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import cache
-from itertools import chain
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
+from flint import arb
+from sympy import srepr
 
+from numeric.lowering.program import kept
 from symbolic.expressions.parts import parted
-from symbolic.expressions.text import load
+from symbolic.expressions.text import Kernel, load
 from symbolic.motion.chords import chord_kernel, ends_kernel, law_kernel, partials
 from symbolic.tables.definition import table_boundary
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS, FLOAT64, Arithmetic, between
-from verification.cycles.lengths import arc_length, map_of
 from verification.cycles.recurrence import IDENTITY, Array, Closure, Pair, Parameters, Rule, Terms, X, around
 from verification.maps.first_hit import closes_smoothly, convex
+from verification.maps.joins import Joins, joins, over_joins
+from verification.maps.measured import arc_length, map_of
 
 SWEEPS = 80  # bisections at most, between Newton steps, until a landing is found
 CLOSE = 1e-13
+ROUNDED = 1e-12  # of a component's range
 Slopes = Mapping[str, Any]  # of a law, by name
-End = tuple[int, int, Any]  # of a chord: its component, the number of the bounce, and its parameter
+Place = tuple[int, Any, Any]  # a component, a parameter on it, and its slope
+End = tuple[int, int, Any]  # end of a chord: component, number of the bounce, parameter
+
+
+@cache
+def kept_chord_kernel(table: Table, here: int, there: int, order: int) -> Kernel:
+    """`chord_kernel`, kept between runs: SymPy takes as long to differentiate as to be imported."""
+
+    def read(text: str) -> Kernel:
+        name, arguments, results, words, body = json.loads(text)
+        return Kernel(name, tuple(arguments), tuple(results), tuple(words), body)
+
+    ends = [(table.components[i].name, srepr(table.components[i].point)) for i in (here, there)]
+    said = f"chord angle {here} {there} {order}, {ends}, {[p.symbol.name for p in table.shapes]}"
+    return kept(said, lambda: json.dumps(astuple(chord_kernel(table, here, there, order))), read)
 
 
 class ChordAngles:
-    """The angle of a chord with the normal at its start, between any two components, over one kind of number.
+    """Angle of a chord with the normal at its start, between any two components, in one arithmetic.
 
     >>> from symbolic.tables import circle
     >>> from verification.arithmetic.balls import FLOAT64
@@ -37,30 +57,75 @@ class ChordAngles:
 
     def __init__(self, table: Table, arithmetic: Arithmetic) -> None:
         self.table, self.arithmetic = table, arithmetic
+        known = joins(table) if arithmetic in (ARRAYS, FLOAT64) and not closes_smoothly(table) else None
+        self.joins = known if known is not None and known.any else None
+        self.over_joins = None
+        if len(table.components) > 1 and isinstance(arithmetic.pi, arb):
+            self.over_joins = over_joins(table, arithmetic)
         self.loaded: dict[tuple[int, int, int], Callable[..., Any]] = {}
         self.in_parts: dict[tuple[int, int, int], tuple[Callable[..., Any], ...]] = {}
 
     def __call__(self, here: int, there: int, order: int) -> Callable[..., Any]:
-        """The kernel from component `here` to `there`, with derivatives up to `order`; loaded once."""
+        """The kernel from component `here` to `there`, with derivatives up to `order`; loaded once.
+
+        In float64 a parameter beyond the end of its component means a point on the next one, if the curvatures of both
+        agree at the join (`verification.maps.joins`).
+        """
+        return (self._beyond_ends if self.joins else self._on)(here, there, order)
+
+    def _on(self, here: int, there: int, order: int) -> Callable[..., Any]:
         key = here, there, order
         if key not in self.loaded:
-            self.loaded[key] = load(chord_kernel(self.table, *key), self.arithmetic)
+            self.loaded[key] = load(kept_chord_kernel(self.table, *key), self.arithmetic)
         return self.loaded[key]
 
-    def between(self, order: int, shape: Sequence[Any]) -> Callable[[End, End], Sequence[Any]]:
-        """The angle from one end of a chord to another, for an orbit's chords: what belongs to an end is computed once.
+    def _beyond_ends(self, here: int, there: int, order: int) -> Callable[..., Any]:
+        """The kernel with each end of a chord moved to the component on which its parameter lies; by the chain rule."""
+        assert self.joins is not None
+        place, powers = self.joins.place, [[name[6:].count(end) for end in "01"] for name in _places(self.table, order)]
 
-        Ends are told apart by their numbers, so one number is one end for as long as the function is kept.
+        def angle(x: Any, y: Any) -> list[Any]:
+            (i, u, a), (j, v, b) = place(here, x), place(there, y)
+            if not np.ndim(i):
+                values = self._on(int(i), int(j), order)(float(u), float(v))
+            else:
+                values = np.empty((len(powers), *i.shape))
+                for p, q in {*zip(i.ravel().tolist(), j.ravel().tolist(), strict=True)}:
+                    on = (i == p) & (j == q)
+                    for row, value in zip(values, self._on(p, q, order)(u[on], v[on]), strict=True):
+                        row[on] = value
+            return [value * a**p * b**q for value, (p, q) in zip(values, powers, strict=True)]
+
+        return angle
+
+    def _hull(self, starts: Sequence[Place], ends: Sequence[Place], order: int) -> list[Any]:
+        """Balls of the values on all components on which the ends of a chord may lie; slopes by the chain rule."""
+        powers = [[name[6:].count(end) for end in "01"] for name in _places(self.table, order)]
+        found: list[Any] = []
+        for (i, u, a), (j, v, b) in product(starts, ends):
+            values = [x * a**p * b**q for x, (p, q) in zip(self._on(i, j, order)(u, v), powers, strict=True)]
+            found = [x.union(y) for x, y in zip(found, values, strict=True)] if found else values
+        return found
+
+    def between(self, order: int, shape: Sequence[Any]) -> Callable[[End, End], Sequence[Any]]:
+        """A function for the angle of a chord from one end to another; for the chords of one orbit.
+
+        What depends on one end alone is computed once and kept by the number of its bounce, which must stay the same
+        end.
         """
         known: dict[tuple[int, int, int, int], Any] = {}
         names = tuple(p.symbol.name for p in self.table.shapes)
 
         def angle(here: End, there: End) -> Sequence[Any]:
             key = here[0], there[0], order
-            if self.arithmetic is FLOAT64:  # in which a sine costs no more than to look it up
+            if self.over_joins and order < 2 and isinstance(here[2], arb):
+                starts, ends = (self.over_joins(end[0], end[2]) for end in (here, there))
+                if len(starts) > 1 or len(ends) > 1 or (starts[0][0], ends[0][0]) != key[:2]:
+                    return self._hull(starts, ends, order)
+            if self.arithmetic is FLOAT64 or self.joins:  # where a sine costs no more than looking it up
                 return self(*key)(here[2], there[2], *shape)  # type: ignore[no-any-return]
             if key not in self.in_parts:
-                parts = parted(chord_kernel(self.table, *key), ("theta0", *names), ("theta1", *names))
+                parts = parted(kept_chord_kernel(self.table, *key), ("theta0", *names), ("theta1", *names))
                 self.in_parts[key] = tuple(load(part, self.arithmetic) for part in parts)
             *alone, rest = self.in_parts[key]
             for k, (part, end) in enumerate(zip(alone, (here, there), strict=True)):
@@ -78,7 +143,7 @@ def _places(table: Table, order: int) -> dict[str, int]:
 
 
 def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:
-    """The chord angles of a table; in float64 the same each time, as those are asked for most often."""
+    """The chord angles of a table; in float64, where they are needed most often, the same object each time."""
     kept = arithmetic is ARRAYS or arithmetic is FLOAT64
     return _in_float64(table, arithmetic is ARRAYS) if kept else ChordAngles(table, arithmetic)
 
@@ -90,7 +155,7 @@ def _in_float64(table: Table, arrays: bool) -> ChordAngles:
 
 @dataclass(frozen=True)
 class Chords:
-    """Cycles of a billiard by the collision rule; parameters are `lam`, the table's free shapes, and the law's own."""
+    """Cycles of a billiard by the collision rule; its parameters are `lam`, free shapes, and the law's own."""
 
     table: Table
     components: tuple[int, ...]
@@ -99,26 +164,26 @@ class Chords:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
         return f"{self.table.name}, period {self.period}"
 
     @property
     def period(self) -> int:
-        """Bounces of the ring."""
+        """The number of bounces."""
         return len(self.components)
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """`lam`, the shapes, and what the law has besides."""
+        """The names of the parameters: `lam`, the free shapes, and the law's own."""
         return tuple(dict.fromkeys(("lam", *self.shapes, *self.law.parameters)))
 
     @property
     def shapes(self) -> tuple[str, ...]:
-        """The table's free shapes."""
+        """The names of the table's free shape parameters."""
         return tuple(p.symbol.name for p in self.table.shapes)
 
     def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
-        """The collision rule and its derivatives.
+        """Values of the collision rule at all bounces and its derivatives up to `order`, in float64.
 
         >>> from symbolic.tables import ellipse
         >>> axis = Chords(ellipse.at(a=2), (0, 0))
@@ -131,7 +196,7 @@ class Chords:
         return self._terms(ahead, back, at["lam"], order, self._all_reflected(back[0], ring[1:-1], at, order))
 
     def _all_reflected(self, eta: Array, here: Array, at: Parameters, order: int) -> Slopes:
-        """The exit angles of a law at all bounces; one that speaks of arc length has a formula on each component."""
+        """The exit angles by the law at all bounces; a law in arc length has a formula for each component."""
         if not self.law.measured:
             return self._reflected(ARRAYS, 0, eta, here, at, order)
         found: dict[str, Array] = {}
@@ -144,7 +209,7 @@ class Chords:
     def _reflected(
         self, arithmetic: Arithmetic, part: int, eta: Any, here: Any, at: Mapping[str, Any], order: int
     ) -> Slopes:
-        """The exit angle of a law that is no uniform contraction, and its derivatives by name; empty for that."""
+        """The exit angle of a law other than `-lam*eta`, and its derivatives by name; empty for `-lam*eta`."""
         if self.law.uniform:
             return {}
         law = self.law.on(self.table, part)
@@ -177,7 +242,7 @@ class Chords:
         return Terms(f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2]), by, bend, slope_by)
 
     def _bent(self, f: Sequence[Any], b: Sequence[Any], order: int, law: Slopes, zero: Any) -> Terms[Any]:
-        """`A(next) - phi(A(previous))`, with the derivatives of `phi(eta, theta, parameters)` by the chain rule."""
+        """The rule `A(next) - phi(A(previous))` with chord angles `A`; derivatives of `phi` by the chain rule."""
         value = f[0] - (zero + law["phi"])
         if not order:
             return Terms(value, (zero, zero, zero), {}, {}, {})
@@ -203,7 +268,7 @@ class Chords:
         return Terms(value, (-(slope * b[2]), f[1] - (slope * b[1] + place), f[2]), by, bend, slope_by)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The collision rule at single bounces.
+        """The collision rule at single bounces, as a function in this arithmetic.
 
         >>> from symbolic.tables import ellipse
         >>> from verification.arithmetic.balls import FLOAT64
@@ -221,7 +286,7 @@ class Chords:
         return rule
 
     def bounces(self, arithmetic: Arithmetic, padded: Sequence[Any], at: Mapping[str, Any], order: int) -> Terms[Any]:
-        """The collision rule at every bounce, of all with the neighbours at either end."""
+        """The rule at every bounce, with derivatives up to `order`; `padded` has one bounce more at either end."""
         angle = chord_angles(self.table, arithmetic).between(order, [at[name] for name in self.shapes])
         near = (padded[i : i + 3] for i in range(self.period))
         return Terms.along([self._at_bounce(arithmetic, angle, i, x, at, order) for i, x in enumerate(near)])
@@ -236,8 +301,28 @@ class Chords:
         b = angle(own, (parts[i - 1], i - 1, before))
         return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, parts[i], b[0], here, at, order))
 
+    def placed(self, x: "Sequence[float] | Array") -> "tuple[Chords, Array]":
+        """The cycle with each bounce on the component where it lies; one on a smooth join is at the start of the next.
+
+        >>> from symbolic.tables import cuspless
+        >>> ring, x = Chords(cuspless, (1, 0)).placed([0.0, 0.0])
+        >>> ring.components, x.tolist()
+        ((1, 0), [0.0, 0.0])
+        """
+        known = self._joins()
+        if known is None:
+            return self, np.array(x, dtype=float)
+        parts, at = known.canonical(np.array(self.components), np.array(x, dtype=float))
+        return replace(self, components=tuple(parts.tolist())), at
+
+    def _joins(self) -> Joins | None:
+        """The joins of the table; None for one smooth curve, a free shape, or a law that depends on the place."""
+        if self.table.shapes or self.law.placed or self.closure != IDENTITY or closes_smoothly(self.table):
+            return None
+        return joins(self.table)
+
     def doubled(self) -> "Chords":
-        """The ring run through twice."""
+        """The chord system of the cycle run through twice."""
         return replace(self, components=self.components * 2, closure=self.closure.twice())
 
     def angles(self, x: Array, at: Parameters) -> tuple[Array, Array]:
@@ -247,12 +332,17 @@ class Chords:
         return out[0], into[0]
 
     def obstacle(self, x: Array, at: Parameters) -> str:
-        """A bounce beyond its component, or next to its neighbour."""
+        """Why `x` is no cycle at values `at`: a bounce off its component, an obstructed chord; empty if it is one."""
+        ring, x = self.placed(x)
+        return ring._obstacle(x, at)
+
+    def _obstacle(self, x: Array, at: Parameters) -> str:
         cut = self.law.measured and self.law.on(self.table, self.components[0]).measured  # where the law may jump
         if cut or not closes_smoothly(self.table):  # beyond its ends another formula runs on along no boundary
-            ends = self.ends(at)
+            ends, smooth = self.ends(at), joins(self.table).smooth
             for i, (part, value) in enumerate(zip(self.components, x, strict=True)):
-                if not ends[part][0] <= value <= ends[part][1]:
+                slack = ROUNDED * (ends[part][1] - ends[part][0]) * smooth[part]  # a cycle may stay on a join
+                if not ends[part][0] - slack[0] <= value <= ends[part][1] + slack[1]:
                     return f"bounce {i} left the {self.table.components[part].name} at theta = {value:.6g}"
         ring, parts = around(self.closure, x), (*self.components, self.components[0])
         apart = np.abs(np.sin((ring[2:] - ring[1:-1]) / 2))
@@ -262,7 +352,7 @@ class Chords:
         return "" if _convex_throughout(self.table) else self._obstructed(x, at)
 
     def _obstructed(self, x: Array, at: Parameters) -> str:
-        """The first chord that meets the boundary on its way, in a table that need not be convex."""
+        """A sentence on the first chord that meets the boundary on its way, in any table; empty without one."""
         from numeric import PinballMap
 
         out, _ = self.angles(x, at)
@@ -283,7 +373,7 @@ class Chords:
         return ""
 
     def ends(self, at: Parameters) -> list[tuple[float, float]]:
-        """Where the parameter of each component of the table starts and ends.
+        """Start and end of each component's parameter, for a table with the shape `at`.
 
         >>> from symbolic.tables import cuspless
         >>> Chords(cuspless, (1, 0)).ends({})[1]  # the wall
@@ -293,12 +383,12 @@ class Chords:
         return list(zip(map(float, found[::2]), map(float, found[1::2]), strict=True))
 
     def nearest_joins(self, x: Array, at: Parameters) -> list[float | None]:
-        """The nearer end of its component for each bounce; None without joins."""
+        """For each bounce the nearer end of its component at which a branch would end; None without one."""
         if len(self.table.components) == 1:
             return [None] * self.period
-        known = self.ends(at)
-        both = [known[part] for part in self.components]
-        return [min(ends, key=lambda e: abs(e - value)) for ends, value in zip(both, x, strict=True)]
+        known, runs_on = self.ends(at), joins(self.table).runs_on
+        both = [[end for end, on in zip(known[i], runs_on[i], strict=True) if not on] for i in self.components]
+        return [min(ends, key=lambda e: abs(e - value), default=None) for ends, value in zip(both, x, strict=True)]
 
     def _angles(self, way: int, here: Array, there: Array, shape: list[float], order: int) -> list[Array]:
         parts = self.components
@@ -320,14 +410,14 @@ def _ends(table: Table) -> Callable[..., Any]:
 
 @cache
 def _convex_throughout(table: Table) -> bool:
-    """Is the table proved convex, whatever the numbers of its free shape parameters?"""
+    """Is the table proved convex for all values of its free shape parameters?"""
     if not table.shapes or "table" in table_boundary(table)[0]:
         return bool(table.shapes) or convex(table) is True
     return convex(table, tuple(between(float(p.range.start), float(p.range.end)) for p in table.shapes)) is True
 
 
 def landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
-    """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`, in float64.
+    """The parameter where the chord at angle `phi` lands, within a turn after `here + 2*pi*turns`, in float64.
 
     For tables of one convex component: the angle falls from `pi/2` to `-pi/2` on the way round, so Newton's method is
     kept between bounds; `nan` beyond those angles. Numbers or arrays.

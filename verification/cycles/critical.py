@@ -1,6 +1,6 @@
-"""Cycles that bifurcate in any way, of any recurrence, in as many free parameters as there are conditions.
+"""Systems for cycles at a bifurcation of any kind, in as many free parameters as there are conditions.
 
-A fold or a flip of a long cycle of a billiard is a `Problem`, solved in linear time. What is here takes every
+A fold or a flip of a long cycle of a billiard is a `Problem`, solved in linear time. This module takes every
 bifurcation that `verification.cycles.recurrence` defines, and several at once (points of codimension two),
 for cycles of a few dozen bounces. Equations are written once, and their derivatives come from evaluating them on
 jets.
@@ -24,17 +24,17 @@ from verification.cycles.recurrence import BifurcationKind, Closure, Recurrence,
 
 @dataclass(frozen=True)
 class Small:
-    """As many `equations(arithmetic, z)` as there are unknowns, at most a handful."""
+    """A small system: as many `equations(arithmetic, z)` as unknowns, 0 at a solution."""
 
     label: str
     equations: Callable[[Arithmetic, Vector], Vector]
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F(z)`."""
+        """The equations `F(z)`."""
         return self.equations(arithmetic, z)
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """`F'(z)^-1 r`."""
+        """The solution `x` of `F'(z) x = r`."""
         rows: list[Vector] = [[] for _ in r]
         words = jets(arithmetic)
         for j in range(len(z)):
@@ -44,12 +44,12 @@ class Small:
         return solved([[*row, x] for row, x in zip(rows, r, strict=True)])
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F'(z)^-1 F(z)`, Newton's correction."""
+        """Newton's correction `F'(z)^-1 F(z)`."""
         return self.solved(arithmetic, z, self.value(arithmetic, z))
 
 
 def solved(rows: list[Vector]) -> Vector:
-    """The solution of a small linear system given as augmented rows, with the largest pivots.
+    """The solution of a small linear system given as augmented rows, with pivoting.
 
     >>> solved([[0.0, 2.0, 2.0], [1.0, 1.0, 3.0]])
     [2.0, 1.0]
@@ -75,10 +75,10 @@ def _middle(x: Any) -> Any:
 
 
 def corner() -> Small:
-    """The period-4 orbit through both corners of the cuspless cardioid: unknowns `theta1`, `lam`.
+    """System for the period-4 orbit through both corners of the cuspless cardioid: unknowns `theta1`, `lam`.
 
     It leaves the upper corner (`theta = 2*pi/3`), meets the arc at `theta1`, the lower corner, the arc
-    at `-theta1`, and returns. By the mirror symmetry two collision rules say it all: at the corner,
+    at `-theta1`, and returns. By the mirror symmetry two collision rules are enough: at the corner,
     where the normal exists because the joins are C1, and at `theta1`. Paper: section 5.2.
     """
 
@@ -95,21 +95,21 @@ def corner() -> Small:
 
 
 def corner_parameter(arithmetic: Arithmetic) -> Any:
-    """`2*pi/3`, the parameter of the upper corner on the arc."""
+    """The parameter `2*pi/3` of the upper corner on the arc."""
     return load(constant(2 * pi / 3), arithmetic)()[0]
 
 
 def corner_angle(arithmetic: Arithmetic, theta1: Any) -> Any:
-    """The exit angle at the upper corner, `phi-star` of the paper at the solution of `corner`."""
+    """The exit angle at the upper corner; at the solution of `corner` it is the paper's `phi-star`."""
     return load(chord_kernel(cuspless, 0, 0, 0), arithmetic)(corner_parameter(arithmetic), theta1)[0]
 
 
 def focus(lam: Expr, K: int = 3) -> Small:
-    """Where the multipliers of the egg's diameter become complex: unknowns two bounces and `alpha`.
+    """System for the `alpha` at which the multipliers of the egg's diameter become complex: two bounces and `alpha`.
 
     The third equation is `trace**2 = 4*determinant` of the monodromy, from the chord system.
     """
-    table = egg(K)  # simplified at each call, which took 77 of the 78 ms of an evaluation
+    table = egg(K)  # made once: its formulas are simplified, which takes 77 ms
 
     def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
         first, second, alpha = z
@@ -131,7 +131,7 @@ def critical(
     parameters: Sequence[str],
     fixed: Mapping[str, Expr] | None = None,
 ) -> Small:
-    """The cycle that bifurcates in all these `kinds`: unknowns are its bounces, then the free `parameters`.
+    """System for a cycle that bifurcates in all these `kinds`: unknowns are its bounces, then the free `parameters`.
 
     >>> from verification.cycles.recurrence import delayed
     >>> from verification.cycles.newton import floats
@@ -155,7 +155,7 @@ def critical(
 
 
 def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
-    """Unknowns `theta` and `lam` at the fold of the egg's cycle that turns by `2*pi*p/q` at each bounce.
+    """System for the fold of the egg's cycle that turns by `2*pi*p/q` at each bounce: unknowns `theta` and `lam`.
 
     Where that turn maps the table to itself, one bounce with its neighbours a turn away is the whole system.
 
@@ -171,7 +171,7 @@ def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
 
 
 def polygon(K: int, p: int, q: int) -> Chords:
-    """One bounce of the egg's cycle that turns by `2*pi*p/q` each time."""
+    """Chord system of one bounce of the egg's cycle that turns by `2*pi*p/q` each time."""
     if K * p % q:
         raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
     return Chords(egg(K), (0,), Closure(1, (p, q)))

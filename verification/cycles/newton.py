@@ -1,4 +1,4 @@
-"""Newton's method on the equations of a cycle, in float64 and to any number of digits; what the digits are worth.
+"""Newton's method on the equations of a cycle, in float64 and to any number of digits; condition numbers.
 
 To many digits the precision doubles at each step: a step needs no more digits than it will make right, so the last step
 costs as much as all others together. The precision lives in a context made here; `mpmath.mp` is not touched.
@@ -24,11 +24,11 @@ from verification.arithmetic.iteration import Iteration, Stop, Vector, iterated
 
 Solve = Callable[[Vector], Vector]
 ASCENTS = 4  # vectors tried after the first; two are enough nearly always
-ROUNDINGS = 16  # of a residual
+ROUNDINGS = 16  # units of rounding in a residual
 
 
 class Conditioning(Enum):
-    """What a solution's condition number means; the value is the advice."""
+    """Verdicts on a solution's condition number; the value is advice."""
 
     SOUND = "the condition number leaves more than half of the digits"
     SENSITIVE = (
@@ -40,13 +40,13 @@ class Conditioning(Enum):
 
 @runtime_checkable
 class Cyclic(Protocol):
-    """A system of any length, that can tell its cycle from a shorter one."""
+    """A system for a cycle, which can detect a shorter period."""
 
     def inverses(self, arithmetic: Arithmetic, z: Vector) -> tuple[Solve, Solve]:
-        """`F'(z)^-1` and its transpose, from one factorisation."""
+        """Functions that apply `F'(z)^-1` and its transpose, from one factorisation."""
 
     def shorter(self, z: Vector, within: float) -> int:
-        """The bounces after which the cycle repeats itself, up to `within`; 0 for never."""
+        """The number of bounces after which the cycle repeats itself, up to an error `within`; 0 for never."""
 
 
 def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> float:
@@ -73,7 +73,7 @@ def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> floa
 
 
 def largest_row_sum(solve: Solve, transposed: Solve, n: int) -> float:
-    """Of the matrix that `solve` multiplies by, from below: Hager's ascent, then one vector that no symmetry hides.
+    """Lower bound of the largest row sum of the matrix of `solve`: Hager's ascent, then one asymmetric vector.
 
     >>> twice = lambda r: [2 * r[0], r[0] + r[1]]
     >>> largest_row_sum(twice, lambda r: [2 * r[0] + r[1], r[1]], 2)
@@ -95,7 +95,7 @@ def largest_row_sum(solve: Solve, transposed: Solve, n: int) -> float:
 
 
 def digits_left(condition: float, unit: float) -> int:
-    """The decimal digits after the point that an error of one `unit` in every equation leaves.
+    """The reliable digits after the point, when every equation has an error of one `unit`.
 
     >>> digits_left(1e8, 2.0**-52), digits_left(2.9, 2.0**-52), digits_left(float("inf"), 2.0**-52)
     (7, 15, 0)
@@ -116,12 +116,12 @@ def costs_half(condition: float, unit: float, digits: int) -> bool:
 
 
 def unit(n: int, j: int) -> Vector:
-    """A vector of `n` numbers with a one at `j`."""
+    """The unit vector of `n` numbers with a one at index `j`."""
     return [1.0 if i == j else 0.0 for i in range(n)]
 
 
 def total(x: Vector) -> float:
-    """The sum of sizes."""
+    """The sum of absolute values."""
     return float(sum(abs(value) for value in x))
 
 
@@ -134,29 +134,29 @@ SPARE = 8  # digits of the last step that may be rounding
 EPS = 2.0**-52
 IN_FLOATS = Stop(small=1e-6, enough=1e-15, steps=40, reach=0.3)
 NEAR = 1e-2  # radians: bounces farther apart are not the same, whatever the condition
-TOLD = 1e12  # the largest condition number that float64 can be trusted to tell
+TOLD = 1e12  # the largest condition number that float64 computes reliably
 
 
 class System(Protocol):
-    """As many equations as unknowns, over any kind of number."""
+    """A system with as many equations as unknowns, in any arithmetic."""
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F(z)`."""
+        """The equations `F(z)`."""
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """`F'(z)^-1 r`."""
+        """The solution `x` of `F'(z) x = r`."""
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F'(z)^-1 F(z)`, Newton's correction."""
+        """Newton's correction `F'(z)^-1 F(z)`."""
 
 
 @dataclass(frozen=True)
-class Step:
-    """One step: the digits it was computed with, and the size of the correction it made."""
+class NewtonStep:
+    """One Newton step: its number of digits, and the decimal logarithm of the correction it made."""
 
     digits: int
     correction: float
@@ -166,17 +166,17 @@ class Step:
 class Solution:
     """Numbers that solve a problem to about `digits` digits, not proved: floats, or of an mpmath context.
 
-    What the digits are worth is computed when it is asked for.
+    The condition number is computed on first use.
     """
 
     problem: System
     z: Vector
     digits: int
-    steps: tuple[Step, ...] = field(repr=False)
+    steps: tuple[NewtonStep, ...] = field(repr=False)
 
     @cached_property
     def condition(self) -> float:
-        """How far an unknown moves at most when no equation is off by more than one; infinite when singular."""
+        """The condition number: how far an unknown moves when no equation is off by more than 1; may be infinite."""
         found = norm_of_inverse(self.problem, FLOAT64, [float(x) for x in self.z])
         if found > TOLD and not isinstance(self.z[0], float):
             found = norm_of_inverse(self.problem, multiprecision(type(self.z[0]).context), self.z)
@@ -189,12 +189,12 @@ class Solution:
 
     @property
     def digits_sure(self) -> int:
-        """The digits after the point that the condition number leaves of every unknown, `digits` at most."""
+        """Digits after the point that are reliable in every unknown, by the condition number; at most `digits`."""
         return min(self.digits, digits_left(self.condition, self.unit))
 
     @property
     def conditioning(self) -> Conditioning:
-        """The condition number in a word, with advice as its value."""
+        """The verdict on the condition number; its value is advice."""
         if self.shorter:
             return Conditioning.REPEATED
         few = costs_half(self.condition, self.unit, self.digits)
@@ -202,26 +202,26 @@ class Solution:
 
     @property
     def shorter(self) -> int:
-        """The bounces after which the cycle repeats itself, as far as its digits tell; 0 for never."""
+        """The number of bounces after which the cycle repeats itself, up to its error; 0 for never."""
         within = min(NEAR, max(1.0, self.condition) * ROUNDINGS * self.unit)
         return self.problem.shorter(self.z, within) if isinstance(self.problem, Cyclic) else 0
 
     @property
     def advice(self) -> str:
-        """What to do about the conditioning, for people; nothing where it is sound."""
+        """What to do about the conditioning, in words; empty where it is sound."""
         if self.conditioning is Conditioning.SOUND:
             return ""
         return f"{self.conditioning.value}{f' (after {self.shorter} bounces)' if self.shorter else ''}"
 
     @property
     def words(self) -> str:
-        """One sentence for people."""
+        """Condition number, reliable digits and advice in one sentence."""
         said = f"condition number {self.condition:.2g}, {self.digits_sure} of {self.digits} digits sure"
         return f"{said}: {self.advice}" if self.advice else said
 
 
 class UnsettledError(ValueError):
-    """Newton's method in float64 did not settle; `last` is where it was."""
+    """Newton's method in float64 did not converge; `last` is its last iterate."""
 
     def __init__(self, message: str, last: Solution) -> None:
         super().__init__(message)
@@ -232,7 +232,7 @@ def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool =
     """The solution near `start` to `digits` digits, in numbers of mpmath.
 
     With `in_balls` corrections are the middles of balls, many times faster than mpmath, where the radii say that all
-    their digits are right, and mpmath's elsewhere, as along long cycles. The last bits differ: files keep mpmath's.
+    their digits are right, and mpmath's elsewhere, as along long cycles. The last bits differ; files have mpmath's.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
@@ -245,13 +245,13 @@ def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool =
     context = mpmath.MPContext()
     context.prec = 53
     z: Vector = [context.mpf(x) for x in floats(problem, start)]
-    steps: list[Step] = []
+    steps: list[NewtonStep] = []
     for level in levels(digits + GUARD):
         context.dps = level
         enough = context.mpf(10) ** -enough_digits(level, digits + GUARD)
         found = iterated(_correction(problem, context, in_balls), z, Stop(enough=enough, steps=ATTEMPTS))
         z = found.x
-        steps += [Step(level, float(context.log10(size))) for size in found.sizes or [context.mpf(10) ** -level]]
+        steps += [NewtonStep(level, float(context.log10(size))) for size in found.sizes or [context.mpf(10) ** -level]]
         if not found.settled:
             raise ValueError(
                 f"{problem.label}: {found.steps} Newton steps with {level} digits still correct by "
@@ -261,7 +261,7 @@ def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool =
 
 
 def _correction(problem: System, context: Any, in_balls: bool) -> Callable[[Vector], Vector]:
-    """Newton's correction, with the digits that a context has now."""
+    """Newton's correction as a function, with the digits that a context has now."""
     rounded = partial(problem.newton, multiprecision(context))
     if not in_balls:
         return rounded
@@ -279,7 +279,7 @@ def _correction(problem: System, context: Any, in_balls: bool) -> Callable[[Vect
 
 
 def enough_digits(level: int, digits: int) -> float:
-    """The digits of the last correction at a level: convergence is quadratic, so half of those that it leaves right.
+    """The number `d` such that a correction below `10**-d` ends a level: half its digits, by quadratic convergence.
 
     >>> enough_digits(100, 100), enough_digits(50, 100)
     (46.0, 17.5)
@@ -288,7 +288,7 @@ def enough_digits(level: int, digits: int) -> float:
 
 
 def levels(digits: int) -> list[int]:
-    """The digits of each step, doubling (nearly) up to `digits`.
+    """The numbers of digits of successive Newton steps, (nearly) doubling up to `digits`.
 
     >>> levels(100)
     [16, 28, 52, 100]
@@ -300,7 +300,7 @@ def levels(digits: int) -> list[int]:
 
 
 def floats(problem: System, start: Sequence[Any]) -> list[float]:
-    """The solution near `start` in float64, as numbers alone.
+    """The unknowns of the solution near `start` in float64.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
@@ -312,7 +312,7 @@ def floats(problem: System, start: Sequence[Any]) -> list[float]:
 
 
 def in_floats(problem: System, start: Sequence[Any]) -> Solution:
-    """The solution near `start` in float64.
+    """The solution near `start` in float64; `UnsettledError` where Newton's method does not converge.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
@@ -321,7 +321,7 @@ def in_floats(problem: System, start: Sequence[Any]) -> Solution:
     'condition number 1.5, 15 of 15 digits sure'
     """
     found = settled(problem, FLOAT64, [float(x) for x in start])
-    last = Solution(problem, found.x, DIGITS, tuple(Step(START, log10(size)) for size in found.sizes[-1:]))
+    last = Solution(problem, found.x, DIGITS, tuple(NewtonStep(START, log10(size)) for size in found.sizes[-1:]))
     if found.settled:
         return last
     why = f"; at the last step: {last.words}" if last.advice else ""
@@ -331,11 +331,11 @@ def in_floats(problem: System, start: Sequence[Any]) -> Solution:
 
 
 def settled(system: System, arithmetic: Arithmetic, start: Sequence[Any]) -> Iteration:
-    """The iteration in one arithmetic, until its corrections are rounding; slow convergence to a double zero counts."""
+    """The result of Newton's iteration in one arithmetic, which may converge slowly, at a double zero."""
     found = iterated(partial(system.newton, arithmetic), start, IN_FLOATS)
     return replace(found, settled=found.settled or bool(found.sizes and found.sizes[-1] < IN_FLOATS.small))
 
 
 def given(problem: System, z: Sequence[Any]) -> Solution:
-    """A solution in float64 that was found elsewhere, to say what its digits are worth."""
+    """A `Solution` from float64 numbers that were found elsewhere, for its condition number."""
     return Solution(problem, [float(x) for x in z], DIGITS, ())

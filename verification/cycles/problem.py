@@ -43,7 +43,7 @@ class Problem:
     """A cycle by its components, in a table and under a law whose only free parameter is `free`.
 
     `kind` is FOLD or FLIP, None for a cycle by itself. `closure` says what comes after its bounces: their images
-    under `theta -> -theta`, or the same `p/q` of a turn further on; certificates know no shift.
+    under `theta -> -theta`, or the same `p/q` of a turn further on; certificates take no such shift.
     `lam` is free when None, exact, or a number as it is: a ball proves for every `lam` in it, a jet differentiates.
     """
 
@@ -57,7 +57,7 @@ class Problem:
 
     def __post_init__(self) -> None:
         if len(self.table.components) == 1:
-            object.__setattr__(self, "law", self.law.on(self.table))  # without arc length, of which no file speaks
+            object.__setattr__(self, "law", self.law.on(self.table))  # in `theta` alone, as files have no arc length
         shapes = {*(p.symbol.name for p in self.table.shapes), *self.law.parameters}
         if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
             raise ValueError(f"{self.table.name}: free parameters must be just {self.free or 'none'}; lam = {self.lam}")
@@ -69,17 +69,17 @@ class Problem:
         if self.mirror and not all(mirrored(component) for component in self.table.components):
             raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
         if self.law.placed and self.closure.shift[0] % self.closure.shift[1]:
-            raise ValueError(f"law = {self.law}: a turn of the table leads to another law, so the cycle closes by none")
+            raise ValueError(f"law = {self.law}: a turn of the table changes the law, so no cycle closes by a turn")
         if self.mirror and not self.law.odd:
             raise ValueError(f"law = {self.law}: no odd function of eta, so mirror images of orbits are no orbits")
 
     @cached_property
     def ring(self) -> Chords:
-        """The recurrence that its bounces obey."""
+        """The chord system that its bounces obey."""
         return Chords(self.table, self.components, self.closure, self.law)
 
     def at(self, arithmetic: Arithmetic, z: Vector) -> dict[str, Any]:
-        """The parameters, given or unknown."""
+        """The parameters by name, given or taken from the unknowns `z`."""
         lam = self.lam
         if isinstance(lam, Expr):
             lam = load(constant(lam), arithmetic)()[0]
@@ -87,34 +87,34 @@ class Problem:
 
     @property
     def mirror(self) -> bool:
-        """Is it half a cycle, that its mirror image completes?"""
+        """Is it half a cycle, which its mirror image completes?"""
         return self.closure.turn == -1
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
         return f"{self.table.name}, period {self.period}"
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F(z)`."""
+        """The equations `F(z)`."""
         return Linearised(self, arithmetic, z, slope=False).value
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """`F'(z)^-1 r`."""
+        """The solution `x` of `F'(z) x = r`."""
         return Linearised(self, arithmetic, z).solve(r)
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F'(z)^-1 F(z)`, Newton's correction."""
+        """Newton's correction `F'(z)^-1 F(z)`."""
         here = Linearised(self, arithmetic, z)
         return here.solve(here.value)
 
     def inverses(self, arithmetic: Arithmetic, z: Vector) -> tuple[Solve, Solve]:
-        """`F'(z)^-1` and its transpose, from one factorisation."""
+        """Functions that apply `F'(z)^-1` and its transpose, from one factorisation."""
         here = Linearised(self, arithmetic, z)
         return here.solve, here.solve_transposed
 
     def shorter(self, z: Vector, within: float) -> int:
-        """The bounces after which the cycle repeats itself, up to `within` radians; 0 for never.
+        """The number of bounces after which the cycle repeats itself, up to `within` radians; 0 for never.
 
         >>> from sympy import S
         >>> from symbolic.tables import ellipse
@@ -148,9 +148,9 @@ def mirrored(component: Component) -> bool:
 
 
 def seen_mirrored(problem: Problem, boundary: bool) -> bool:
-    """Is `theta -> -theta` a symmetry by the signs of each part of the formulas, as a reader without algebra sees it?
+    """Is `theta -> -theta` a symmetry of the law, and with `boundary` of the table, by the parity of their formulas?
 
-    Of the law, and of the boundary where that is no table of the paper.
+    No algebra is used, so that a reader without computer algebra can repeat it.
     """
     parts = {problem.table.components[i] for i in problem.components} if boundary else set()
     wanted = [(part.radius, 1) for part in parts if part.radius is not None]
@@ -160,7 +160,7 @@ def seen_mirrored(problem: Problem, boundary: bool) -> bool:
 
 
 def _sign(f: Expr) -> int:
-    """What `theta -> -theta, eta -> -eta` multiplies a formula by, from its parts; 0 where they do not say."""
+    """The factor 1 or -1 of a formula under `theta, eta -> -theta, -eta`, by its parts; 0 where they do not decide."""
     if not f.has(theta, eta):
         return 1
     if f in (theta, eta):
@@ -200,23 +200,23 @@ class Linearised:
 
     @cached_property
     def cycle(self) -> Elimination:
-        """The linearised collision rules, eliminated."""
+        """The elimination of the linearised collision rules."""
         return Elimination(self.plain)
 
     def solve(self, r: Vector) -> Vector:
-        """The matrix of first derivatives, inverted on `r`."""
+        """The solution `x` of `F'(z) x = r`."""
         if self.problem.kind is None:
             return by_cramer(self.plain, r) or self.cycle.solve(r)
         return self.cycle.bordered(self.column, self.row, [self.corner], r)
 
     def solve_transposed(self, r: Vector) -> Vector:
-        """The transposed matrix, inverted on `r`."""
+        """The solution `x` of the transposed system."""
         if self.problem.kind is None:
             return by_cramer(self.plain, r, transposed=True) or self.cycle.transposed([], [], [], r)
         return self.cycle.transposed(self.column, self.row, [self.corner], r)
 
     def normal_form(self, arithmetic: Arithmetic) -> "NormalForm":
-        """The normal form where the equations of a fold or a flip hold."""
+        """The normal form, at a solution of the equations of a fold or a flip."""
         problem, critical = self.problem, self.critical
         kind = problem.kind or BifurcationKind.FOLD
         x = self.z[: problem.period]
@@ -232,7 +232,7 @@ class Linearised:
 def bordering_slopes(
     terms: Terms[Any], closure: Closure, v: Sequence[Any], w: Sequence[Any], sign: Any
 ) -> tuple[Vector, dict[str, Any]]:
-    """`d(w A v)` by the bounces and by each parameter, `A` the linearised rules on vectors that come back times `sign`.
+    """Derivatives of `w A v` by bounces and parameters; `A` is the matrix on vectors that close with the factor `sign`.
 
     With `v` and `w` those of an elimination this is the derivative of the bordering function.
     """
@@ -257,7 +257,7 @@ def bordering_slopes(
 
 @dataclass(frozen=True)
 class NormalForm:
-    """`turn`, `speed` and `bend` as above; `determinant` is that of the monodromy matrix."""
+    """Coefficients of the module's formulas; `bend` is that of `e**2` (fold) or `e**3` (flip) in `w.F`."""
 
     kind: BifurcationKind
     turn: Any
@@ -267,15 +267,15 @@ class NormalForm:
 
     @property
     def branch(self) -> Any:
-        """`parameter = critical + branch*amplitude**2`."""
+        """The coefficient in `parameter = critical + branch*amplitude**2` on the new branch."""
         return -self.bend / self.speed
 
     @property
     def supercritical(self) -> bool | None:
-        """True when a flip bears a cycle that is stable, next to the unstable one; None when that is not decided.
+        """True when the cycle born at a flip is stable, next to the unstable one; None when that is not decided.
 
-        The cycle that is born lies on the side `branch`. The multiplier moves with `-speed/turn` and passes -1 on the
-        side where the old cycle is unstable: the two sides agree at a supercritical flip.
+        The new cycle lies on the side of the sign of `branch`. The multiplier moves with `-speed/turn` and passes -1 on
+        the side where the old cycle is unstable: the two sides agree at a supercritical flip.
         """
         if self.kind is not BifurcationKind.FLIP:
             return None
@@ -287,7 +287,7 @@ Series = Callable[[list[Any]], Sequence[Jet]]
 
 
 def bend_of(kind: BifurcationKind, w: Sequence[Any], v: Any, series: Series, solve: Solve) -> Any:
-    """`[e**2] w.F` at a fold; at a flip `[e**3] w.F` on the curve whose second order is solved for."""
+    """The coefficient in `w.F` of `e**2` at a fold; at a flip of `e**3`, on the curve where that of `e**2` vanishes."""
     second = [rule.c[2] for rule in series([v])]
     if kind is BifurcationKind.FOLD:
         return dot(w, second)
@@ -321,7 +321,7 @@ def normal_form(
 def expanded(
     ring: Recurrence, arithmetic: Arithmetic, x: Sequence[Any], at: Mapping[str, Any], sign: int, directions: list[Any]
 ) -> list[Jet]:
-    """The rules on the curve `x + directions[0]*e + directions[1]*e**2`, to one order more than there are directions.
+    """The rules as jets on the curve `x + directions[0]*e + directions[1]*e**2`, to one order beyond the directions.
 
     Around the end the odd powers of `e` come back times `sign`; with a mirror all of them are negated as well.
     """

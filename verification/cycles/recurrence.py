@@ -39,7 +39,7 @@ from verification.cycles.chain import Chain, Elimination, trace_and_determinant
 
 
 class BifurcationKind(Enum):
-    """What happens to a cycle as a parameter varies; the value is the field's word for it."""
+    """Bifurcations of a cycle as a parameter varies; the value is the usual name."""
 
     FOLD = "fold"
     PITCHFORK = "pitchfork"
@@ -51,7 +51,7 @@ class BifurcationKind(Enum):
 
     @property
     def multiplier(self) -> int:
-        """The critical multiplier, 1 or -1, of the ring that is solved for: the part that flips, at a pitchfork.
+        """The critical multiplier, 1 or -1, of the ring to solve for; for a pitchfork of the part that flips.
 
         >>> BifurcationKind.FOLD.multiplier, BifurcationKind.PITCHFORK.multiplier
         (1, -1)
@@ -60,13 +60,13 @@ class BifurcationKind(Enum):
 
     @property
     def solved(self) -> "BifurcationKind | None":
-        """The kind whose equations are solved for, on the part that flips at a pitchfork; None where there are none."""
+        """The kind whose equations are solved: for a pitchfork the flip of a part; None without equations."""
         return SOLVED.get(self)
 
     def bordering(self, rows: Sequence[tuple[Any, Any, Any]], turn: int) -> Any:
-        """The number that is 0 at the bifurcation, from the rule's three derivatives at each bounce.
+        """The number that vanishes at the bifurcation, from the rule's three derivatives at each bounce.
 
-        `turn` is that of the symmetry by which the ring closes.
+        `turn` is 1, or -1 where the ring closes by a mirror.
 
         >>> rows = [(2, -3, 1), (2, -3, 1)]  # multipliers 1 and 4: det(M + 1) is 10
         >>> [kind.bordering(rows, 1) for kind in (BifurcationKind.FOLD, BifurcationKind.FLIP, BifurcationKind.TORUS)]
@@ -89,7 +89,7 @@ SOLVED = {
 
 @dataclass(frozen=True)
 class Closure:
-    """`x[n] = turn*x[0] + 2*pi*p/q` with `shift = (p, q)`; an orbit that closes by the identity is a whole cycle.
+    """How a ring closes: `x[n] = turn*x[0] + 2*pi*p/q` with `shift = (p, q)`; by the identity for a whole cycle.
 
     Half of a mirror-symmetric cycle has `turn = -1`; one bounce of a polygon turns by `p/q`.
     """
@@ -99,17 +99,17 @@ class Closure:
 
     @property
     def radians(self) -> float:
-        """The shift in float64."""
+        """The shift in radians, in float64."""
         p, q = self.shift
         return 2 * pi * p / q
 
     def angle(self, words: Arithmetic) -> Any:
-        """The shift in radians, in any kind of number."""
+        """The shift in radians, in an arithmetic."""
         p, q = self.shift
         return 2 * words.pi * words.q(p, q) if p else 0
 
     def padded(self, x: Sequence[Any], angle: Any) -> list[Any]:
-        """`x[-1], x[0], ..., x[n]`, with the shift's `angle` in the same numbers.
+        """The list `x[-1], x[0], ..., x[n]`, where `angle` is the shift in the same numbers.
 
         >>> Closure(-1).padded([1, 2], 0)
         [-2, 1, 2, -1]
@@ -117,13 +117,13 @@ class Closure:
         return [self.turn * (x[-1] - angle), *x, self.turn * x[0] + angle]
 
     def carried(self, x: Any, angle: Any, rounds: int) -> Any:
-        """`x` carried ahead by so many rounds of the orbit, or back."""
+        """The image of `x` under `rounds` applications of the closing symmetry, of its inverse where negative."""
         for _ in range(abs(rounds)):
             x = self.turn * x + angle if rounds > 0 else self.turn * (x - angle)
         return x
 
     def twice(self) -> "Closure":
-        """How the orbit run through twice closes.
+        """The closure of the orbit run through twice.
 
         >>> Closure(-1, (2, 3)).twice(), Closure(1, (1, 3)).twice()
         (Closure(turn=1, shift=(0, 1)), Closure(turn=1, shift=(2, 3)))
@@ -143,8 +143,10 @@ X = TypeVar("X")
 
 @dataclass(frozen=True)
 class Terms(Generic[X]):
-    """The rule and its derivatives by (before, here, after) and by the parameters: numbers at one bounce, or rows of
-    them along a ring; `bend` and `slope_by` are the second derivatives, where they were asked for.
+    """The value `R(before, here, after)` of a rule at one bounce, or at all of a ring as arrays, and its derivatives.
+
+    `slope` has those by the three neighbours, `by` those by parameters. Of second order are `bend[i, j]`, by the
+    neighbours `i` and `j`, and `slope_by`, of `slope` by parameters; both are empty where they were not wanted.
     """
 
     value: X
@@ -155,11 +157,11 @@ class Terms(Generic[X]):
 
     @property
     def rows(self) -> list[tuple[Any, Any, Any]]:
-        """Along a ring, the derivatives at each bounce."""
+        """The three derivatives at each bounce of a ring, as tuples."""
         return list(zip(*self.slope, strict=True))  # type: ignore[call-overload]  # rows of numbers
 
     def listed(self) -> "Terms[list[Any]]":
-        """Arrays along a ring as lists of numbers."""
+        """The terms along a ring with lists in place of arrays."""
         rows: Any = self
         shape = np.shape(rows.value)
 
@@ -173,7 +175,7 @@ class Terms(Generic[X]):
 
     @staticmethod
     def along(bounces: "Sequence[Terms[Any]]") -> "Terms[list[Any]]":
-        """The terms of single bounces as those of their ring."""
+        """The terms of single bounces, joined to lists along their ring."""
         first = bounces[0]
         return Terms(
             [terms.value for terms in bounces],
@@ -190,47 +192,47 @@ def _columns(rows: Sequence[tuple[Any, Any, Any]]) -> tuple[list[Any], list[Any]
 
 
 def around(closure: Closure, x: Array) -> Array:
-    """`x` with a neighbour at either end."""
+    """The bounces `x` with a neighbour at either end."""
     return np.array(closure.padded(x, closure.radians))  # type: ignore[arg-type]  # an array is a sequence here
 
 
 class Rule(Protocol):
-    """The rule at single bounces, over one kind of number, or arrays of one bounce of many rings."""
+    """The rule at single bounces as a function, in one arithmetic."""
 
     def __call__(self, i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
-        """At bounce `i` with its neighbours, the value and its derivatives up to `order`, at most 2."""
+        """The rule at bounce `i` from three neighbouring bounces `near`, with derivatives up to `order`, at most 2."""
 
 
 class Recurrence(Protocol):
-    """A ring of rules: `over` any kind of number, bounce by bounce, and `terms` in float64, all bounces at once."""
+    """A ring of rules: `over` an arithmetic at single bounces, `terms` at all bounces at once in float64."""
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
 
     @property
     def period(self) -> int:
-        """Bounces of the ring."""
+        """The number of bounces."""
 
     @property
     def closure(self) -> Closure:
-        """How it closes."""
+        """How the ring closes: by the identity or a symmetry."""
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The parameters that it can be followed in."""
+        """The names of the parameters."""
 
     def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
-        """The rule and its derivatives up to `order`."""
+        """The rule at all bounces and its derivatives up to `order`, in float64."""
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The rule at one bounce at a time, over any kind of number."""
+        """The rule at single bounces, as a function in this arithmetic."""
 
     def doubled(self) -> "Recurrence":
-        """The ring run through twice."""
+        """The recurrence of the cycle run through twice."""
 
     def obstacle(self, x: Array, at: Parameters) -> str:
-        """Why `x` is no cycle although the rules hold; empty when nothing is in the way."""
+        """Reason why a solution `x` of the rules is no cycle; empty when it is one."""
 
 
 BEFORE, HERE, AFTER = (Symbol(name, real=True) for name in ("before", "here", "after"))
@@ -238,7 +240,7 @@ BEFORE, HERE, AFTER = (Symbol(name, real=True) for name in ("before", "here", "a
 
 @dataclass(frozen=True)
 class Explicit:
-    """Cycles of a map given by a formula: `residual` in `BEFORE`, `HERE`, `AFTER` and the parameters' `symbols`."""
+    """Cycles of a map given by a formula `residual = 0` in `BEFORE`, `HERE`, `AFTER` and parameters."""
 
     name: str
     residual: Expr
@@ -248,21 +250,21 @@ class Explicit:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
         return f"{self.name}, period {self.period}"
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The parameters' names."""
+        """The names of the parameters."""
         return tuple(p.name for p in self.symbols)
 
     def terms(self, x: Array, at: Parameters, order: int) -> Terms[Array]:
-        """The rule and its derivatives up to `order`."""
+        """The rule at all bounces and its derivatives up to `order`, in float64."""
         ring = around(self.closure, x)
         return self.over(ARRAYS)(0, (ring[:-2], ring[1:-1], ring[2:]), at, order)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The rule at one bounce, the same at each; derivatives that are constant are numbers of the same kind.
+        """The rule at single bounces as a function; constant derivatives are numbers of the same kind.
 
         >>> from fractions import Fraction
         >>> from types import SimpleNamespace
@@ -289,11 +291,11 @@ class Explicit:
         return rule
 
     def doubled(self) -> "Explicit":
-        """The ring run through twice."""
+        """The recurrence of the cycle run through twice."""
         return replace(self, period=2 * self.period, closure=self.closure.twice())
 
     def obstacle(self, x: Array, at: Parameters) -> str:
-        """Nothing is ever in the way of a formula."""
+        """Always empty: every solution of a formula is a cycle."""
         return ""
 
 

@@ -1,4 +1,4 @@
-"""What continues from a bifurcation: the other branch that passes through it, or its curve in two parameters.
+"""Continuation from a bifurcation: the other branch that passes through it, or its curve in two parameters.
 
 At a fold no other branch leaves: the branch itself goes on. At a period doubling and at a pitchfork the other branch
 leaves along the null vector: the next cycle is sought in the plane that lies a small amplitude away, which the old
@@ -22,24 +22,22 @@ in a 1:2 resonance.
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import numpy as np
 
-from symbolic.tables.curves import curves
-from symbolic.tables.table import Table
 from verification.cycles import arc
-from verification.cycles.arc import End, LostError, Path, Point, Steps
+from verification.cycles.arc import CurvePoint, End, LostError, Path, Steps
 from verification.cycles.branch import Branch, Event, Interval, through
 from verification.cycles.cells import null_vectors, ring_matrix
 from verification.cycles.chords import Chords
+from verification.cycles.crossing import beyond
 from verification.cycles.recurrence import Array, BifurcationKind, Parameters, Recurrence
-from verification.cycles.systems import SHAPE, Critical, Cycles, whole
+from verification.cycles.systems import SHAPE, CriticalCycles, Cycles, whole
 
 AMPLITUDE = 0.003  # radians, root mean square: the first step away from the crossing
 NEARBY = 0.2  # of det(M - 1), which is 0 at the crossing: a longer step may jump over the next event
-Tick = Callable[[Point], None]
-TOUCHING = 1e-7  # a bounce that close to a join, in its parameter, collides with it
+Tick = Callable[[CurvePoint], object]
 
 
 def switched(
@@ -47,7 +45,7 @@ def switched(
 ) -> list[Branch]:
     """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
 
-    At its own birth another branch does not leave but passes: that of the cycle it is born of.
+    At a birth it is the branch of the cycle from which this one is born, which passes through.
 
     >>> from verification.cycles.branch import branch
     >>> from verification.cycles.recurrence import logistic
@@ -64,7 +62,8 @@ def switched(
     if event.kind is BifurcationKind.BRANCH_POINT:
         return _across(branch, event, interval, steps, tick)
     if event.kind is BifurcationKind.BORDER_COLLISION:
-        return _over_the_join(branch, event, interval, steps, tick)
+        starts = beyond(branch.system, event)
+        return [through(system, near, near - z, interval, steps, tick, ways=(1,)) for system, near, z in starts]
     return []
 
 
@@ -88,7 +87,7 @@ def _along_the_null_vector(
 
 
 def _repeated(part: Chords, v: Array, n: int) -> Array:
-    """A vector of a part that flips, along the whole cycle."""
+    """The null vector of a part that flips, continued along the whole cycle."""
     pieces, piece = [v], v
     while len(pieces) * part.period < n:
         piece = -part.closure.turn * piece
@@ -100,7 +99,7 @@ def _leaving(
     system: Cycles, z: Array, away: Array, interval: Interval, steps: Steps | None, tick: Tick | None
 ) -> Branch:
     """The branch that leaves `z` along `away`; `z` itself is its first point."""
-    crossing = Point(z, away, 0.0, system.tests(z))
+    crossing = CurvePoint(z, away, 0.0, system.tests(z))
     size = AMPLITUDE
     for _ in range(8):
         try:
@@ -122,7 +121,7 @@ def _leaving(
 
 
 def _across(branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None) -> list[Branch]:
-    """Both ways along the null vector that is not the branch's own tangent."""
+    """The branches both ways along the null vector that is not the branch's own tangent."""
     system, z = branch.system, event.point.z
     matrix = ring_matrix(system.terms(z), system.recurrence.closure)
     v = np.append(null_vectors(matrix)[0], 0.0)
@@ -132,68 +131,12 @@ def _across(branch: Branch, event: Event, interval: Interval, steps: Steps | Non
     return [_leaving(system, z, way * v, interval, steps, tick) for way in (1, -1)]
 
 
-def _over_the_join(
-    branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None
-) -> list[Branch]:
-    """The cycles whose colliding bounces, some or all of them, lie on the neighbouring components."""
-    ring, x = branch.system.recurrence, event.x
-    if not isinstance(ring, Chords):
-        return []
-    at = branch.system.at(event.point.z)
-    nearest, ends = ring.nearest_joins(x, at), ring.ends(at)
-    joins = [(i, end) for i, end in enumerate(nearest) if end is not None and abs(end - x[i]) < TOUCHING]
-    found = []
-    for some in (some for size in range(1, len(joins) + 1) for some in combinations(joins, size)):
-        parts, moved, inwards = list(ring.components), x.copy(), {}
-        for bounce, end in some:
-            after = abs(end - ends[parts[bounce]][1]) < TOUCHING
-            parts[bounce] = next_to(ring.table, parts[bounce], after)
-            moved[bounce] = ends[parts[bounce]][0 if after else 1]
-            inwards[bounce] = 1.0 if after else -1.0  # parameters grow counterclockwise, from the join inwards
-        system = Cycles(replace(ring, components=tuple(parts)), branch.system.parameter, branch.system.fixed)
-        other = _inwards(system, np.append(moved, event.value), inwards, interval, steps, tick)
-        found += [other] if other else []
-    return found
-
-
-def next_to(table: Table, part: int, after: bool) -> int:
-    """The component that follows another one, or comes before it, on the same closed curve.
-
-    >>> from symbolic.tables.gallery import sinai
-    >>> next_to(sinai(), 3, True), next_to(sinai(), 0, False)  # four sides, and a disc
-    (0, 3)
-    """
-    first = 0
-    for curve in curves(table):
-        if part < first + len(curve):
-            break
-        first += len(curve)
-    return first + (part - first + (1 if after else -1)) % len(curve)
-
-
-def _inwards(
-    system: Cycles, z: Array, inwards: dict[int, float], interval: Interval, steps: Steps | None, tick: Tick | None
-) -> Branch | None:
-    """The branch from a border collision on which the named bounces leave their joins; None when there is none."""
-    bounce = next(iter(inwards))
-    row = np.zeros(len(z))
-    row[bounce] = 1.0
-    for size in (1e-6, 1e-4):
-        try:
-            near, _ = arc.corrected(system, z + inwards[bounce] * size * row, row, z[bounce] + inwards[bounce] * size)
-        except LostError:
-            continue
-        if not system.obstacle(near) and abs(near[-1] - z[-1]) < 1e3 * size:
-            return through(system, near, near - z, interval, steps, tick, ways=(1,))
-    return None
-
-
 Box = tuple[tuple[float, float], tuple[float, float]]
 NOISE = 1e-10
 
 
 class CodimensionTwo(Enum):
-    """Points of codimension two."""
+    """Kinds of points of codimension two."""
 
     CUSP = "cusp"
     ONE_ONE = "1:1 resonance (Bogdanov-Takens)"
@@ -214,29 +157,29 @@ MEANING = {
 
 @dataclass(frozen=True)
 class Degenerate:
-    """A point of codimension two on a curve."""
+    """A point of codimension two on a curve, with its kind."""
 
     kind: CodimensionTwo
-    point: Point = field(repr=False)
+    point: CurvePoint = field(repr=False)
 
     @property
     def parameters(self) -> tuple[float, float]:
-        """Where in the plane of the parameters."""
+        """The two parameters."""
         return float(self.point.z[-2]), float(self.point.z[-1])
 
 
 @dataclass(frozen=True)
-class Curve:
-    """A curve of folds or flips, with the points of codimension two and how either end came about."""
+class CodimensionOneCurve:
+    """A curve of folds or flips, with the points of codimension two and the reasons of both ends."""
 
-    system: Critical
-    points: tuple[Point, ...] = field(repr=False)
+    system: CriticalCycles
+    points: tuple[CurvePoint, ...] = field(repr=False)
     special: tuple[Degenerate, ...]
     ends: tuple[tuple[End, str], tuple[End, str]]
 
     @property
     def plane(self) -> Array:
-        """The curve in the plane of the parameters, a row for each point."""
+        """The points of the curve in the plane of the two parameters, a row each."""
         return np.array([point.z[-2:] for point in self.points])
 
     def crossing(self, value: float) -> list[Array]:
@@ -253,12 +196,12 @@ def curve(
     box: Box,
     fixed: Parameters | None = None,
     steps: Steps | None = None,
-    tick: Callable[[Point], None] | None = None,
+    tick: Tick | None = None,
     unit: float = SHAPE,
-) -> Curve:
+) -> CodimensionOneCurve:
     """The curve of `kind` through the critical cycle near `x`, at parameters near `near`, both ways inside `box`.
 
-    `unit` is how far a shape varies, and gives the steps their length.
+    `unit` is the range of a shape, to which the lengths of steps are in proportion.
 
     >>> from verification.cycles.recurrence import henon
     >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))
@@ -267,7 +210,7 @@ def curve(
     True
     """
     z = np.append(np.asarray(x, dtype=float), near)
-    system = Critical.near(ring, kind, two, z, fixed, unit)
+    system = CriticalCycles.near(ring, kind, two, z, fixed, unit)
     row = np.zeros(len(z))
     row[-2] = 1.0
     try:
@@ -278,7 +221,7 @@ def curve(
     tangent = arc.tangent_at(system, z, row)
     paths: list[Path] = []
     for way in (-1, 1):
-        first = Point(z, way * tangent, 0.0, system.tests(z))
+        first = CurvePoint(z, way * tangent, 0.0, system.tests(z))
         limits = {len(z) - 2: box[0], len(z) - 1: box[1]}
         paths.append(arc.follow(system, first, limits, steps, tick))
         if paths[-1].end is End.CLOSED:
@@ -286,10 +229,10 @@ def curve(
     special = [found for path in paths for found in degenerate(system, path)]
     back, forth = paths[0], paths[-1]
     points = (*reversed(back.points[1:]), *forth.points) if len(paths) == 2 else back.points
-    return Curve(system, tuple(points), tuple(special), ((back.end, back.why), (forth.end, forth.why)))
+    return CodimensionOneCurve(system, tuple(points), tuple(special), ((back.end, back.why), (forth.end, forth.why)))
 
 
-def degenerate(system: Critical, path: Path) -> list[Degenerate]:
+def degenerate(system: CriticalCycles, path: Path) -> list[Degenerate]:
     """The points of codimension two between neighbours of a path, and a resonance at its end."""
     found = []
     for a, b in pairwise(path.points):

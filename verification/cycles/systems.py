@@ -1,4 +1,4 @@
-"""What is followed: a cycle in one parameter, or a bifurcating cycle in two; and the part of a symmetric cycle.
+"""The systems that are followed: a cycle in one parameter, a bifurcating cycle in two; parts of symmetric cycles.
 
 A cycle has as many rules as bounces, so one free parameter makes a branch. Where it bifurcates, a vector `v` comes
 back unchanged (fold) or negated (flip), `A v = 0`. Bordered by two fixed vectors `b` and `c` the matrix is regular,
@@ -14,7 +14,7 @@ the part flips.
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
-from math import pi, remainder
+from math import inf, pi, remainder
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from symbolic.tables.geometry import boundary_coefficients, group
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.cells import Spectrum, beside, dense, null_vectors, ring_matrix, solved, spectrum
+from verification.cycles.cells import MonodromyDeterminants, beside, dense, null_vectors, ring_matrix, solved, spectrum
 from verification.cycles.chords import Chords
 from verification.cycles.problem import (
     NormalForm,
@@ -46,7 +46,7 @@ from verification.cycles.recurrence import (
 
 
 def series_of(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind) -> Series:
-    """The rules along curves through a cycle, as `expanded` gives them."""
+    """A function that expands the rules along curves through a cycle, as `expanded` does."""
     return lambda directions: expanded(ring, FLOAT64, [float(v) for v in x], at, kind.multiplier, directions)
 
 
@@ -59,13 +59,13 @@ def coefficients(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKi
 
 
 def inverse(terms: Terms[Array], closure: Closure) -> Callable[[Any], Any]:
-    """What solves with the linearised rules of a cycle, with pivoting."""
+    """A function that solves the linearised rules of a cycle for a right side, with pivoting."""
     return lambda right: solved(ring_matrix(terms, closure), np.asarray(right))
 
 
 SAME = 1e-7  # radians
-OPPOSITE = 0.1  # of two gaps: what is left where they should cancel
-ROUND = 12  # turns of a circle about the origin that are counted, of infinitely many
+OPPOSITE = 0.1  # relative rest where two gaps should cancel
+ROUND = 12  # rotations counted for a circle about the origin, which has infinitely many
 
 
 @cache
@@ -96,7 +96,7 @@ def reflected(table: Table) -> bool:
 
 @cache
 def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
-    """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first, which an odd law alone has."""
+    """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first, if the law is odd."""
     if law.placed:
         return ()
     k = rotations(table)
@@ -106,7 +106,7 @@ def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
 
 
 def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
-    """The rings, shorter than this one, that make up a full cycle by a symmetry; the shortest first.
+    """Shorter rings, with their bounces, that make up the cycle `x` by a symmetry; the shortest first.
 
     >>> from symbolic.tables import egg
     >>> triangle = Chords(egg(3).at(alpha="2/25"), (0, 0, 0))
@@ -128,13 +128,37 @@ def _maps(ring: Chords, g: Closure, x: Array, i: int, m: int) -> bool:
 
 
 def _gap(ring: Chords, g: Closure, x: Array, i: int, m: int) -> float:
-    """How far the bounce `m` later is from a bounce's image."""
+    """The difference between bounce `i + m` and the image under `g` of bounce `i`."""
     gap = float(x[(i + m) % ring.period] - g.carried(x[i], g.radians, 1))
-    return remainder(gap, 2 * pi) if len(ring.table.components) == 1 else gap
+    return remainder(gap, _turn(ring.table))
+
+
+def _turn(table: Table) -> float:
+    """The period of the boundary parameter; infinite where there are several components."""
+    return 2 * pi if len(table.components) == 1 else inf
+
+
+def images(ring: Recurrence, x: Array, y: Array, within: float) -> bool:
+    """Are two cycles of one ring the same, up to the first bounce and a symmetry of the table?
+
+    >>> from symbolic.tables import ellipse
+    >>> axis = Chords(ellipse.at(a=2), (0, 0))
+    >>> images(axis, np.array([0.0, np.pi]), np.array([-np.pi, 0.0]), 1e-9)
+    True
+    """
+    if not isinstance(ring, Chords) or ring.closure != IDENTITY:
+        return bool(np.max(np.abs(x - y)) < within)
+    n, turn = ring.period, _turn(ring.table)
+    for g in (IDENTITY, *symmetries(ring.table, ring.law)):
+        image = g.carried(x, g.radians, 1)
+        for m in (m for m in range(n) if ring.components == ring.components[m:] + ring.components[:m]):
+            if all(abs(remainder(float(gap), turn)) < within for gap in np.roll(image, -m) - y):
+                return True
+    return False
 
 
 def repeats(ring: Recurrence, x: Array) -> bool:
-    """Is the cycle a shorter one run through again, or its own image under a symmetry some bounces later?"""
+    """Does the cycle repeat a shorter one, or is it its own image under a symmetry some bounces later?"""
     if not isinstance(ring, Chords) or ring.closure != IDENTITY:
         return False
     n = ring.period
@@ -143,9 +167,9 @@ def repeats(ring: Recurrence, x: Array) -> bool:
 
 
 def crossed(ring: Recurrence, a: Array, b: Array) -> list[tuple[Chords, Array, float]]:
-    """The parts that repeat themselves somewhere between two cycles that do not, and which share of the way there.
+    """Repeating or symmetric cycles between `a` and `b`, which are neither: ring and bounces of a part, share of way.
 
-    The bounces of one cycle are as far on one side of their images as those of the other are on the other side.
+    The gaps between the bounces and their images have opposite signs in `a` and `b`, and cancel there.
     """
     found: list[tuple[Chords, Array, float]] = []
     if not isinstance(ring, Chords) or ring.closure != IDENTITY:
@@ -163,7 +187,7 @@ def crossed(ring: Recurrence, a: Array, b: Array) -> list[tuple[Chords, Array, f
 
 
 def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:
-    """The full cycle of `n` bounces that a part makes up."""
+    """The full cycle of `n` bounces, and its bounces, from a part and its images under the closing symmetry."""
     pieces, piece = [x], x
     while len(pieces) * part.period < n:
         piece = part.closure.carried(piece, part.closure.radians, 1)
@@ -185,52 +209,54 @@ class Cycles:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
         return self.recurrence.label
 
     @cached_property
     def weights(self) -> Array:
-        """The mean square of the bounces, and the parameter."""
+        """Weights of the arc length: the mean square of the bounces, and the parameter."""
         n = self.recurrence.period
         return np.append(np.full(n, 1.0 / n), PARAMETER**2)
 
     def at(self, z: Array) -> dict[str, float]:
-        """All parameters."""
+        """The values of all parameters by name, at the solution `z`."""
         return {**self.fixed, self.parameter: float(z[-1])}
 
     def terms(self, z: Array, order: int = 1) -> Terms[Array]:
-        """The rule along the ring."""
+        """The rule and its derivatives at all bounces of the cycle, at the solution `z`."""
         return self.recurrence.terms(z[:-1], self.at(z), order)
 
     def linear(self, z: Array) -> tuple[Array, Any]:
-        """The rules, and their derivatives by the bounces and the parameter."""
+        """Values of the rules, and the matrix of their derivatives by the bounces and the parameter."""
         terms = self.terms(z)
         matrix = ring_matrix(terms, self.recurrence.closure)
         return terms.value, beside(matrix, terms.by[self.parameter])
 
-    def spectrum(self, z: Array) -> Spectrum:
-        """The multipliers, as three numbers."""
+    def spectrum(self, z: Array) -> MonodromyDeterminants:
+        """The determinants from which the multipliers of the cycle follow."""
         return spectrum(self.terms(z), self.recurrence.closure)
 
     def tests(self, z: Array) -> dict[str, float]:
-        """`det(M - 1)`, `det(M + 1)` and `det M - 1`."""
-        found = self.spectrum(z)
-        return {"one": found.at_one, "minus_one": found.at_minus_one, "volume": found.determinant - 1}
+        """The test functions `det(M - 1)`, `det(M + 1)` and `det M - 1`, which is set to 0 where the law is elastic."""
+        found, ring = self.spectrum(z), self.recurrence
+        elastic = isinstance(ring, Chords) and ring.law.uniform and self.at(z)["lam"] == 1
+        volume = 0.0 if elastic else found.determinant - 1
+        return {"one": found.at_one, "minus_one": found.at_minus_one, "volume": volume}
 
     def obstacle(self, z: Array) -> str:
-        """Why these bounces are no cycle."""
+        """Reason why these bounces are not a cycle; empty if they are."""
         return self.recurrence.obstacle(z[:-1], self.at(z))
 
     def renewed(self, z: Array) -> "Cycles":
-        """Itself: nothing is kept from point to point."""
+        """The same system: nothing depends on the point."""
         return self
 
 
 @dataclass(frozen=True)
-class Critical:
+class CriticalCycles:
     """Cycles at a fold or a flip, in two parameters; unknowns are the bounces, then the parameters.
 
-    `unit` is how far a shape varies: a curve is stepped along in parts of it.
+    `unit` is the range of a shape: steps along a curve are in proportion to it.
     """
 
     recurrence: Recurrence
@@ -249,13 +275,13 @@ class Critical:
         z: Array,
         fixed: Parameters | None = None,
         unit: float = SHAPE,
-    ) -> "Critical":
-        """The system whose borders fit a critical cycle near `z`."""
+    ) -> "CriticalCycles":
+        """The system with borders for a critical cycle near `z`."""
         none = np.zeros(recurrence.period)
         return cls(recurrence, kind, two, (none, none), fixed or {}, unit).bordered_at(z, None)
 
-    def bordered_at(self, z: Array, before: tuple[Array, Array] | None) -> "Critical":
-        """Borders from the singular vectors at `z`, on the side of those `before`."""
+    def bordered_at(self, z: Array, before: tuple[Array, Array] | None) -> "CriticalCycles":
+        """The system with borders from the singular vectors at `z`, in the directions of `before`."""
         right, left = null_vectors(self._matrix(self.terms(z)))
         if before is not None:
             right, left = (x if x @ old >= 0 else -x for x, old in zip((right, left), before, strict=True))
@@ -264,26 +290,26 @@ class Critical:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
         return f"{self.kind.name.lower()} of {self.recurrence.label}"
 
     @cached_property
     def weights(self) -> Array:
-        """The mean square of the bounces, and the parameters: a `unit` of a shape counts as much as all of `lam`."""
+        """Weights of the arc length: the mean square of bounces; a `unit` of a shape counts as much as all of `lam`."""
         n = self.recurrence.period
         parameters = [(PARAMETER / (1 if name == "lam" else self.unit)) ** 2 for name in self.two]
         return np.append(np.full(n, 1.0 / n), parameters)
 
     def at(self, z: Array) -> dict[str, float]:
-        """All parameters."""
+        """The values of all parameters by name, at the solution `z`."""
         return {**self.fixed, self.two[0]: float(z[-2]), self.two[1]: float(z[-1])}
 
     def terms(self, z: Array, order: int = 2) -> Terms[Array]:
-        """The rule along the ring."""
+        """The rule and its derivatives at all bounces of the cycle, at the solution `z`."""
         return self.recurrence.terms(z[:-2], self.at(z), order)
 
     def vectors(self, terms: Terms[Array]) -> tuple[Array, Array, float]:
-        """`v`, `w` and `g`."""
+        """`v`, `w` and `g` of the module docstring: right and left null vectors where `g` is 0, at a bifurcation."""
         n = self.recurrence.period
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n] = dense(self._matrix(terms))
@@ -293,7 +319,7 @@ class Critical:
         return right[:n], left[:n], float(right[n])
 
     def linear(self, z: Array) -> tuple[Array, Any]:
-        """The rules and `g`, with their derivatives."""
+        """Values of the rules and of `g`, and the matrix of their derivatives."""
         terms = self.terms(z)
         v, w, g = self.vectors(terms)
         by_bounce, by_parameter = bordering_slopes(
@@ -309,7 +335,7 @@ class Critical:
         return np.append(terms.value, g), matrix
 
     def tests(self, z: Array) -> dict[str, float]:
-        """The normal form's coefficient, the volume, and the other multiplier against 1 and -1."""
+        """The normal form's coefficient, `det M - 1`, and the other multiplier less 1 and -1."""
         terms = self.terms(z)
         v, w, _ = self.vectors(terms)
         found = spectrum(terms, self.recurrence.closure)
@@ -319,11 +345,11 @@ class Critical:
         return {"bend": bend, "volume": found.determinant - 1, "other_one": other - 1, "other_minus_one": other + 1}
 
     def obstacle(self, z: Array) -> str:
-        """Why these bounces are no cycle."""
+        """Reason why these bounces are not a cycle; empty if they are."""
         return self.recurrence.obstacle(z[:-2], self.at(z))
 
-    def renewed(self, z: Array) -> "Critical":
-        """Borders that fit the surroundings of `z`."""
+    def renewed(self, z: Array) -> "CriticalCycles":
+        """The system with borders for the neighbourhood of `z`."""
         return self.bordered_at(z, self.borders)
 
     def _matrix(self, terms: Terms[Array]) -> Any:

@@ -1,13 +1,13 @@
-"""Is a solution of the chord system a cycle of the billiard? It must be admissible, and of minimal period.
+"""Proofs that a solution of the chord system is a cycle of the billiard: flights meet nothing, the period is minimal.
 
-In a convex table the chord between two boundary points meets the boundary nowhere else, unless both
-lie on the same straight part; so there it is enough that consecutive bounces are different points
-and that a finite collision rule shows the chord is not tangent.
+In a convex table the chord between two boundary points meets the boundary nowhere else, unless both lie on the same
+straight part; so there it is enough that consecutive bounces are different points and that a finite collision rule
+shows the chord is not tangent.
 
-In other tables each chord is proved to meet nothing on its way. Along a chord from `p` in direction `d` a boundary
-point `q` lies on the line when `d x (q - p) = 0`. The boundary is covered by balls: off the line, or on it but not
-between the ends, or next to an end, where `d x q'` keeps its sign so that the line is crossed there once, at the end
-itself.
+In other tables each chord is proved to meet nothing on its way. On a chord from `p` in direction `d` a boundary point
+`q` lies on the line when the cross product `d x (q - p)` is 0. The boundary is covered by balls: off the line, or on it
+but not between the ends, or next to an end, where `d x q'` keeps its sign so that the line is crossed there once, at
+the end itself.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -27,18 +27,21 @@ from symbolic.expressions.text import kernel, load
 from symbolic.motion.chords import ends_kernel
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.geometry import coefficients, turning, velocity
+from symbolic.tables.joins import JoinKind, contacts, following
+from symbolic.tables.polynomial import derived, rational_coefficients, value_of
 from symbolic.tables.table import Component, Table, theta
 from symbolic.tables.validity import radius_over
 from verification.arithmetic.balls import balls, working
+from verification.maps.joins import ROUGH, over_joins
 
 BITS = 64
 PIECES = 2**12  # boxes that a proof of convexity may use up
 
 
 def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
-    """True when all parts bend inwards or are straight, the joins bend in, and the whole turns once: proved.
+    """True when the table is proved convex: parts and joins bend inwards or are straight, and the tangent turns once.
 
-    `shape` encloses the free shape parameters; without it every value of their ranges is meant. None: nothing proved.
+    `shape` encloses the free shape parameters; without it all values in their ranges are meant. None: nothing proved.
 
     >>> from symbolic.tables import cardioid, cuspless, egg
     >>> convex(cuspless), convex(egg(3).at(alpha="0.08")), convex(cardioid)
@@ -62,10 +65,10 @@ def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
 
 
 def _once(table: Table, shape: tuple[arb, ...]) -> bool:
-    """Does a boundary that bends inwards turn once? A curve of two turns bends inwards as well, and meets itself.
+    """Is a boundary that bends inwards proved to turn once? One of two turns bends inwards too, and meets itself.
 
-    It does where its radius is positive, and where the angle in balls says so. A curve that bends everywhere stops
-    nowhere, so its turns cannot change with its shape parameters: one value of them is asked.
+    The proof is a positive radius, or the angle in balls. A curve that bends everywhere stops nowhere, so its number of
+    turns cannot change with the shape parameters: one value of them is enough.
     """
     if not table.shapes:
         return _turns(table, ()) is True
@@ -109,7 +112,7 @@ def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
 
 
 def _all_within(shape: tuple[arb, ...], ranges: Iterable[Interval]) -> bool:
-    """Do enclosed shape parameters lie in their ranges? What is proved over these is else nothing of them."""
+    """Do the enclosed shape parameters lie in their ranges, so that a proof over the ranges holds for them?"""
     return not shape or all(isinstance(r, Interval) and _within(x, r) for x, r in zip(shape, ranges, strict=True))
 
 
@@ -120,11 +123,11 @@ def _within(x: arb, range: Interval) -> bool:
 
 
 def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
-    """True when a sum of cosines of multiples of `theta` is proved nonnegative, as a polynomial in one of them.
+    """True when a sum of cosines of multiples of `theta` is proved nonnegative, as a polynomial in a cosine.
 
     Its coefficients may be polynomials in shape parameters, which have `ranges`.
     """
-    waves, c = coefficients(bend) or {}, theta  # which then stands for the cosine
+    waves, c = coefficients(bend) or {}, theta  # `c` stands for the cosine
     step = gcd(*waves)  # 0 where there is none
     if not (step and all(isinstance(r, Interval) for r in ranges.values())):
         return False
@@ -136,13 +139,13 @@ def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
 
 
 def _rational(w: Expr) -> bool:
-    """Is it a polynomial with rational coefficients?"""
+    """Is `w` a polynomial with rational coefficients?"""
     symbols = sorted(w.free_symbols, key=str)
     return bool(w.is_Rational or (symbols and w.is_polynomial(*symbols) and Poly(w, *symbols).domain in (ZZ, QQ)))
 
 
 def _over(range: Interval) -> arb:
-    """A ball over a range; without end where the range has none, or where its ends are no rationals."""
+    """A ball over a range; infinite where the range is, or where its ends are not rational."""
     if not (range.start.is_Rational and range.end.is_Rational):
         return arb("0 +/- inf")
     return _exact(Fraction(str(range.start))).union(_exact(Fraction(str(range.end))))
@@ -150,28 +153,36 @@ def _over(range: Interval) -> arb:
 
 @cache
 def _joined(table: Table) -> bool:
-    """Do the joins bend in, by less than a right angle?"""
+    """Do all joins bend inwards, by less than a right angle?"""
     return all(across.is_nonnegative and along.is_positive for across, along in tangents(table))
 
 
 @cache
 def _turned(table: Table) -> bool:
-    """Do the joins bend in, by less than half a turn?"""
+    """Do all joins bend inwards, by less than half a turn?"""
     return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in tangents(table))
 
 
 def tangents(table: Table) -> Iterator[tuple[Expr, Expr]]:
-    """Vector and scalar product of the tangents at each join; a curve that a whole turn does not change has none."""
+    """Cross and dot product of the tangents at each join; none for a closed curve of period 2*pi."""
     if len(table.components) == 1 and _whole(table.components[0]):
         return
     for before, after in pairwise((*table.components, table.components[0])):
+        exact = S(before.end).is_Rational and S(after.start).is_Rational
+        if exact and (rows := rational_coefficients(before)) and (others := rational_coefficients(after)):
+            (vx, vy), (wx, wy) = (
+                [S(value_of(derived(row), Fraction(str(end)))) for row in each]
+                for each, end in ((rows, before.end), (others, after.start))
+            )
+            yield vx * wy - vy * wx, vx * wx + vy * wy
+            continue
         p, q = velocity(before).subs(theta, before.end), velocity(after).subs(theta, after.start)
         yield simplify(Matrix([p.T, q.T]).det()), simplify(p.dot(q))
 
 
 @cache
 def closes_smoothly(table: Table) -> bool:
-    """Is the curve of a table of one component the same formula after a whole turn? False for more components.
+    """Has the table one component, whose formulas have period 2*pi?
 
     >>> from symbolic.tables import cuspless, egg
     >>> closes_smoothly(egg(3)), closes_smoothly(cuspless)
@@ -183,12 +194,19 @@ def closes_smoothly(table: Table) -> bool:
 
 
 def inside(
-    table: Table, components: tuple[int, ...], zero: list[arb], shape: tuple[arb, ...] = (), turns: bool = True
+    table: Table,
+    components: tuple[int, ...],
+    zero: list[arb],
+    shape: tuple[arb, ...] = (),
+    turns: bool = True,
+    rough: bool = False,
 ) -> bool | None:
-    """True when every bounce is proved to lie in the interior of its component, or on one that a whole turn repeats.
+    """True when each bounce is proved inside its component, or on a closed curve of period 2*pi; False if refuted.
 
-    `turns` says that the law, too, is the same a whole turn further on. Beyond its ends any other formula runs on along
-    a curve that is no boundary. Where there is one component nothing is refuted there: a turn less may bring it back.
+    `turns` says that the law, too, has period 2*pi. Beyond its ends another formula leaves the boundary, except along
+    the next component where one analytic curve runs through the join; and with `rough` where tangents agree, for
+    equations that go on along the next component (`OverJoins`). With one component nothing is refuted there: a turn
+    less may bring the parameter back.
     """
     ends = _ends(table, shape, BITS)
     for index, value in zip(components, zero, strict=False):
@@ -196,12 +214,42 @@ def inside(
             continue
         start, end = ends[index]
         if not (value > start and value < end):
+            if turns and _runs_on(table, index, value, shape, rough):
+                continue
             return False if len(table.components) > 1 and (value < start or value > end) else None
     return True
 
 
+def _runs_on(table: Table, index: int, value: arb, shape: tuple[arb, ...], rough: bool) -> bool:
+    """Is a parameter within its component, or on the next one where one curve runs through the join?
+
+    The part beyond the end must be shorter than the straight line between the ends of that component.
+    """
+    if len(table.components) == 1:
+        return False
+    ends, after, agree = _ends(table, shape, BITS), following(table), contacts(table)
+    (start, end), before = ends[index], after.index(index)
+    for side, gap, join, beyond, contact in (
+        (1, value - end, end, after[index], agree[index]),
+        (0, start - value, start, before, agree[before]),
+    ):
+        if gap < 0:
+            continue
+        if rough and contact in ROUGH and (over := over_joins(table, balls(BITS))):
+            first, last = ends[beyond]
+            if not gap * over.ratio[index][side] < last - first:
+                return False
+            continue
+        _, _, vx, vy = _places(table, index)(value.union(join), *shape)
+        p, q = (_places(table, beyond)(at, *shape) for at in ends[beyond])
+        straight = (q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2
+        if contact is not JoinKind.SMOOTH or not gap * gap * (vx * vx + vy * vy) < straight:
+            return False
+    return True
+
+
 def minimal(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
-    """True when no shorter cycle is run through several times: some bounce differs from its image."""
+    """True when the period is proved minimal: for each proper divisor `k`, some bounce differs from the `k`-th next."""
     n = len(components)
     for shift in (k for k in range(1, n) if n % k == 0):
         if not any(_apart(table, components, zero, i, (i + shift) % n) for i in range(n)):
@@ -210,8 +258,11 @@ def minimal(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool 
 
 
 def _apart(table: Table, components: tuple[int, ...], zero: list[arb], i: int, j: int) -> bool:
-    if components[i] != components[j]:
-        return True
+    if components[i] != components[j]:  # and, but for a shape that moves them, not on their join
+        if table.shapes:
+            return True
+        (x, y, *_), (u, v, *_) = (map(arb, _places(table, components[k])(zero[k])) for k in (i, j))
+        return not (x.overlaps(u) and y.overlaps(v))
     gap = zero[i] - zero[j]
     closed = len(table.components) == 1 or _whole(table.components[components[i]])
     return not ((gap / 2).sin() if closed else gap).contains(0)
@@ -219,12 +270,12 @@ def _apart(table: Table, components: tuple[int, ...], zero: list[arb], i: int, j
 
 @cache
 def _whole(component: Component) -> bool:
-    """Is a component a closed curve that runs through a whole turn of its parameter, as a round hole does?"""
+    """Is a component a closed curve of period 2*pi, such as a round hole?"""
     return bool(component.end - component.start == 2 * pi) and all(map(is_periodic, component.point))
 
 
 def _ends(table: Table, shape: tuple[arb, ...], bits: int) -> list[tuple[arb, arb]]:
-    """Where the parameter of each component starts and ends, in balls, from the free shape parameters."""
+    """Start and end of each component's parameter, in balls, at the free shape parameters `shape`."""
     found = [end + arb(0) for end in load(ends_kernel(table), balls(bits))(*shape)]
     return list(zip(found[::2], found[1::2], strict=True))
 
@@ -241,15 +292,16 @@ Place = Callable[[arb], Frame]
 
 
 @dataclass(frozen=True)
-class Boundary:
-    """Closed chains of components: point and velocity at a parameter of each, and the ends of its parameter."""
+class BallBoundary:
+    """Closed chains of components: for each a function to point and velocity, and the ends of its parameter."""
 
     places: Sequence[Place]
     ends: Sequence[tuple[arb, arb]]
+    after: Callable[[], tuple[int, ...]] = tuple  # the component that begins where each one ends; none for one alone
 
     @cached_property
     def closed(self) -> tuple[bool, ...]:
-        """Which components end where they begin. The boundary is made of closed chains, so nothing else can be near."""
+        """For each component, whether its ends coincide: in closed chains, exactly when their balls overlap."""
         if len(self.ends) == 1:
             return (True,)
         found = []
@@ -260,7 +312,7 @@ class Boundary:
 
 
 def first_hits(table: Table, components: tuple[int, ...], zero: list[arb], shape: tuple[arb, ...] = ()) -> bool | None:
-    """True when every chord of the cycle leaves inwards, arrives from inside, and meets nothing between.
+    """True when every chord of the cycle is proved to leave inwards, arrive from inside, and meet nothing between.
 
     >>> from symbolic.tables import cardioid
     >>> with working(96):
@@ -273,23 +325,24 @@ def first_hits(table: Table, components: tuple[int, ...], zero: list[arb], shape
 
 
 def unobstructed(table: Table, bounces: Sequence[tuple[int, arb]], shape: tuple[arb, ...] = ()) -> bool:
-    """The same of the flights between successive bounces, which need not close."""
+    """True when the flights between successive bounces, which need not close, are proved free as in `first_hits`."""
     with working(BITS_OF_HIT):
         boundary = _boundary(table, shape)
         return all(free(boundary, start, end) for start, end in pairwise(bounces))
 
 
-def _boundary(table: Table, shape: tuple[arb, ...]) -> Boundary:
+def _boundary(table: Table, shape: tuple[arb, ...]) -> BallBoundary:
     def placed(index: int) -> Place:
         program = _places(table, index)
-        return lambda at: program(at, *shape)
+        return lambda at: tuple(x + arb(0) for x in program(at, *shape))  # whole numbers as balls, too
 
-    return Boundary([placed(i) for i in range(len(table.components))], _ends(table, shape, BITS_OF_HIT))
+    places = [placed(i) for i in range(len(table.components))]
+    return BallBoundary(places, _ends(table, shape, BITS_OF_HIT), lambda: following(table))
 
 
 @cache
 def _places(table: Table, index: int) -> Any:
-    """The point and the velocity at a parameter of a component, in balls."""
+    """A function from the parameter of a component to its point and velocity, in balls."""
     component = table.components[index]
     (x, y), (vx, vy) = component.point, velocity(component)
     letters = [theta, *(p.symbol for p in table.shapes)]
@@ -334,19 +387,19 @@ def _turns(table: Table, shape: tuple[arb, ...]) -> bool | None:
 
 
 def _products(p: Frame, q: Frame) -> Frame:
-    """Vector and scalar product of two velocities."""
+    """Cross and dot product of two velocities."""
     return arb(p[2] * q[3] - p[3] * q[2]), arb(p[2] * q[2] + p[3] * q[3])
 
 
 def _angle(p: Frame, q: Frame) -> arb:
-    """From one velocity to another, to the left where it is a right angle or more."""
+    """The angle from one velocity to another, between -pi/2 and pi; nan where that is not known."""
     across, along = _products(p, q)
     if along > 0:
         return (across / along).atan()
     return arb.pi() / 2 - (along / across).atan() if across > 0 else arb("nan")
 
 
-def free(boundary: Boundary, start: tuple[int, arb], end: tuple[int, arb]) -> bool:
+def free(boundary: BallBoundary, start: tuple[int, arb], end: tuple[int, arb]) -> bool:
     """Does the chord leave inwards, arrive from inside, and meet nothing between? False when that is not proved.
 
     Call it inside `working`. `start` and `end` are a component and a ball of its parameter.
@@ -366,18 +419,38 @@ def free(boundary: Boundary, start: tuple[int, arb], end: tuple[int, arb]) -> bo
                 return False
             piece = low + (high - low) * arb(middle, half)
             near = [_between(boundary, index, at, piece) for at in bounces]
-            if not _passes(boundary.places[index], piece, near, p, d):
+            passes = _passes(boundary.places[index], piece, near, p, d)
+            if not passes and not any(_over_join(boundary, index, piece, bounce, d) for bounce in (start, end)):
                 queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
     return True
 
 
-def _between(boundary: Boundary, index: int, at: arb, piece: arb) -> list[arb]:
-    """Parameters that lead from a bounce to a piece: through the seam of a closed boundary where that is shorter."""
+def _between(boundary: BallBoundary, index: int, at: arb, piece: arb) -> list[arb]:
+    """Balls of parameters from a bounce to a piece of boundary, over the ends of a closed curve if that is shorter."""
     low, high = boundary.ends[index]
     gap = piece.mid() - at.mid()
     if not boundary.closed[index] or abs(gap) < (high - low) / 2:
         return [piece.union(at)]
     return [piece.union(low), at.union(high)] if gap < 0 else [piece.union(high), at.union(low)]
+
+
+def _over_join(boundary: BallBoundary, index: int, piece: arb, bounce: tuple[int, arb], d: Any) -> bool:
+    """Is the line crossed only at the bounce itself, from there over its nearer join to this piece?"""
+    (own, at), after = bounce, boundary.after()
+    (first, last), (low, high) = boundary.ends[own], boundary.ends[index]
+    if not after or own == index:
+        return False
+    if at.mid() > (first + last).mid() / 2:
+        if after[own] != index:
+            return False
+        here, there = piece.union(low), at.union(last)
+    elif after[index] == own:
+        here, there = piece.union(high), at.union(first)
+    else:
+        return False
+    frames = boundary.places[index](here), boundary.places[own](there)
+    slopes = [d[0] * vy - d[1] * vx for _, _, vx, vy in frames]
+    return all(slope > 0 for slope in slopes) or all(slope < 0 for slope in slopes)
 
 
 def _passes(place: Place, piece: arb, near: list[list[arb]], p: Any, d: Any) -> bool:

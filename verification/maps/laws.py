@@ -5,34 +5,44 @@
     test_the_derivative = laws.jacobian()  # the paper's tables, of any shape, under laws of several kinds
     test_mine = laws.symmetry(my_table, max_examples=100)
 
-`tables` is a table, a scene, the name of one of the paper's, or a list of such; nothing for all of the paper's. Where a
-scene's parameters have ranges these are drawn, and so is the reflection law, unless a scene has one of its own.
-Other arguments are Hypothesis' settings. What fails is shown as the simplest particle for which it does.
+`tables` is a table, a scene, a map, the name of one of the paper's, or a list of such; None for all of the paper's.
+Contractions are drawn, and so are parameters that have a range, and the reflection law, unless a scene has its own.
+Other arguments are Hypothesis' settings. A failure is shown as the simplest particle for which the law fails.
 
-Each law has a bound of its own: the units of rounding that the condition of the flight allows. Left out are particles
-whose flight is too close to a grazing one or to a join of the boundary for the map to be continuous.
+Each law allows rounding errors in proportion to the condition number of the flight. Particles whose flight grazes or
+passes near a join are left out, since the map is not continuous there.
 """
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 from hypothesis import HealthCheck, assume, given, settings
+from sympy import Matrix
 
-from numeric import Orbit
+from numeric import Orbit, PinballMap
 from numeric.backends import elementary
+from symbolic.cycles.derivations import derivative_matrix, generate
+from symbolic.tables import geometry, named
 from symbolic.tables.geometry import group
-from verification.maps.enclosed import EnclosedMap, Refusal
-from verification.maps.exact import ExactMap
+from symbolic.tables.law import Law
+from symbolic.tables.table import Component, Table
+from symbolic.tables.table import eta as eta_letter
+from symbolic.tables.table import s as s_letter
+from symbolic.tables.table import theta as theta_letter
+from verification.arithmetic.balls import bits_of, working
+from verification.maps.enclosed import EnclosedMap, Refusal, number
+from verification.maps.exact import Bounce, ExactMap
 from verification.maps.strategies import Particle, particles, reflections
 
 EPS = 2.0**-52
-UNITS = 4096  # of rounding, times the condition of the flight
+UNITS = 4096  # of rounding allowed, times the condition of the flight
 GRAZING = 1e-3  # the least cosine of an angle of incidence
-BESIDE = 1e-7  # radians and parameters, to the neighbours of a particle
-NEAR = 1e-3  # between the landings of neighbours
-BOUNCES = 12  # of the sum rule: fewer than rounding needs to grow to the size of the table
-DIGITS, STEP = 30, 10  # of the map in multiprecision, and of the differences taken in it
+BESIDE = 1e-7  # distance of a particle's neighbours in `theta` and `phi`
+NEAR = 1e-3  # greatest distance between the landings of neighbours
+BOUNCES = 12  # in the sum rule: too few for rounding to grow to the size of the table
+DIGITS = 30  # of the map in multiprecision
 BITS = 160
 
 Check = Callable[[Particle], None]
@@ -40,7 +50,7 @@ Test = Callable[[], None]
 
 
 def _test(check: Check, tables: Any, options: dict[str, Any], **drawn: Any) -> Test:
-    """The property as a test that Hypothesis runs."""
+    """The property as a test that Hypothesis runs; `drawn` are further arguments of `strategies.particles`."""
     options = {"deadline": None, "max_examples": 30, "suppress_health_check": [HealthCheck.too_slow], **options}
 
     @settings(**options)
@@ -53,7 +63,7 @@ def _test(check: Check, tables: Any, options: dict[str, Any], **drawn: Any) -> T
 
 
 def _landed(particle: Particle) -> Any:
-    """The bounce of a particle; the example is left out where the map is not continuous."""
+    """The next bounce of a particle; the example is discarded where the map is not continuous."""
     map, at = particle.map, (particle.theta, particle.phi, particle.component)
     step = map.step(*at)
     assume(step.code == 0 and np.cos(step.eta) > GRAZING)
@@ -65,43 +75,88 @@ def _landed(particle: Particle) -> Any:
 
 
 def _bound(step: Any, *matrices: Any) -> float:
-    """Units of rounding: the condition of the flight, by its derivatives and by how steeply it lands."""
+    """Allowed error: units of rounding times the condition of the flight, by its derivatives and landing angle."""
     size = 1 + max(float(np.abs(matrix).max()) for matrix in matrices)
     return float(UNITS * EPS * size**2 / np.cos(step.eta))
 
 
 def jacobian(tables: Any = None, **options: Any) -> Test:
-    """The derivative of the map in `(s, phi)` is the limit of differences, taken in multiprecision."""
+    """Test that the derivative of the map in `(s, phi)` is the symbolic one. Paper: eq. (derivative_of_map).
 
-    def the_derivative_is_the_limit_of_differences(particle: Particle) -> None:
-        map, exact = particle.map, ExactMap(particle.map, DIGITS)
-        step, found = _landed(particle), map.derivative(particle.theta, particle.phi, particle.component)
-        mp = exact.context
-        h = mp.mpf(10) ** -STEP
-        before, after = (_speed(particle, end) for end in (particle, step))
-        columns = []
-        for along, unit in (((h, 0), before), ((0, h), 1.0)):
-            ahead, behind = (
-                exact.bounce(
-                    exact.start(
-                        mp.mpf(particle.theta) + sign * along[0],
-                        mp.mpf(particle.phi) + sign * along[1],
-                        particle.component,
-                    )
-                )
-                for sign in (1, -1)
-            )
-            assume(ahead.component == behind.component == int(step.component) and not ahead.code and not behind.code)
-            columns.append(
-                [
-                    float((ahead.theta - behind.theta) / (2 * h)) * after / unit,
-                    float((ahead.phi - behind.phi) / (2 * h)) / unit,
-                ]
-            )
-        limit = np.array(columns).T
-        assert np.all(np.abs(found - limit) <= _bound(step, found, limit)), f"{found} and {limit}"
+    The symbolic one is `symbolic.derivative_matrix`, generated for mpmath and evaluated where the exact map lands.
+    """
 
-    return _test(the_derivative_is_the_limit_of_differences, tables, options)
+    def the_derivative_is_the_symbolic_one(particle: Particle) -> None:
+        step, exact = _landed(particle), ExactMap(particle.map, DIGITS)
+        found = particle.map.derivative(particle.theta, particle.phi, particle.component)
+        start = exact.start(particle.theta, particle.phi, particle.component)
+        landed = exact.bounce(start)
+        assume(not landed.code and landed.component == int(step.component))
+        expected = np.reshape([float(x) for x in symbolic_derivative(exact, start, landed, DIGITS)], (2, 2))
+        assert np.all(np.abs(found - expected) <= _bound(step, found, expected)), f"{found} and {expected}"
+
+    return _test(the_derivative_is_the_symbolic_one, tables, options)
+
+
+def symbolic_derivative(own: ExactMap | EnclosedMap, start: Bounce, landed: Bounce, digits: int) -> list[Any]:
+    """The four entries of the symbolic derivative matrix of a flight, row by row, in the numbers of the map `own`.
+
+    For a law `phi = f(eta)` the number `-df/deta` takes the place of `lam`. Where the law depends on the place of the
+    landing, its derivative by the arc length times the row of `ds1` is added to the row of `dphi1`.
+    """
+    map, in_balls = own.map, isinstance(own, EnclosedMap)
+    table, shape = _with_letters(map)
+    convert = own.exactly if isinstance(own, ExactMap) else partial(number, bits=own.bits)
+    numbers = {name: convert(value) for name, value in shape.items()}
+    at = {"theta": landed.theta, "eta": landed.eta, "lam": own.lam, **numbers}
+    slope, drift = own.lam, 0
+    if not map.reflection.uniform:
+        law = map.reflection.on(map.table, landed.component)
+        if law.measured:
+            at["s"] = own.length(landed.component, landed.theta)
+        part = map.table.components[landed.component]
+        slope, drift = (f(**at) for f in _slopes_of_law(law, part, in_balls, digits))
+    m = _matrix(table, start.component, landed.component, in_balls, digits)(
+        **{**numbers, "theta0": start.theta, "theta1": landed.theta, "lam": slope}
+    )
+    with working(bits_of(digits, 64)):
+        return [m[0, 0], m[0, 1], *(m[1, j] + drift * m[0, j] for j in (0, 1))]
+
+
+def _with_letters(map: PinballMap) -> tuple[Table, dict[str, Any]]:
+    """The table with its shape parameters free, and their values: one formula serves all shapes."""
+    scene = map.uniform(map.lam).scene
+    if "table" in scene.document:
+        return named(scene.name, scene.K), scene.shape
+    return scene.family, {name: scene.shape[name] for name in scene.ranges if name in scene.shape}
+
+
+@lru_cache(maxsize=256)
+def _matrix(table: Table, here: int, there: int, in_balls: bool, digits: int) -> Callable[..., Any]:
+    """The derivative matrix of flights between two components, as a function of its letters as keywords."""
+    return _by_name(_formula(table, here, there), in_balls, digits)
+
+
+@lru_cache(maxsize=64)
+def _formula(table: Table, here: int, there: int) -> Matrix:
+    """The derivative matrix, kept since it takes a second to derive."""
+    return derivative_matrix(table, here, there)
+
+
+@lru_cache(maxsize=256)
+def _slopes_of_law(
+    law: Law, part: Component, in_balls: bool, digits: int
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions for minus the derivative of the exit angle by the incidence angle, and that by landing arc length."""
+    by_place = law.phi.diff(theta_letter) / geometry.speed(part) + law.phi.diff(s_letter)
+    return _by_name(-law.phi.diff(eta_letter), in_balls, digits), _by_name(by_place, in_balls, digits)
+
+
+def _by_name(expression: Any, in_balls: bool, digits: int) -> Callable[..., Any]:
+    """The expression as a function of its letters, given by name; further names are ignored."""
+    letters = {letter.name for letter in expression.free_symbols}
+    value = generate(expression, "arb" if in_balls else "mpmath", digits)
+    return lambda **given: value(**{name: number for name, number in given.items() if name in letters})
 
 
 def _place(end: Any) -> tuple[Any, Any]:
@@ -109,13 +164,8 @@ def _place(end: Any) -> tuple[Any, Any]:
     return np.atleast_1d(end.component), np.atleast_1d(end.theta)
 
 
-def _speed(particle: Particle, end: Any) -> float:
-    """Arc length by the parameter at one end of a flight."""
-    return float(np.ravel(particle.map.states.speed(*_place(end)))[0])
-
-
 def determinant(tables: Any = None, **options: Any) -> Test:
-    """`det DT = f'(eta1)*cos(phi0)/cos(eta1)`, with minus the slope of the law, which is `lam` for the paper's."""
+    """Test that `det DT = f*cos(phi0)/cos(eta1)`, where `f` is minus the slope of the law: `lam` for the paper's."""
 
     def the_determinant_is_the_slope_of_the_law_times_a_ratio_of_cosines(particle: Particle) -> None:
         step = _landed(particle)
@@ -135,7 +185,7 @@ def _slopes(particle: Particle, orbit: Any) -> Any:
 
 
 def area_sum_rule(tables: Any = None, **options: Any) -> Test:
-    """`nu_plus + nu_minus` is the mean of `log|det DT|` along the orbit. Paper: section 4.1."""
+    """Test that `nu_plus + nu_minus` is the mean of `log|det DT|` along the orbit. Paper: section 4.1."""
 
     def the_exponents_add_up_to_the_mean_logarithm_of_the_determinant(particle: Particle) -> None:
         at = particle.theta, particle.phi, BOUNCES
@@ -143,11 +193,11 @@ def area_sum_rule(tables: Any = None, **options: Any) -> Test:
         assume(not np.any(orbit.code) and np.all(np.cos(orbit.eta[1:]) > GRAZING))
         landings: Any = [field[1:] for field in orbit]
         slopes = np.abs(_slopes(particle, Orbit(*landings)))
-        assume(np.all(slopes > GRAZING))  # at 0 the map forgets a direction
+        assume(np.all(slopes > GRAZING))  # at 0 the map is singular
         expected = float(np.mean(elementary.log(slopes * np.cos(orbit.phi[:-1]) / np.cos(orbit.eta[1:]))))
         found = particle.map.exponents(*at, component=particle.component)
         value = float(found.nu_plus + found.nu_minus)
-        grown = elementary.exp(BOUNCES * max(0.0, float(found.nu_plus)))  # what rounding has become at the end
+        grown = elementary.exp(BOUNCES * max(0.0, float(found.nu_plus)))  # growth of rounding errors along the orbit
         assume(grown < 1 / NEAR**2)
         assert abs(value - expected) <= UNITS * EPS * (1 + grown) / GRAZING, f"{value} and {expected}"
 
@@ -155,7 +205,7 @@ def area_sum_rule(tables: Any = None, **options: Any) -> Test:
 
 
 def symmetry(tables: Any = None, **options: Any) -> Test:
-    """The image of a bounce under a symmetry of the table is the bounce of the image; a mirror asks for an odd law."""
+    """Test that the map commutes with the table's symmetries; reflections only if the law is odd."""
 
     def the_map_commutes_with_the_symmetries_of_the_table(particle: Particle) -> None:
         map, step = particle.map, _landed(particle)
@@ -174,7 +224,7 @@ def symmetry(tables: Any = None, **options: Any) -> Test:
 
 
 def time_reversal_at_lam_1(tables: Any = None, **options: Any) -> Test:
-    """Where the angle of exit is that of incidence, a particle that is turned around flies back to its start."""
+    """Test that a particle that is turned around flies back to its start, where exit and incidence angles are equal."""
 
     def a_classical_particle_that_is_turned_around_flies_back(particle: Particle) -> None:
         map = particle.map.uniform(lam=1.0)
@@ -190,7 +240,7 @@ def time_reversal_at_lam_1(tables: Any = None, **options: Any) -> Test:
 
 
 def first_hit(tables: Any = None, **options: Any) -> Test:
-    """The landing in float64 is the one that balls prove to be the first, on its component and in its place."""
+    """Test that the float64 landing is the one that balls prove to be the first, on its component and in its place."""
 
     def the_landing_is_the_first_hit(particle: Particle) -> None:
         step = _landed(particle)
@@ -208,6 +258,6 @@ def first_hit(tables: Any = None, **options: Any) -> Test:
 
 
 def every(tables: Any = None, **options: Any) -> Iterator[Test]:
-    """All of these laws, in the order of this page."""
+    """Tests of all these laws, in the order of this module."""
     for law in (jacobian, determinant, area_sum_rule, symmetry, time_reversal_at_lam_1, first_hit):
         yield law(tables, **options)

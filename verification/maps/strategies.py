@@ -20,15 +20,15 @@ from typing import Any
 from hypothesis import strategies as st
 
 from numeric import PinballMap
-from symbolic.tables.definition import UNIFORM
-from symbolic.tables.scene import Scene
+from symbolic.tables.definition import POINTS, UNIFORM, table_boundary
+from symbolic.tables.scene import Scene, given_table
 
 STEEPEST = 1.57  # radians; |phi| stays below
 
 
 @dataclass(frozen=True)
 class Particle:
-    """A phase point of a map. `theta` belongs to the component of that index."""
+    """A phase point of a map: `theta` is the parameter on the component of index `component`."""
 
     map: PinballMap
     lam: float
@@ -46,12 +46,12 @@ class Particle:
         return f"Particle({table}{law}, lam={self.lam!r}, {at})"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
-        """As Hypothesis shows an example: the table, its shape and its law by name."""
+        """Prints the particle in a Hypothesis example, with table, shape and law by name."""
         printer.text(repr(self))
 
 
 def contractions(least: float = 0.0, most: float = 1.0) -> st.SearchStrategy[float]:
-    """Contractions, the ends included."""
+    """Contractions between `least` and `most`, both included."""
     return st.sampled_from([x for x in (1.0, 0.0, 0.5) if least <= x <= most] or [least]) | st.floats(least, most)
 
 
@@ -65,7 +65,7 @@ def shapes(draw: st.DrawFn, name: str, K: int = 3) -> dict[str, Fraction]:
     return {}
 
 
-# forms of a law for every contraction, and the ends of `a`, which are proved to give one when a map is made
+# formulas that are laws at every contraction, and the ends of the range of `a`; making a map proves that they are
 BENT = {
     "-lam*eta + {a}*sin(2*eta)": (Fraction(-2, 5), Fraction(2, 5)),
     "-lam*eta - {a}*eta*(pi**2/4 - eta**2)": (Fraction(-1, 7), Fraction(1, 7)),
@@ -81,9 +81,9 @@ PLACED = {
 
 @st.composite
 def reflections(draw: st.DrawFn, placed: bool = True) -> str:
-    """Formulas of reflection laws, the paper's first: others bend it by polynomials and sines of any size that fits.
+    """Formulas of reflection laws: the paper's, and others that add polynomials and sines to it.
 
-    `placed`: some that depend on where on the boundary the particle lands.
+    With `placed`, also laws that depend on where on the boundary the particle lands.
     """
     formula: str = draw(st.sampled_from([UNIFORM, *BENT, *(PLACED if placed else ())]))
     if formula == UNIFORM:
@@ -94,7 +94,7 @@ def reflections(draw: st.DrawFn, placed: bool = True) -> str:
 
 @st.composite
 def scenes(draw: st.DrawFn, scene: Scene) -> Scene:
-    """A scene with its parameters anywhere in their ranges, where they have one."""
+    """The scene, each parameter with a range drawn from that range."""
     numbers: dict[str, Any] = {
         name: low + (high - low) * draw(st.fractions(0, 1, max_denominator=100))
         for name, (low, high) in scene.ranges.items()
@@ -109,11 +109,13 @@ def maps(
     lams: st.SearchStrategy[float] | None = None,
     laws: st.SearchStrategy[str] | None = None,
 ) -> PinballMap:
-    """Maps of the paper's tables with any shape, or of the table or tables given: names, exact tables or scenes.
+    """Maps of the paper's tables with any shape, or of the table or tables given: names, exact tables, scenes, maps.
 
-    With `laws` the reflection law is drawn too, unless a scene has one of its own; else it is the paper's.
+    Free shape parameters are drawn from their ranges. With `laws` the reflection law is drawn too, unless a scene has
+    one of its own; else it is the paper's.
     """
-    chosen = list(tables) if isinstance(tables, list | tuple) else [tables] if tables is not None else None
+    chosen = list(tables) if isinstance(tables, list | tuple) else [tables] if tables is not None else []
+    chosen = [each if isinstance(each, str | Scene) else _with_ranges(each) for each in chosen]
     table = draw(st.sampled_from(chosen or ["circle", "ellipse", "egg", "cardioid", "cuspless"]))
     lam = draw(contractions() if lams is None else lams)
     law = UNIFORM if laws is None else draw(laws)
@@ -134,7 +136,7 @@ def particles(
     steepest: float = STEEPEST,
     laws: st.SearchStrategy[str] | None = None,
 ) -> Particle:
-    """Phase points in the interior of phase space, at any place but the ends of components."""
+    """Phase points inside phase space, away from the ends of components, of maps drawn by `maps`."""
     map = draw(maps(tables, lams, laws))
     component = draw(st.integers(0, len(map.states.ends) - 1))
     low, high = map.states.ends[component]
@@ -143,8 +145,24 @@ def particles(
     return Particle(map, float(map.lam), component, theta, draw(st.floats(-steepest, steepest)))
 
 
+@lru_cache(maxsize=64)
+def _with_ranges(given: Any) -> Any:
+    """A scene with ranges for a table with free shape parameters, the name of a paper's table, or the table itself."""
+    if isinstance(scene := getattr(given, "scene", None), Scene):  # of a map
+        return scene
+    table, _ = given_table(given, POINTS, {})
+    shapes = getattr(table, "shapes", ())
+    if not shapes:
+        return table
+    if table_boundary(table) == ({"table": table.name}, {}):
+        return table.name
+    ends = {shape.symbol.name: (shape.range.start, shape.range.end) for shape in shapes}
+    numbers: dict[str, Any] = {name: f"{(low + high) / 2}:{low}..{high}" for name, (low, high) in ends.items()}
+    return Scene(table, **numbers)
+
+
 def _of_scene(scene: Scene, lam: float) -> PinballMap:
-    """The map of a scene at a contraction, or at its own where its law is none at that one."""
+    """Map of a scene at `lam`, or at the scene's own contraction if its law is none at `lam`."""
     with suppress(ValueError):
         scene = scene.at(lam=Fraction(lam))
     return PinballMap(scene, kernels=False)
@@ -156,5 +174,5 @@ def _prepared(table: Any) -> PinballMap:
 
 
 def _cached(table: Any, lam: float) -> PinballMap:
-    """An exact table's programs are drawn up once, whatever `lam`."""
+    """The map of an exact table at `lam`; its programs are prepared once."""
     return _prepared(table).at(lam)

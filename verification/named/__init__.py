@@ -1,4 +1,4 @@
-"""What has a name: bifurcations, crises, attractors that are proved, and certificate files."""
+"""Bifurcations, crises and attractors that are found by name or search, with proofs and certificate files."""
 
 import lazy_loader
 

@@ -1,57 +1,37 @@
 """Attractors: a proof that one exists, its proved exponents, and which of them coexist at each contraction.
 
-Of a cycle found in float64 balls prove that it exists, is admissible, of least period, and attracts; its exponents
+For a cycle found in float64, balls prove that it exists, is admissible, of least period, and attracts; its exponents
 come from its certified multipliers. Such a proof says nothing about other attractors, nor about the size of a basin.
-Of chaotic attractors the exponent of the cardioid's slap map is proved.
+For a chaotic attractor, the exponent of the cardioid's slap map is proved.
 
-Which attractors coexist is found by two methods that check each other: random starts on a grid of contractions, and
-each cycle they find followed to both ends of its life, where its event is proved, and past them to the cycles born
-there. What is listed is proved to exist; that nothing else attracts is not, and cannot be by sampling: a basin below
-about `3/starts` of the table is likely to be missed at any one contraction.
+Which attractors coexist at a contraction is found by random starts: a basin below about `3/starts` of the table is
+likely to be missed. Families of cycles over a range of contractions are those of `verification.named.families`.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from flint import arb
 from sympy import Expr
 
-from numeric import PinballMap
-from numeric.dynamics.attractors import Attractor, Kind, Share, classify, find, moved, name, wilson
+from numeric.dynamics.attractors import Attractor, Kind, Share, wilson
 from numeric.dynamics.phase_points import PhasePoints
-from numeric.dynamics.recognition import polished, shortest
 from symbolic.tables import cardioid
-from symbolic.tables.geometry import Symmetry, group
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import Table
-from verification.arithmetic.balls import balls, bits_of, decimal, working
-from verification.cycles.chain import trace_and_determinant
-from verification.cycles.problem import Linearised, Problem
-from verification.named.branches import Branch, Event, alike, ends, own
-from verification.named.locate import certify
-from verification.proofs.periodic.bifurcation import Checks, Stability, stability
+from verification.arithmetic.balls import bits_of, decimal, working
+from verification.cycles.problem import Problem
+from verification.named.locate import proof_near
+from verification.proofs.periodic.cycle_in_box import AttractingCycle
 
 DIGITS = 30
 
 
-@dataclass(frozen=True)
-class Certificate:
-    """The checklist of a cycle, with `attracting` as its last item, and balls for what was proved."""
-
-    checks: Checks
-    theta: tuple[arb, ...]
-    trace: arb
-    determinant: arb
-
-    @property
-    def proved(self) -> bool:
-        """True when every item of the checklist is."""
-        return all(value is True for value in self.checks.values())
-
-
-def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS, law: Law = PAPERS_LAW) -> Certificate:
-    """What balls prove about the cycle whose bounces lie near the given ones.
+def certificate(
+    table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS, law: Law = PAPERS_LAW
+) -> AttractingCycle:
+    """The theorem that the cycle whose bounces lie near the given ones exists and attracts.
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
@@ -61,24 +41,15 @@ def certificate(table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS
     (True, '-0.4375000000', '0.2500000000')
     """
     problem = Problem(table, tuple(int(i) for i in near.component), lam=lam, law=law)
-    proof = certify(problem, [float(x) for x in near.theta], digits, in_balls=True)
-    bits = proof.claim.bits
-    with working(bits):
-        try:
-            chain = Linearised(problem, balls(bits), proof.enclosure.zero).plain
-            trace, determinant = trace_and_determinant(chain.rows)
-        except ZeroDivisionError:
-            trace = determinant = arb("nan")
-        attracts = stability(trace, determinant) is Stability.ATTRACTING
-    checks = {**proof.checks, "attracting": True if attracts else None}
-    return Certificate(checks, tuple(proof.enclosure.zero), trace, determinant)
+    cycle = proof_near(problem, [float(x) for x in near.theta], digits, in_balls=True)
+    return AttractingCycle(cycle.centre, cycle.radius, cycle.bits, cycle.digits, problem)
 
 
 def exponents(trace: arb, determinant: arb, period: int) -> tuple[arb, arb]:
-    """Both exponents per bounce from trace and determinant of the monodromy matrix, in the ambient precision.
+    """Both exponents per bounce from trace and determinant of the monodromy matrix, in balls of the current precision.
 
-    Complex multipliers have the modulus `sqrt(det)`; where it is not decided whether they are, the ball holds both
-    answers.
+    Complex multipliers have the modulus `sqrt(det)`; where it is not decided whether they are complex, the ball holds
+    the exponents of both cases.
 
     >>> plus, minus = exponents(arb(5) / 2, arb(1), 2)  # multipliers 2 and 1/2
     >>> abs(plus - arb(2).log() / 2) < 1e-14, abs(plus + minus) < 1e-14
@@ -98,7 +69,7 @@ def certified_exponents(
 ) -> dict[str, Any] | None:
     """The exponents of the cycle near some points as decimals with a radius, and the checklist; None if not proved.
 
-    At `lam = 0` the lower one is minus infinity, and null.
+    At `lam = 0` the lower exponent is minus infinity, given as None.
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
@@ -123,9 +94,9 @@ def certified_exponents(
 
 
 def chaotic_exponents(table: Table, lam: Expr) -> dict[str, Any] | None:
-    """The exponents of almost every start, where chaos is proved to have them: the cardioid at `lam = 0`; else None.
+    """The exponents of almost every start, where they are proved for chaos: on the cardioid at `lam = 0`; else None.
 
-    The lower one is minus infinity, and null.
+    The lower exponent is minus infinity, given as None.
 
     >>> from sympy import S
     >>> chaotic_exponents(cardioid, S(1) / 2) is None  # no proof is known there
@@ -142,10 +113,6 @@ def chaotic_exponents(table: Table, lam: Expr) -> dict[str, Any] | None:
     return {"nu_plus": value, "nu_minus": None, "radius": radius, "checks": dict(proof.checks)}
 
 
-FOLLOWED = 64  # the longest period whose branch is followed
-BEYOND = 0.1  # of a branch's length past its end: where its successor is looked for
-
-
 @dataclass(frozen=True, eq=False)
 class Member:
     """The attractors of one family at one contraction: `copies` images of each other, and their joint share."""
@@ -160,8 +127,8 @@ class Member:
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
-    """What the starts reached at one contraction; `unsettled` of them reached nothing in the time given."""
+class AttractorCounts:
+    """The attractors that starts reached at one contraction; `unsettled` of the starts reached none in time."""
 
     lam: float
     members: tuple[Member, ...]
@@ -169,22 +136,19 @@ class Row:
 
     @property
     def attractors(self) -> int:
-        """How many coexist, as far as the starts saw."""
+        """The number of attractors that the starts found."""
         return sum(member.copies for member in self.members)
 
 
-def row(map: PinballMap, starts: int, seed: int) -> Row:
-    """The row at the map's contraction.
+def joined(found: Sequence[Attractor], starts: int, lam: float) -> AttractorCounts:
+    """The row of attractors that were found; those that are images of each other make one member.
 
-    >>> found = row(PinballMap("egg", alpha="0.08", lam=0.2), 100, 1)
+    >>> from numeric import PinballMap
+    >>> from numeric.dynamics.attractors import find
+    >>> found = joined(find(PinballMap("egg", alpha="0.08", lam=0.2), 100, 1, images=True), 100, 0.2)
     >>> [(m.kind.name, m.period, m.symmetry, m.copies) for m in found.members], found.attractors
     ([('CYCLE', 4, 'D1', 3)], 3)
     """
-    return joined(find(map, starts, seed, images=True), starts, float(map.lam.flat[0]))
-
-
-def joined(found: Sequence[Attractor], starts: int, lam: float) -> Row:
-    """The row of attractors that were found with their images: each family a member."""
     members = []
     for family in sorted({a.family for a in found}):
         images = [a for a in found if a.family == family]
@@ -192,74 +156,4 @@ def joined(found: Sequence[Attractor], starts: int, lam: float) -> Row:
         first = images[0]
         share = wilson(count, starts)
         members.append(Member(first.kind, first.period, first.symmetry, len(images), share, first.nu_plus, first))
-    return Row(lam, tuple(members), starts - sum(m.share.count for m in members))
-
-
-def branches(map: PinballMap, table: Table, rows: Sequence[Row], longest: int = FOLLOWED) -> Iterator[Branch]:
-    """Every branch of cycles up to a period that the rows or the ends of other branches lead to, each once.
-
-    >>> from symbolic.tables import cuspless
-    >>> map = PinballMap("cuspless", lam=0.05)
-    >>> [(b.period, b.low.event.name, b.high.value) for b in branches(map, cuspless, [row(map, 50, 1)])]
-    [(2, 'EDGE', '0.09340033543136')]
-    """
-    symmetries = group(table)
-    known: list[Branch] = []
-    for here in rows:
-        for member in here.members:
-            cycle = member.kind is Kind.CYCLE and member.period <= longest
-            queue = [(here.lam, member.first.points)] if cycle else []
-            while queue:
-                new = _followed(map, table, symmetries, known, *queue.pop())
-                if new is not None:
-                    known.append(new)
-                    queue += _successors(map, new, longest)
-                    yield new
-
-
-def _followed(
-    map: PinballMap,
-    table: Table,
-    symmetries: Sequence[Symmetry],
-    known: Sequence[Branch],
-    lam: float,
-    near: PhasePoints,
-) -> Branch | None:
-    """The branch through a cycle, unless it is known."""
-    there = map.at(lam)
-    cycle = shortest(there, near)
-    kept = own(there, cycle.points, symmetries)
-    if any(_on(there, branch, cycle.points, symmetries) for branch in known):
-        return None
-    low, high = ends(there, table, symmetries, cycle, lam)
-    return Branch(cycle.period, name(kept), len(symmetries) // len(kept), low, high)
-
-
-def _on(map: PinballMap, branch: Branch, points: PhasePoints, symmetries: Sequence[Symmetry]) -> bool:
-    """Is the branch's cycle at this contraction the given one, or an image of it?"""
-    lam = float(map.lam.flat[0])
-    if branch.period != points.size or not branch.low.lam <= lam <= branch.high.lam:
-        return False
-    here = polished(map, branch.nearest(lam))
-    return here is not None and any(alike(map, here.points, moved(s, points)) < 1e-6 for s in symmetries)
-
-
-def _successors(map: PinballMap, branch: Branch, longest: int) -> list[tuple[float, PhasePoints]]:
-    """Cycles of at most twice the period that attract just past an end at which the branch hands over."""
-    found = []
-    for end, way in ((branch.low, -1), (branch.high, 1)):
-        lam = end.lam + way * BEYOND * (branch.high.lam - branch.low.lam)
-        if end.event not in (Event.FLIP, Event.PITCHFORK, Event.HALVED) or not 0 <= lam < 1:
-            continue
-        first = end.cycle.points.only(slice(0, 1))
-        there = map.at(lam)
-        for nudge in (1e-5, -1e-5):
-            label, attractors = classify(there, first.theta + nudge, first.phi, first.component, transient=20_000)
-            near = [attractors[i] for i in label[label >= 0]]
-            found += [(lam, a.points) for a in near if a.kind is Kind.CYCLE and a.period <= longest]
-    return found
-
-
-def coexisting(branches: Sequence[Branch], lam: float) -> list[Branch]:
-    """The branches that attract at a contraction."""
-    return [branch for branch in branches if branch.low.lam < lam < branch.high.lam]
+    return AttractorCounts(lam, tuple(members), starts - sum(m.share.count for m in members))

@@ -1,6 +1,6 @@
 """The crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
 
-`verification.proofs.manifolds` has the same crises as tangencies, to many digits; this is what particles do.
+`verification.proofs.manifolds` has the same crises as tangencies, to many digits; here particles are sampled.
 
 Below a crisis no particle leaves the attractor; above it each bounce has a chance to, which grows from 0
 like a power of the distance. So many particles are started on the attractor, and the contractions at
@@ -23,21 +23,21 @@ from numeric.backends import elementary
 from numeric.dynamics.phase_points import advanced, phase_points
 
 BALLS, PART, TRANSIENT = 4096, 200, 2000
-MANY = 400  # particles that left, by which a mean stay is known to 5 per cent
-SURE = 10  # the same where it is asked whether some leave, and whether ten do within the budget
+MANY = 400  # particles that left, from which the mean stay is known to 5 per cent
+SURE = 10  # particles that left, to decide whether some do, or ten within the budget
 SEED = 1
 BLOCKS = 6
 ORBITS, LONG, RECORDED = 400, 20_000, 500  # particles, bounces before their orbits count, and bounces that do
-CELLS = 500  # to a radian, by which an area is counted
+CELLS = 500  # cells per radian, by which an area is counted
 CHAOTIC = 0.02  # growth from which an orbit counts as chaotic
-AT_ONCE = 0.01  # by which part an extent has to grow in one small step, so that it is no steady growth
+AT_ONCE = 0.01  # relative growth of an extent in one small step that is more than steady growth
 Array = NDArray[np.float64]
 Left = Callable[[Exponents], NDArray[np.bool_]]
 
 
 @dataclass(frozen=True)
 class Scaling:
-    """`stay ~ distance**-exponent`; the error is a jackknife over blocks, as the points oscillate about the power."""
+    """The law `stay ~ distance**-exponent`; the error is a jackknife over blocks, as points oscillate about it."""
 
     exponent: float
     error: float
@@ -46,7 +46,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Crisis:
-    """`lam +- error`, with the mean number of bounces before leaving at a few contractions above."""
+    """A crisis at `lam +- error`, with the mean number of bounces before leaving at some contractions above."""
 
     lam: float
     error: float
@@ -55,12 +55,12 @@ class Crisis:
 
 
 def changed_axis(ball: Exponents) -> NDArray[np.bool_]:
-    """Is the ball away from the diameter on the x axis, near which it started?"""
+    """Is the particle away from the diameter on the x axis, near which it started?"""
     return np.asarray(np.round(ball.theta / (np.pi / 3)).astype(int) % 3 != 0)
 
 
 def settled(ball: Exponents) -> NDArray[np.bool_]:
-    """Does the ball's neighbourhood shrink, as it does only near a periodic attractor?"""
+    """Is the growth exponent of the particle clearly negative, as only near a periodic attractor?"""
     return np.asarray(ball.nu_plus < -0.1)
 
 
@@ -96,7 +96,7 @@ def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) 
 
 
 def stay(left: Left, alpha: str, lam: float, budget: int, enough: int = MANY) -> float:
-    """The mean number of bounces on the attractor before a particle leaves; infinite when none did.
+    """The mean number of bounces on the attractor before a particle leaves; infinite when none leaves.
 
     The budget is spent, unless `enough` have left before.
     """
@@ -121,7 +121,7 @@ def stay(left: Left, alpha: str, lam: float, budget: int, enough: int = MANY) ->
 
 
 def spread(stays: list[tuple[float, float]], low: float, high: float, budget: int) -> float:
-    """From the middle of the bracket to the least contraction at which at least ten particles left within the budget.
+    """Error of a crisis: from the bracket's middle to the least contraction at which ten left within the budget.
 
     >>> spread([(0.5, 10.0), (0.4, 1e7)], 0.38, 0.4, 10**7)
     0.11
@@ -131,14 +131,14 @@ def spread(stays: list[tuple[float, float]], low: float, high: float, budget: in
 
 
 def scaling(kind: str, alpha: str, at: float, distances: Array, budget: int = 10**9) -> Scaling:
-    """The power of the mean stay above a crisis at `at`, from its values at `distances` above."""
+    """The power law of the mean stay above a crisis at `at`, from its values at `distances` above it."""
     left, _ = KINDS[kind]
     stays = [(float(d), stay(left, alpha, at + float(d), budget)) for d in distances]
     return power(tuple((d, mean) for d, mean in stays if np.isfinite(mean)))
 
 
 def power(points: tuple[tuple[float, float], ...]) -> Scaling:
-    """The least-squares power through points in order, with a jackknife over `BLOCKS` blocks of neighbours.
+    """The least-squares power law through points in order, with a jackknife over `BLOCKS` blocks of neighbours.
 
     >>> power(tuple((x, x**-2) for x in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6))).exponent
     2.0
@@ -157,8 +157,8 @@ def _slope(x: Array, y: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Extent:
-    """How far the chaotic orbits from near one end of a diameter extend, and the cells of 1/`CELLS` that they visit.
+class OrbitExtent:
+    """How far the chaotic orbits from near one end of a diameter extend, and the number of cells that they visit.
 
     `near` and `far` are the largest distances in `theta` from that end, at every second bounce, and from the other end.
     """
@@ -171,11 +171,11 @@ class Extent:
 
     @property
     def lengths(self) -> tuple[float, float, float]:
-        """All but the area, which grows with every fold and is no sharp sign."""
+        """`angle`, `near` and `far`; not the area, which grows with every fold of the attractor and proves little."""
         return self.angle, self.near, self.far
 
 
-def extent(map: PinballMap) -> Extent | None:
+def extent(map: PinballMap) -> OrbitExtent | None:
     """The extent at the map's contraction; None where no orbit is chaotic.
 
     >>> found = extent(PinballMap("egg", lam="0.42", alpha="0.08"))
@@ -192,18 +192,18 @@ def extent(map: PinballMap) -> Extent | None:
     angles = [orbit.phi[0::2].ravel(), orbit.phi[1::2].ravel()]
     cells = (np.unique(np.floor(CELLS * np.array(pair)), axis=1).shape[1] for pair in zip(ends, angles, strict=True))
     angle, near, far = (float(np.max(np.abs(values))) for values in (np.concatenate(angles), *ends))
-    return Extent(float(map.lam.flat[0]), angle, near, far, sum(cells))
+    return OrbitExtent(float(map.lam.flat[0]), angle, near, far, sum(cells))
 
 
-def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
-    """The quarters of a scan's steps, upwards, in which an attractor reaches farther at once than it ever has.
+def widenings(alpha: str, lams: Array) -> list[tuple[OrbitExtent, OrbitExtent]]:
+    """Quarter steps of an upward scan in which an attractor suddenly reaches farther than ever: extents on both sides.
 
-    It is compared with the farthest that it has come before, so that the end of a window, where it is as wide again as
-    before the window, is no widening; and in the quarter it has to grow by half of `AT_ONCE`, where steady growth by
-    `AT_ONCE` in a step leaves a quarter.
+    The comparison is with the farthest reach at any smaller contraction, so that the end of a window, where it is as
+    wide again as before, is no widening. In the quarter step it must grow by half of `AT_ONCE`; steady growth by
+    `AT_ONCE` over a whole step gives only a quarter.
     """
-    found: list[tuple[Extent, Extent]] = []
-    before: Extent | None = None
+    found: list[tuple[OrbitExtent, OrbitExtent]] = []
+    before: OrbitExtent | None = None
     farthest = np.zeros(3)
     map = PinballMap("egg", lam=float(lams[0]), alpha=alpha)
     for lam in lams:
@@ -218,12 +218,12 @@ def widenings(alpha: str, lams: Array) -> list[tuple[Extent, Extent]]:
     return found
 
 
-def _beyond(here: Extent, farthest: Array, part: float) -> bool:
-    """Is one of the lengths longer than the farthest by this part?"""
+def _beyond(here: OrbitExtent, farthest: Array, part: float) -> bool:
+    """Is one of the lengths longer than the farthest before, by more than this part?"""
     return bool(np.any(np.array(here.lengths) > (1 + part) * farthest))
 
 
-def narrowed(alpha: str, step: tuple[Extent, Extent], tolerance: float) -> tuple[Extent, Extent]:
+def narrowed(alpha: str, step: tuple[OrbitExtent, OrbitExtent], tolerance: float) -> tuple[OrbitExtent, OrbitExtent]:
     """Extents on both sides of a widening, by bisection of a step around it.
 
     Just above a crisis the new part is visited so seldom that the orbits may miss it: the lower end may be too high.

@@ -1,7 +1,7 @@
 """The bifurcation curves of the K-pointed egg that lead to its chaotic attractor, and where the cascade ends.
 
 For odd K the vertex-to-flat diameter doubles its period on `alpha-tilde`; the symmetric cycle of period 4
-that it bears breaks its symmetry (a pitchfork, on half the cycle), and what it bears doubles again and
+born there breaks its symmetry (a pitchfork, on half the cycle), and the cycles born then double again and
 again, up to an accumulation curve. Every curve is followed in the two parameters from one start.
 
 A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and
@@ -13,7 +13,7 @@ then Neimark-Sacker bifurcations are possible. Four facts about the paper's own 
   along `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1;
 - `invariant_circle`: on that side the cycle with trace 1/2, about which an attracting closed curve is born.
 
-The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified: two schemes that share no
+The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified, by two schemes that share no
 assumption but geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on what is
 left after the leading term has been removed with the universal constant of [Feigenbaum1979]. Their difference is the
 error that is stated.
@@ -47,28 +47,28 @@ from verification.cycles.critical import Small, critical, polygon
 from verification.cycles.newton import refined
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.recurrence import Array, BifurcationKind
-from verification.cycles.switching import Curve, Degenerate, curve, switched
-from verification.named.locate import certify
+from verification.cycles.switching import CodimensionOneCurve, Degenerate, curve, switched
+from verification.named.locate import proof_near
 from verification.proofs.periodic.interval_newton import Enclosure, interval_newton
 from verification.proofs.periodic.torus import TRACE, Rotating, Torus, torus
 
 TWO = ("alpha", "lam")
-SHARE = 0.96  # of the shape whose diameter doubles at lam = 0: there every doubling has its contraction
+SHARE = 0.96  # times the shape whose diameter doubles at lam = 0: there all doublings exist
 Tick = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class BifurcationCurve:
-    """One curve of the cascade: what becomes of a cycle of `period` bounces along it."""
+    """One curve of the cascade: a bifurcation of a cycle of `period` bounces."""
 
     name: str
     period: int
     kind: BifurcationKind
-    curve: Curve = field(repr=False)
+    curve: CodimensionOneCurve = field(repr=False)
 
     @property
     def special(self) -> tuple[Degenerate, ...]:
-        """Its points of codimension two."""
+        """Points of codimension two on the curve."""
         return self.curve.special
 
     def lam(self, alpha: float) -> float | None:
@@ -111,7 +111,7 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
 
 
 def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
-    """The fold of the polygon that turns by `2*pi*p/q`, one bounce of it followed (closed form: `polygons`)."""
+    """The fold curve of the egg's polygon that turns by `2*pi*p/q` at each bounce, by continuation."""
     ring = polygon(K, p, q)
     top = largest_shape(K)
     at = {"alpha": 0.8 * top}
@@ -124,7 +124,7 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
 
 @dataclass(frozen=True)
 class AccumulationCurve:
-    """Where the doublings pile up, a contraction with an error for each shape."""
+    """The limit of the doublings: a contraction with an error for each shape."""
 
     alpha: Array
     lam: Array
@@ -132,7 +132,7 @@ class AccumulationCurve:
 
 
 def accumulation_curve(curves: list[BifurcationCurve], alphas: Array) -> AccumulationCurve:
-    """The end of the cascade at each shape that all the doublings reach.
+    """The end of the cascade at each shape that all the doublings of `curves` reach.
 
     The error is the difference to a second extrapolation, or to the same one without the last curve if that is larger.
     """
@@ -169,28 +169,28 @@ class Expanding:
 
 
 def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
-    """The hexagon of the egg and its determinant.
+    """The hexagon of the egg, proved to exist, and its determinant.
 
     >>> found = expanding_cycle()
     >>> found.certified, bool(found.determinant > 1)
     (True, True)
     """
     problem = Problem(egg(3).at(alpha=alpha), (0,) * 6, lam=Rational(lam))
-    proof = certify(problem, list(HEXAGON), 20)
+    proof = proof_near(problem, list(HEXAGON), 20)
     with working(BITS):
         chain = Linearised(problem, balls(BITS), proof.enclosure.zero).plain
         _, determinant = trace_and_determinant(chain.rows)
-    return Expanding(proof.certified, determinant)
+    return Expanding(proof.proved, determinant)
 
 
 def resonance(period: int) -> Small:
-    """A cycle of the egg with the double multiplier 1: unknowns are its bounces, `alpha` and `lam`."""
+    """System for a cycle of the egg with the double multiplier 1: unknowns are its bounces, `alpha` and `lam`."""
     both = BifurcationKind.FOLD, BifurcationKind.TORUS
     return critical(Chords(egg(3), (0,) * period), both, ("alpha", "lam"))
 
 
 def double_one() -> Enclosure:
-    """The resonance of period 17, enclosed; the last two balls are `alpha` and `lam`."""
+    """The cycle of period 17 with the double multiplier 1, enclosed; the last two balls are `alpha` and `lam`."""
     system = resonance(17)
     solution = refined(system, list(LONG), 24)
     with working(256):
@@ -200,7 +200,7 @@ def double_one() -> Enclosure:
 
 @cache
 def invariant_circle() -> Torus:
-    """The torus bifurcation of that cycle with trace 1/2, as the contraction varies.
+    """The torus bifurcation of the cycle of period 17, at trace 1/2, as the contraction varies.
 
     For each contraction above the enclosed one and near it, an attracting closed curve of the 17th iterate surrounds
     each point of the cycle. As 1/2 is no integer, the rotation on it is irrational for some of them, as near as one
@@ -220,7 +220,7 @@ def contracting_up_to(alpha: Expr, K: int = 3) -> float:
     With `d` the largest tilt of the normal and `r` the ratio of the largest and the smallest radius, the sine
     rule on the triangle of a chord and the centre gives `|eta| <= d + asin(r*sin(d + |phi|))`. If the largest
     `|eta|` of a cycle, with `|phi| <= lam*|eta|`, could not be between the root of `x*tan(x) = 1` and `pi/2`,
-    every factor is below 1.
+    every factor `lam*cos(phi)/cos(eta)` of the determinant, one for each bounce, is below 1.
 
     >>> contracting_up_to(Rational(2, 25))
     0.328125
@@ -257,15 +257,15 @@ EACH = 50  # digits of each doubling
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """A limit, and the largest difference from other ways to it, as mpmath numbers."""
+class LimitEstimate:
+    """A limit, and its largest difference from other extrapolations, as mpmath numbers."""
 
     value: Any
     error: Any
 
 
-def limit(values: Sequence[str]) -> Estimate:
-    """The limit of `lambda_n`, given as decimals.
+def limit(values: Sequence[str]) -> LimitEstimate:
+    """The limit of the contractions `lambda_n` of a cascade, given as decimals, with an error.
 
     >>> found = limit([str(1 - mpmath.mpf(4.669201609) ** -n) for n in range(3, 12)])
     >>> abs(found.value - 1) < 1e-12
@@ -279,7 +279,7 @@ def limit(values: Sequence[str]) -> Estimate:
     return _compared(wynn(given), wynn(removed))
 
 
-def ratio(values: Sequence[str]) -> Estimate:
+def ratio(values: Sequence[str]) -> LimitEstimate:
     """The limit of `(lambda_n - lambda_(n-1))/(lambda_(n+1) - lambda_n)`: an estimate of `delta`.
 
     >>> found = ratio([str(1 - mpmath.mpf(3) ** -n) for n in range(3, 12)])
@@ -290,15 +290,15 @@ def ratio(values: Sequence[str]) -> Estimate:
     context.dps = DIGITS
     gaps = [b - a for a, b in pairwise(context.mpf(v) for v in values)]
     ratios = [a / b for a, b in pairwise(gaps)]
-    return _compared(wynn(ratios), aitken(ratios), wynn(ratios[:-1]))  # on four terms the first two are one
+    return _compared(wynn(ratios), aitken(ratios), wynn(ratios[:-1]))  # on four terms the first two are equal
 
 
-def _compared(one: Any, *others: Any) -> Estimate:
-    return Estimate(one, max(abs(one - other) for other in others))
+def _compared(one: Any, *others: Any) -> LimitEstimate:
+    return LimitEstimate(one, max(abs(one - other) for other in others))
 
 
 def wynn(values: Sequence[Any]) -> Any:
-    """The last even entry of Wynn's epsilon table.
+    """The limit of a sequence, as the last even entry of Wynn's epsilon table.
 
     >>> wynn([1, 1.5, 1.75, 1.875])
     2.0
@@ -317,7 +317,7 @@ def wynn(values: Sequence[Any]) -> Any:
 
 
 def aitken(values: Sequence[Any]) -> Any:
-    """Aitken's process, repeated as long as three terms are left."""
+    """The limit of a sequence, by Aitken's process, repeated while three terms are left."""
     here = list(values)
     while len(here) >= 3:
         following = []
@@ -333,17 +333,17 @@ def aitken(values: Sequence[Any]) -> Any:
 class Accumulation:
     """The certified doublings of a cascade as decimals, and the estimates of where and how it ends.
 
-    `supercritical`: each bears a stable cycle, by the sign of its normal form in balls.
+    `supercritical`: a stable cycle is born at each, by the sign of its normal form in balls.
     """
 
     lams: tuple[str, ...]
     supercritical: bool
-    limit: Estimate
-    ratio: Estimate
+    limit: LimitEstimate
+    ratio: LimitEstimate
 
 
 def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
-    """The cascade of the egg up to `lambda_highest`, each doubling certified to 50 digits, and its end.
+    """The cascade of the egg up to `lambda_highest`, each doubling certified to 50 digits, and its estimated end.
 
     >>> from sympy import Rational
     >>> found = accumulation(Rational(2, 25), 8)
@@ -353,8 +353,8 @@ def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
     lams, stable = [], True
     for n in range(3, highest + 1):
         here = doubling(alpha, n)
-        proof = certify(here.problem, here.start, EACH, in_balls=True)
-        if not proof.certified:
+        proof = proof_near(here.problem, here.start, EACH, in_balls=True)
+        if not proof.proved:
             raise ValueError(f"cascade: lambda_{n} at alpha = {alpha} is not certified: {proof.checks}")
         lams.append(decimal(proof.value, EACH)[0])
         stable = stable and proof.supercritical is True

@@ -1,6 +1,6 @@
 """Bifurcations met on a branch: each certified, and followed as a curve in two parameters.
 
-The event in float64 is the start, and balls prove what is near it. A fold and a period doubling are proved on the
+The event in float64 is the start for a proof in balls. A fold and a period doubling are proved on the
 whole cycle, a pitchfork on the half that flips, turned so that the mirror is `theta -> -theta`. Other events have no
 certificate here.
 
@@ -23,21 +23,24 @@ from symbolic.tables.definition import exact
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table
+from verification.arithmetic.balls import decimal
 from verification.cycles.arc import Steps
 from verification.cycles.branch import Branch, Event, branch
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
 from verification.cycles.search import all_cycles
-from verification.cycles.switching import Box, Curve, curve, switched
+from verification.cycles.switching import Box, CodimensionOneCurve, curve, switched
 from verification.cycles.switching import Tick as PointTick
 from verification.cycles.systems import SHAPE, rotations, symmetries
 from verification.named.curves import TWO, largest_shape
-from verification.named.locate import certify
-from verification.proofs.periodic.bifurcation import Proof
+from verification.named.locate import proof_near
+from verification.proofs.periodic.cycle_in_box import UniqueCycle
 
 
-def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Fraction | None = None) -> Proof | None:
+def proof_of(
+    event: Event, digits: int, parameter: str = "lam", lam: Expr | Fraction | None = None
+) -> UniqueCycle | None:
     """The proof that the event happens at the enclosed `parameter`; None where there is no certificate for its kind.
 
     Where the parameter is a shape, `lam` is the contraction.
@@ -47,7 +50,7 @@ def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Frac
     >>> ring = Chords(egg(3).at(alpha="7/100"), (0, 0))
     >>> (doubling,) = branch(ring, np.array([0, pi]), "lam", 0.1, (0.0, 1.0)).events
     >>> proof = proof_of(doubling, 20)
-    >>> proof is not None and proof.certified
+    >>> proof is not None and proof.proved
     True
     """
     ring = event.ring
@@ -61,11 +64,11 @@ def proof_of(event: Event, digits: int, parameter: str = "lam", lam: Expr | Frac
         x, closure = centred, MIRROR
     contraction = None if lam is None else S(lam)
     problem = Problem(ring.table, ring.components, event.kind.solved, parameter, contraction, closure, ring.law)
-    return certify(problem, [*(float(v) for v in x), event.value], digits)
+    return proof_near(problem, [*(float(v) for v in x), event.value], digits)
 
 
 def _centred(ring: Chords, x: Array) -> Array | None:
-    """The half cycle turned by a symmetry of the table until its mirror is `theta -> -theta`."""
+    """The half cycle, turned by a symmetry of the table so that its mirror is `theta -> -theta`; None if impossible."""
     if ring.closure.turn != -1:
         return None
     step = 2 * pi / rotations(ring.table)
@@ -77,24 +80,25 @@ def _centred(ring: Chords, x: Array) -> Array | None:
 
 Tick = Callable[[str], None]
 SWITCHES = 3  # crossings at which a branch is left for the one that is born there
-BORN = 60  # points of it
-SAME = 2e-3  # of the plane's size, and of the determinant, for a point to lie on a curve
-ALIKE = 1e-6  # between the ends of curves that are one
+BORN = 60  # points of that branch
+SAME = 2e-3  # in parts of the plane's size, and of the determinant: a point so near lies on a curve
+ALIKE = 1e-6  # between the ends of equal curves
+PROVED_AT = (0.2, 0.4, 0.6, 0.8)  # places along the points of a curve where the event is proved
 
 
 @dataclass(frozen=True)
 class Surveyed:
-    """An event on the branch of a cycle of `period` bounces, and its curve; None when it could not be followed."""
+    """An event on the branch of a cycle of `period` bounces, and its curve; None where it could not be followed."""
 
     period: int
     event: Event
-    curve: Curve | None
+    curve: CodimensionOneCurve | None
 
 
 def survey(
     alpha: Expr, lam: Expr, longest: int, K: int = 3, tick: Tick = lambda said: None, steps: Steps | None = None
 ) -> Iterator[Surveyed]:
-    """The curves of the egg with K points that the cycles at one shape and contraction lead to.
+    """The curves of the egg with K points through the events of the cycles at one shape and contraction.
 
     >>> from sympy import Rational
     >>> [(one.period, one.event.kind.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
@@ -123,7 +127,7 @@ def survey(
 
 @dataclass(frozen=True)
 class Plane:
-    """Two parameters of a table, the contraction the second: the table and the law with both free, and the ends.
+    """A plane of two parameters, the second `lam`: the table and the law with both free, and their ranges.
 
     >>> from symbolic import Scene
     >>> plane = Plane.of(Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}}), "b", ("0", "1/30"))
@@ -138,15 +142,15 @@ class Plane:
 
     @classmethod
     def of_egg(cls, K: int = 3) -> "Plane":
-        """The egg with `K` points, at all shapes but the roundest."""
+        """The plane of the egg with `K` points: shapes from 1/100 of the largest up to it, contractions from 0 to 1."""
         top = largest_shape(K)
         return cls(egg(K), PAPERS_LAW, TWO, ((top / 100, top), (0.0, 1.0)))
 
     @classmethod
     def of(cls, scene: Scene, parameter: str, ends: tuple[Any, Any], lams: tuple[Any, Any] = ("0", "1")) -> "Plane":
-        """A parameter of a scene, of its table or of its law, and the contraction; `ValueError` where one has no range.
+        """The plane of a parameter of a scene's table or law and the contraction; `ValueError` where one has no range.
 
-        The ends are exact, or text; a law is proved to be one over all of the plane.
+        The ends are exact, or text; the formula is proved to be a law over all of the plane.
         """
         shapes, contractions = ([exact(name, end) for end in pair] for name, pair in ((parameter, ends), ("lam", lams)))
         table, law = scene.table, scene.law
@@ -165,10 +169,11 @@ class Plane:
 
 @dataclass(frozen=True, eq=False)
 class EventCurve:
-    """What happens to a cycle of `period` bounces along a curve, and the point of the plane where it was met.
+    """The curve of a bifurcation of a cycle of `period` bounces, and the point `near` of the plane where it was met.
 
-    Each point has the two parameters and `det M - 1`; those of codimension two stand in `special` by name. `depth` says
-    how many doublings and pitchforks lie between the branch that was followed and the cycle of the curve.
+    Each point has the two parameters and `det M - 1`; those of codimension two stand in `special` by name. `depth` is
+    the number of doublings and pitchforks between the branch that was followed and the cycle of the curve. `proved` has
+    points of the curve where balls prove the event: an exact shape, the contraction and its radius.
     """
 
     kind: str
@@ -179,15 +184,16 @@ class EventCurve:
     ends: Sequence[str]
     depth: int = 0
     command: str = ""
+    proved: Sequence[Sequence[str]] = ()
 
     def document(self) -> dict[str, Any]:
-        """The curve as JSON has it."""
+        """The curve as JSON."""
         return dict(self.__dict__)
 
     def passes(self, at: tuple[float, float, float], box: Box) -> bool:
-        """Does it pass a point of the plane, with the same determinant? To a part of the plane's size.
+        """Does the curve pass a point of the plane with the same `det M - 1`, up to `SAME` of the plane's size?
 
-        At a pitchfork the curve knows the part of the cycle that flips, and its determinant is not compared.
+        At a pitchfork the determinant is that of the part of the cycle that flips, and is not compared.
         """
         third = np.inf if self.kind == BifurcationKind.PITCHFORK.value else 1.0
         points = (np.array(self.points) - np.array(at)) / np.array([*(high - low for low, high in box), third])
@@ -197,7 +203,7 @@ class EventCurve:
         return bool(np.any(np.max(np.abs(before + share[:, None] * step), axis=1) < SAME))
 
     def runs_as(self, other: "EventCurve") -> bool:
-        """Has it the ends of another one? Those that an image of the same cycle draws do, in either order."""
+        """Has the curve the same ends as another one, in either order? Images of one cycle have equal curves."""
         ends = np.array([self.points[0], self.points[-1]])
         return any(np.allclose(ends, other.points[::way][:: len(other.points) - 1], atol=ALIKE) for way in (1, -1))
 
@@ -210,9 +216,9 @@ def curves_along(
     steps: Steps | None = None,
     tick: PointTick | None = None,
 ) -> Iterator[EventCurve]:
-    """The curves in a plane that the events of a branch lie on, and the events of what is born on it, `SWITCHES` deep.
+    """The curves in a plane through the events of a branch, and of the branches born on it, `SWITCHES` deep.
 
-    `other` is the parameter of the plane that the branch keeps. Curves that are `known` do not come again.
+    `other` is the value of the plane's other parameter, fixed on the branch. `known` curves do not come again.
     """
     first = branch.system.parameter == plane.two[0]
     seen, interval = list(known), plane.box[0 if first else 1]
@@ -228,7 +234,7 @@ def curves_along(
                 continue
             points = [[float(x) for x in (*p.z[-2:], p.tests["volume"])] for p in found.points]
             special, ends = [(d.kind.value, *d.parameters) for d in found.special], [why for _, why in found.ends]
-            curve = EventCurve(kind, period, near, points, special, ends, depth)
+            curve = EventCurve(kind, period, near, points, special, ends, depth, "", proved_on(event, found, plane))
             if not any(curve.runs_as(each) for each in alike):
                 seen.append(curve)
                 yield curve
@@ -241,13 +247,35 @@ def curves_along(
             return
 
 
+def proved_on(event: Event, found: CodimensionOneCurve, plane: Plane, digits: int = 12) -> list[tuple[str, str, str]]:
+    """Points spread over a curve where the event is proved: an exact shape, and the contraction with its radius.
+
+    At each the event is proved to exist there; between them the curve is in float64. Empty for a letter of the law.
+    """
+    (letter, _), ring, rows = plane.two, event.ring, list[tuple[str, str, str]]()
+    if not isinstance(ring, Chords) or letter not in {p.symbol.name for p in plane.table.shapes}:
+        return rows
+    for share in PROVED_AT:
+        text = f"{found.points[int(share * (len(found.points) - 1))].z[-2]:.6g}"
+        try:
+            for z in found.crossing(float(text)):
+                here = replace(ring, table=plane.table.at(**{letter: exact(letter, text)}))
+                at = replace(event, ring=here, point=replace(event.point, z=z[[*range(len(z) - 2), -1]]), x=z[:-2])
+                proof = proof_of(at, digits)
+                if proof is not None and proof.proved:
+                    rows.append((text, *decimal(proof.value, digits)))
+        except (ValueError, ZeroDivisionError):
+            continue
+    return rows
+
+
 def curve_of(
     event: Event, plane: Plane, near: tuple[float, float], steps: Steps | None = None, tick: PointTick | None = None
-) -> Curve | None:
+) -> CodimensionOneCurve | None:
     """The curve through an event in a plane of two parameters, met at `near`; None when it has none or is lost.
 
     A pitchfork needs the symmetry that it breaks: where the table has it at one value of the parameter alone, there is
-    no curve. `tick` hears of each point.
+    no curve. `tick` is called with each point.
     """
     ring = event.ring
     if event.kind.solved is None or not isinstance(ring, Chords):

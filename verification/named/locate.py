@@ -1,7 +1,7 @@
-"""Where does it happen? Each bifurcation by its name: to N digits, with a proof.
+"""Bifurcations by name: their parameters to N digits, with a proof.
 
 mpmath finds the approximation on the chord system, balls prove it (`verification.proofs`), and
-where there is a closed form it must agree. `value` and `radius` are decimals that hold the truth.
+where there is a closed form it must agree. The true value lies within `radius` of `value`, both decimals.
 """
 
 import time
@@ -16,39 +16,38 @@ from sympy import Expr, Integer, N, S, acos
 
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
-from symbolic.expressions.text import kernel, load
 from symbolic.tables.definition import like
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
-from verification.arithmetic.balls import balls, bits_of, decimal, exact_balls, working
+from verification.arithmetic.balls import bits_of, decimal, exact_balls, working
 from verification.arithmetic.iteration import telling
 from verification.cycles.cascade import HIGHEST, critical_cycle
 from verification.cycles.cascade import symmetry_breaking as first_symmetry_breaking
 from verification.cycles.critical import corner, focus
-from verification.cycles.newton import Step, refined
+from verification.cycles.newton import NewtonStep, System, refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
-from verification.proofs.corner.corner_orbit import CornerClaim, CornerProof, corner_proved
-from verification.proofs.periodic.bifurcation import Checks, Claim, Proof, proved
-from verification.proofs.periodic.interval_newton import Status
+from verification.proofs.corner.corner_orbit import CornerOrbit, EqualMultipliers
+from verification.proofs.periodic.bifurcation import Checks
+from verification.proofs.periodic.cycle_in_box import SolutionInBox, UniqueCycle, closed_form, cycle_in_box
 
 if TYPE_CHECKING:
-    from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other name needs
+    from verification.proofs.manifolds.certificate import Tangency  # NumPy, which no other name needs
 
 MOST_DIGITS = 20_000
 BUDGET = 4_000_000  # bounces times digits: some ten minutes
 MPMATH_SHARE = 0.7  # of the time that a proof and its approximation take
-Steps = tuple[Step, ...]
-Proved: TypeAlias = "Proof | CornerProof | TangencyProof"
+Steps = tuple[NewtonStep, ...]
+Proved: TypeAlias = "SolutionInBox | Tangency"
 FOLD_DIGITS = 50  # at most, of the proof beside a crisis
 GMPY2 = mpmath.libmp.BACKEND == "gmpy"
 WORDS = {True: "proved", False: "refuted", None: "unknown"}  # the three answers of a checklist
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Located:
-    """A value in decimals, and what was proved about it."""
+    """A value in decimals with a radius, and the checklist of its proof."""
 
     name: str
     value: str
@@ -68,11 +67,11 @@ class Located:
 
     @property
     def title(self) -> str:
-        """The name of what was shown: the one asked for, or what it was continued from where nothing else is known."""
+        """The name of the result: the one asked for, or the event from which the tangency was continued."""
         return self.notes.get("called", self.name)
 
     def to_dict(self) -> dict[str, Any]:
-        """The keys of `pinball locate --json`."""
+        """The value, its checks and notes, as `pinball locate --json` has them."""
         return {
             "name": self.name,
             "title": self.title,
@@ -90,6 +89,9 @@ class Located:
     def __str__(self) -> str:
         return f"{self.title} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
 
+    def __repr__(self) -> str:
+        return f"Located({self})"
+
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><td>{item}</td><td>{WORDS[value]}</td></tr>" for item, value in self.checks.items())
         said = "certified" if self.certified else "not certified"
@@ -97,8 +99,8 @@ class Located:
 
 
 @dataclass(frozen=True)
-class Found:
-    """What a search hands over: the ball, its checklist, and the proof if it is one cycle's."""
+class SearchOutcome:
+    """Result of a search: the ball, its checklist, the proof if there is one, notes and Newton's steps."""
 
     ball: arb
     checks: Checks
@@ -108,7 +110,7 @@ class Found:
 
 
 def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) -> Located:
-    """The bifurcation `name` (see `NAMES`) to `digits` decimal digits; tangencies under any `law`.
+    """The value of the bifurcation `name` (see `NAMES`) to `digits` decimal digits; tangencies under any `law`.
 
     >>> locate("lambda-c", 20).value
     '0.0934003354313602414161'
@@ -131,98 +133,92 @@ def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) ->
     return Located(name, value, radius, digits, found.checks, seconds, *rest)
 
 
-def certify(problem: Problem, start: list[float], digits: int, in_balls: bool = False) -> Proof:
+def proof_near(problem: Problem, start: list[float], digits: int, in_balls: bool = False) -> UniqueCycle:
     """The proof for the solution near `start`: Newton's method to a few digits more, then balls around it.
 
-    With `in_balls` that method is quicker (`refined`), and the last bits of the centre are others.
+    With `in_balls` that method is quicker (`refined`), and the last bits of the centre differ.
     """
     return _searched(problem, start, digits, in_balls)[0]
 
 
-def _searched(problem: Problem, start: list[float], digits: int, in_balls: bool = False) -> tuple[Proof, Steps]:
+def _searched(problem: Problem, start: list[float], digits: int, in_balls: bool = False) -> tuple[UniqueCycle, Steps]:
+    box, steps = _box(problem, start, digits, 64 + 8 * problem.period.bit_length(), (digits + 2, digits), in_balls)
+    return cycle_in_box(problem, *box), steps
+
+
+def _box(
+    system: System, start: list[float], digits: int, guard: int, sizes: tuple[int, int], in_balls: bool = False
+) -> tuple[tuple[tuple[arb, ...], arb, int, int], Steps]:
+    """Centre, radius, bits and digits of a box, Newton's steps; `sizes`: digits of the radius, of Newton's method."""
     tick = telling(f"{digits} digits")
-    solution = refined(problem, start, digits, in_balls)
+    solution = refined(system, start, sizes[1], in_balls)
     tick(MPMATH_SHARE)
-    bits = bits_of(digits, 64 + 8 * problem.period.bit_length())
+    bits = bits_of(digits, guard)
     with working(bits):
-        radius = (arb(10) ** -(digits + 2)).mid()
-    return proved(Claim(problem, tuple(exact_balls(solution.z)), radius, bits, digits)), solution.steps
+        radius = (arb(10) ** -sizes[0]).mid()
+    return (tuple(exact_balls(solution.z)), radius, bits, digits), solution.steps
 
 
-def closed_form(expression: Expr, digits: int) -> arb:
-    """An exact expression as a ball."""
-    bits = bits_of(digits, 64)
-    with working(bits):
-        ball: arb = load(kernel("value", [], {"value": expression}), balls(bits))()[0] + arb(0)
-        return ball
-
-
-def _agreeing(searched: tuple[Proof, Steps], expression: Expr, digits: int) -> Found:
-    """A proof from the cycle together with a closed form: both balls must meet."""
+def _agreeing(searched: tuple[SolutionInBox, Steps], ball: arb) -> SearchOutcome:
+    """A proof with a closed form of the value, given as `ball`: a further check is whether the two balls meet."""
     proof, steps = searched
-    ball = closed_form(expression, digits)
-    overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
-    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof), steps)
+    overlap = proof.found and bool(proof.value.overlaps(ball))
+    return SearchOutcome(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof), steps)
 
 
-def _direction(proof: Proof) -> dict[str, str]:
-    if proof.supercritical is None:
+def _direction(proof: SolutionInBox) -> dict[str, str]:
+    if not isinstance(proof, UniqueCycle) or proof.supercritical is None:
         return {}
     born = "a stable" if proof.supercritical else "an unstable"
     return {"kind": f"{'super' if proof.supercritical else 'sub'}critical: {born} cycle of twice the period is born"}
 
 
-def _special(value: str, start: list[float], digits: int, lam: Expr | None = None) -> tuple[CornerProof, Steps]:
-    """The proof of a small system's solution near `start`."""
-    bits = bits_of(digits, 100)
-    with working(bits):
-        radius = (arb(10) ** -(digits + 3)).mid()
-    tick = telling(f"{digits} digits")
-    solution = refined(corner() if lam is None else focus(lam), start, digits + 5)
-    tick(MPMATH_SHARE)
-    claim = CornerClaim(value, tuple(exact_balls(solution.z)), radius, bits, digits, lam)
-    return corner_proved(claim), solution.steps
+def _small(system: System, start: list[float], digits: int) -> tuple[tuple[tuple[arb, ...], arb, int, int], Steps]:
+    return _box(system, start, digits, 100, (digits + 3, digits + 5))
 
 
-def lambda_star(digits: int) -> Found:
+def _at_corner(value: str, digits: int) -> SearchOutcome:
+    box, steps = _small(corner(), [0.2545, 0.0712], digits)
+    proof = CornerOrbit(*box, value)
+    return SearchOutcome(proof.value, proof.checks, proof, proof.notes, steps)
+
+
+def lambda_star(digits: int) -> SearchOutcome:
     """The contraction at which the cuspless orbit through both corners exists. Paper: section 5.2."""
-    proof, steps = _special("lam", [0.2545, 0.0712], digits)
-    return Found(proof.value, proof.checks, proof, proof.notes, steps)
+    return _at_corner("lam", digits)
 
 
-def phi_star(digits: int) -> Found:
-    """Its exit angle at the upper corner, in radians."""
-    proof, steps = _special("phi", [0.2545, 0.0712], digits)
-    return Found(proof.value, proof.checks, proof, proof.notes, steps)
+def phi_star(digits: int) -> SearchOutcome:
+    """The exit angle at the upper corner of the cuspless orbit through both corners, in radians."""
+    return _at_corner("phi", digits)
 
 
-def lambda_c(digits: int) -> Found:
+def lambda_c(digits: int) -> SearchOutcome:
     """The period doubling of the cuspless cardioid's horizontal orbit. Paper: section 5.1."""
     exact = thresholds.lambda_c()
     problem = Problem(tables.cuspless, (1, 0), BifurcationKind.FLIP, "lam")
-    return _agreeing(_searched(problem, [0, 0, float(N(exact))], digits), exact, digits)
+    return _agreeing(_searched(problem, [0, 0, float(N(exact))], digits), closed_form(exact, digits))
 
 
-def alpha_tilde(digits: int, lam: Expr) -> Found:
+def alpha_tilde(digits: int, lam: Expr) -> SearchOutcome:
     """The shape at which the egg's diameters double their period. Paper: section 6.3."""
     exact = thresholds.alpha_tilde().subs(lam_symbol, _unit("lam", lam))
     problem = Problem(tables.egg(3), (0, 0), BifurcationKind.FLIP, "alpha", lam)
-    return _agreeing(_searched(problem, [0.0, 3.14, float(N(exact))], digits), exact, digits)
+    return _agreeing(_searched(problem, [0.0, 3.14, float(N(exact))], digits), closed_form(exact, digits))
 
 
-def alpha_hat(digits: int, lam: Expr) -> Found:
+def alpha_hat(digits: int, lam: Expr) -> SearchOutcome:
     """The shape above which the multipliers of the egg's diameters are complex. Paper: section 6.3."""
     exact = thresholds.alpha_hat().subs(lam_symbol, _unit("lam", lam))
     ball = closed_form(exact, digits)
     if lam in (0, 1):
         why = {0: "the discriminant touches 0 there and does not cross it", 1: "the table is a circle there"}[lam]
-        return Found(ball, {"precise": True} | dict.fromkeys(("exists", "unique")), None, {"degenerate": why})
-    proof, steps = _special("alpha", [0.0, 3.14, float(N(exact))], digits, lam)
-    overlap = proof.enclosure.status is Status.UNIQUE and bool(proof.value.overlaps(ball))
-    return Found(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, {}, steps)
+        return SearchOutcome(ball, {"precise": True} | dict.fromkeys(("exists", "unique")), None, {"degenerate": why})
+    box, steps = _small(focus(lam), [0.0, 3.14, float(N(exact))], digits)
+    return _agreeing((EqualMultipliers(*box, lam), steps), ball)
 
 
-def saddle_node(digits: int, alpha: Expr) -> Found:
+def saddle_node(digits: int, alpha: Expr) -> SearchOutcome:
     """The contraction at which the egg's period-3 cycles are born. Paper: section 6.4."""
     table = tables.egg(3).at(alpha=alpha)
     if alpha == 0:
@@ -233,10 +229,10 @@ def saddle_node(digits: int, alpha: Expr) -> Found:
     turn = -float(N(acos(-alpha))) / 3  # cos(3*theta) = -alpha where the normal is tilted most
     problem = Problem(table, (0, 0, 0), BifurcationKind.FOLD, "lam")
     start = [turn + float(N(2 * S.Pi / 3)) * k for k in range(3)]
-    return _agreeing(_searched(problem, [*start, float(N(exact))], digits), exact, digits)
+    return _agreeing(_searched(problem, [*start, float(N(exact))], digits), closed_form(exact, digits))
 
 
-def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
+def doubling(digits: int, alpha: Expr, n: Expr) -> SearchOutcome:
     """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
     if (period := 2 ** max(int(n) - 1, 0)) * digits > BUDGET and n <= HIGHEST:
         raise ValueError(
@@ -245,38 +241,47 @@ def doubling(digits: int, alpha: Expr, n: Expr) -> Found:
         )
     problem, start = critical_cycle(alpha, int(n))
     proof, steps = _searched(problem, start, digits)
-    return Found(proof.value, proof.checks, proof, _direction(proof), steps)
+    return SearchOutcome(proof.value, proof.checks, proof, _direction(proof), steps)
 
 
-def symmetry_breaking(digits: int, alpha: Expr) -> Found:
-    """The contraction at which the egg's symmetric cycle of period 4 gives way to two that are not."""
+def symmetry_breaking(digits: int, alpha: Expr) -> SearchOutcome:
+    """The contraction of the pitchfork of the egg's symmetric cycle of period 4."""
     problem, start = first_symmetry_breaking(alpha)
-    proof = certify(problem, start, digits)
+    proof = proof_near(problem, start, digits)
     born = "two stable cycles" if proof.supercritical else "two unstable cycles"
-    return Found(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
+    return SearchOutcome(proof.value, proof.checks, proof, {"kind": f"pitchfork: {born} without the symmetry are born"})
 
 
-def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> Found:
+def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> SearchOutcome:
     """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch, which is proved. Paper: section 6.7.
 
-    That no other contact ends the attractor before is not.
+    That no other contact ends the attractor before is not proved.
     """
-    from verification.proofs.manifolds.known import SHAPE, crisis, decimals, proof  # NumPy, which no other name needs
+    from verification.proofs.manifolds.known import (  # NumPy, which no other name needs
+        SEARCHED,
+        SHAPE,
+        crisis,
+        decimals,
+        proof,
+    )
 
     found = crisis(kind, alpha, digits, law)
     stable, unstable = found.touch.multipliers[:2]
     orbit = found.touch.contact.unstable
     proved_fold = False
     if not found.cycle.problem.closure.shift[0]:  # of a cycle that closes with a turn there is no certificate
-        fold = certify(found.cycle.problem, found.cycle.start, min(digits, FOLD_DIGITS))
+        fold = proof_near(found.cycle.problem, found.cycle.start, min(digits, FOLD_DIGITS))
         near = bool(abs(fold.value - arb(str(found.parameter))) < 1e-3)
-        proved_fold = all(value is True for value in fold.checks.values()) and near
+        proved_fold = fold.proved and near
     notes = {
         "mechanism": f"homoclinic tangency of the {orbit.name}, multipliers {unstable:.6g} and {stable:.6g}",
         "method": f"the fold of a cycle of {found.period} bounces that shadows it, estimated error, not a proof",
         "second_method": f"tangency of the manifolds, {found.apart:.1e} away with error {found.touch.error:.1e}",
         "transient": f"if an attractor ends here, lasts like (distance beyond)^-{found.exponent:.4f}, in the limit",
     }
+    if alpha == SHAPE and law.uniform and kind in SEARCHED:
+        low, bounces = SEARCHED[kind]
+        notes["is_the_first"] = f"not shown; none earlier found from {low} on, in flights of up to {bounces} bounces"
     if alpha != SHAPE or not law.uniform:
         notes = _continued(kind, alpha, float(found.parameter), notes, law)
     value, error = decimals(found)
@@ -287,18 +292,18 @@ def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> Fo
     inside = bool(ball.contains(made.value))
     checks |= {"tangency": True if made.proof.touches and inside else None}
     checks |= {item: made.checks[item] if inside else None for item in ("quadratic", "transversal")}
-    held = made.certified and inside
-    strange = held and all(made.strange.values())
+    held = made.proved and inside
+    strange = held and made.strange.proved
     checks |= {"strange_attractors": strange or None, "is_the_crisis": None}
     if held:
         notes["proved"] = f"the two manifolds touch, within {error} of the value; that the attractor ends there is not"
     if strange:
         notes["follows"] = "strange attractors for a set of contractions of positive measure, as near as one likes"
-    return Found(ball, checks, made if held else None, notes)
+    return SearchOutcome(ball, checks, made if held else None, notes)
 
 
 def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: Law = PAPERS_LAW) -> dict[str, str]:
-    """The notes of a tangency away from where the attractor was looked at: its name, and what particles see.
+    """The notes of a tangency for a shape or law where the attractor was not examined: name, and what particles show.
 
     An exponent of transients belongs to an attractor that ends; where no orbit is chaotic, there is none.
     """
@@ -318,8 +323,8 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: L
     }
 
 
-def one_of(kind: str, parameter: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW, **which: Expr) -> Found:
-    """Where a window or a small family of some period ends or its bands join, or the n-th interior crisis is."""
+def one_of(kind: str, parameter: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW, **which: Expr) -> SearchOutcome:
+    """An event with a number: end or merging of a window or small family of a period, or the n-th interior crisis."""
     from verification.proofs.manifolds.known import CONTACTS
 
     name = f"{kind}-{which[parameter]}"
@@ -340,7 +345,7 @@ def _listed(parameters: Any) -> str:
     return ", ".join(f"--{parameter}" for parameter in parameters) or "no parameter"
 
 
-NAMES: Mapping[str, tuple[Callable[..., Found], tuple[str, ...]]] = {
+NAMES: Mapping[str, tuple[Callable[..., SearchOutcome], tuple[str, ...]]] = {
     "lambda-star": (lambda_star, ()),
     "phi-star": (phi_star, ()),
     "lambda-c": (lambda_c, ()),

@@ -1,4 +1,7 @@
-"""Questions on a scene, each one call: which cycles, what becomes of one, and the proof of what happens to it.
+"""Questions on a scene, one function each: cycles, their branches, their proofs, trapping regions, Morse graphs.
+
+A scene, a table, a map of `numeric` or the name of a table is taken; `lam`, `law` and the numbers of the shape are
+keywords. Numbers are exact, as text or fractions: `"1/10"`, `"0.1"`. A float is refused, as it is not what it shows.
 
 >>> from symbolic import Scene, tables
 >>> egg = Scene(tables.egg(3), alpha="2/25", lam="1/2")
@@ -16,12 +19,22 @@ from typing import TYPE_CHECKING, Any, overload
 
 from symbolic.tables.definition import exact
 from symbolic.tables.law import Law
-from symbolic.tables.scene import Scene
+from symbolic.tables.scene import Scene, as_scene
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from verification.cycles.branch import Branch, Event
+    from verification.cycles.cells import CycleType
+    from verification.cycles.chords import Chords
     from verification.cycles.search import Found, Searched
+    from verification.maps.one_sided import OneSided
     from verification.named.locate import Located
+    from verification.proofs.global_dynamics.images import PinballImages
+    from verification.proofs.global_dynamics.regions import Region
+    from verification.proofs.periodic.cycle_in_box import UniqueCycle
+    from verification.rigorous.graph import MorseGraph
 
 SHOWN = 12  # rows of a table in a notebook
 Tick = Callable[[str], None]
@@ -29,13 +42,18 @@ Tick = Callable[[str], None]
 
 @dataclass(frozen=True)
 class PeriodicOrbit:
-    """A cycle of minimal period in a scene: its bounces, in radians, and its multipliers, the larger one first."""
+    """A cycle of minimal period in a scene: its bounces, in radians, and its multipliers, the larger one first.
+
+    Where a bounce lies on a join at which the curvature jumps they are those of the component behind it, and
+    `one_sided` is what the derivatives on all sides say, in float64.
+    """
 
     scene: Scene
     components: tuple[int, ...]
     theta: tuple[float, ...]
     phi: tuple[float, ...]
     multipliers: tuple[complex, complex]
+    one_sided: "OneSided | None" = None
 
     @property
     def period(self) -> int:
@@ -43,18 +61,31 @@ class PeriodicOrbit:
         return len(self.theta)
 
     @property
+    def stability(self) -> "CycleType":
+        """`STABLE` or `UNSTABLE`; for an elastic law `ELLIPTIC`, `HYPERBOLIC` or `PARABOLIC`.
+
+        Where the curvature jumps at a bounce, `UNDECIDED` unless all one-sided derivatives together decide.
+        """
+        from verification.cycles.cells import CycleType
+
+        if self.one_sided:
+            return CycleType(self.one_sided.stability)
+        return CycleType.of(self.multipliers, self.scene.law.elastic(self.scene.lam))
+
+    @property
     def stable(self) -> bool:
-        """True when both multipliers lie inside the unit circle, in float64."""
-        return max(map(abs, self.multipliers)) < 1
+        """True when both multipliers lie inside the unit circle, in float64; never where areas are preserved."""
+        return self.stability.value == "stable"
 
     def __repr__(self) -> str:
         mu = ", ".join(f"{m.real:.5g}" if m.imag == 0 else f"{m:.5g}" for m in self.multipliers)
-        kind = "stable" if self.stable else "unstable"
-        return f"PeriodicOrbit(period {self.period}, {kind}, multipliers {mu}, theta[0] = {self.theta[0]:.6g})"
+        kind = self.stability.value
+        side = "one-sided " if self.one_sided else ""
+        return f"PeriodicOrbit(period {self.period}, {kind}, {side}multipliers {mu}, theta[0] = {self.theta[0]:.6g})"
 
 
 class PeriodicOrbits(Sequence[PeriodicOrbit]):
-    """Cycles, each once, by period; `.stable`, `.unstable` and `.of(period)` choose among them."""
+    """A sequence of cycles, each once, by period; `.stable`, `.unstable` and `.of(period)` select some."""
 
     def __init__(self, orbits: Iterable[PeriodicOrbit], searched: "Searched | None" = None) -> None:
         self.orbits = tuple(orbits)
@@ -70,50 +101,64 @@ class PeriodicOrbits(Sequence[PeriodicOrbit]):
     def __len__(self) -> int:
         return len(self.orbits)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, PeriodicOrbits) and self.orbits == other.orbits
+
+    def __hash__(self) -> int:
+        return hash(self.orbits)
+
     def __iter__(self) -> Iterator[PeriodicOrbit]:
         return iter(self.orbits)
 
     @property
     def stable(self) -> "PeriodicOrbits":
-        """Those whose multipliers both lie inside the unit circle."""
+        """The cycles whose multipliers both lie inside the unit circle."""
         return PeriodicOrbits(orbit for orbit in self.orbits if orbit.stable)
 
     @property
     def unstable(self) -> "PeriodicOrbits":
-        """The others."""
+        """The cycles that are not stable."""
         return PeriodicOrbits(orbit for orbit in self.orbits if not orbit.stable)
 
     def of(self, period: int) -> "PeriodicOrbits":
-        """Those of one minimal period."""
+        """The cycles of one minimal period."""
         return PeriodicOrbits(orbit for orbit in self.orbits if orbit.period == period)
 
     def __repr__(self) -> str:
         return f"PeriodicOrbits({len(self)}: {len(self.stable)} stable)"
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{o.period}</td><td>{'yes' if o.stable else 'no'}</td><td>{o.multipliers[0]:.6g}</td>"
-            f"<td>{o.multipliers[1]:.6g}</td><td>{o.theta[0]:.9f}</td></tr>"
+        from numeric.pinball.states import html_table
+
+        rows = [
+            (o.period, o.stability.value, *(f"{mu:.6g}" for mu in o.multipliers), f"{o.theta[0]:.9f}")
             for o in self.orbits[:SHOWN]
-        )
+        ]
         more = f"<p>and {len(self) - SHOWN} more</p>" if len(self) > SHOWN else ""
-        head = "<tr><th>period</th><th>stable</th><th colspan=2>multipliers</th><th>first bounce</th></tr>"
-        return f"<table>{head}{rows}</table>{more}"
+        return html_table(("period", "stability", "multipliers", "", "first bounce"), rows) + more
 
 
 def find_cycles(
-    scene: Scene, *, period: int | None = None, up_to: int | None = None, seed: int = 1, tick: Tick | None = None
+    table: Any,
+    *,
+    period: int | None = None,
+    up_to: int | None = None,
+    seed: int = 1,
+    tick: Tick | None = None,
+    lam: Any = None,
+    law: Law | str | None = None,
+    **shape: Any,
 ) -> PeriodicOrbits:
-    """The cycles of a scene of one minimal period, or of all periods `up_to` one, found by search in float64.
+    """The cycles of one minimal period, or of all periods `up_to` one, found by search in float64.
 
     A search does not prove that it found all; `pinball cycles --prove` does, for small periods.
 
-    >>> ellipse = Scene("ellipse", a="3/2", lam="1/2")
-    >>> find_cycles(ellipse, period=2)
+    >>> find_cycles("ellipse", a="3/2", lam="1/2", period=2)
     PeriodicOrbits(2: 1 stable)
     """
     from verification.cycles.search import all_cycles
 
+    scene = as_scene(table, lam=lam, law=law, **shape)
     if (period is None) == (up_to is None):
         raise ValueError("find_cycles: give one of period=N and up_to=N")
     longest = period if period is not None else up_to
@@ -128,12 +173,12 @@ def find_cycles(
 
 def _orbit(scene: Scene, cycle: "Found") -> PeriodicOrbit:
     one, two = sorted(cycle.spectrum.multipliers, key=lambda mu: -abs(mu))
-    return PeriodicOrbit(scene, cycle.components, cycle.theta, cycle.phi, (complex(one), complex(two)))
+    return PeriodicOrbit(scene, cycle.components, cycle.theta, cycle.phi, (complex(one), complex(two)), cycle.one_sided)
 
 
 @dataclass(frozen=True)
 class FollowedOrbit:
-    """A branch of cycles in one parameter, with what happens on it; `.folds`, `.flips` and their like choose."""
+    """A branch of cycles in one parameter, with its events; `.folds`, `.flips` and so on choose among them."""
 
     orbit: PeriodicOrbit
     parameter: str
@@ -146,23 +191,30 @@ class FollowedOrbit:
 
     @property
     def folds(self) -> "tuple[BranchEvent, ...]":
-        """Where the branch turns: saddle-node bifurcations."""
+        """The saddle-node bifurcations, where the branch turns."""
         return self._of("fold")
 
     @property
     def flips(self) -> "tuple[BranchEvent, ...]":
-        """Period doublings."""
+        """The period doublings."""
         return self._of("period doubling")
 
     @property
     def pitchforks(self) -> "tuple[BranchEvent, ...]":
-        """Where a symmetric cycle loses its symmetry."""
+        """The pitchforks, where a symmetric cycle loses its symmetry."""
         return self._of("pitchfork")
 
     @property
     def border_collisions(self) -> "tuple[BranchEvent, ...]":
-        """Where a bounce meets a join of the boundary."""
+        """The border collisions, where a bounce meets a join of the boundary."""
         return self._of("border collision")
+
+    def plot(self, axes: "Axes | None" = None) -> "Figure":
+        """Figure of the bounces along the branch, dashed where the cycle is unstable, and events; on `axes` or new."""
+        from numeric.pinball.states import plotted
+
+        made: Figure = plotted("dynamics.plotted", (self.branch,), None, axes=axes)
+        return made
 
     def _of(self, kind: str) -> "tuple[BranchEvent, ...]":
         return tuple(event for event in self.events if event.kind == kind)
@@ -175,7 +227,7 @@ class FollowedOrbit:
 
 @dataclass(frozen=True)
 class BranchEvent:
-    """What happens on a branch, at which value of its parameter, in float64; `certify` gives digits and a proof."""
+    """An event on a branch, at a value of its parameter in float64; `certify` gives digits and a proof."""
 
     orbit: PeriodicOrbit
     parameter: str
@@ -183,59 +235,72 @@ class BranchEvent:
 
     @property
     def kind(self) -> str:
-        """`fold`, `period doubling`, `pitchfork`, `branch point`, `border collision`, `Neimark-Sacker` or so."""
+        """The name of the bifurcation: `fold`, `period doubling`, `pitchfork`, `border collision` and so on."""
         return self.event.kind.value
 
     @property
     def value(self) -> float:
-        """The parameter there."""
+        """The value of the parameter."""
         return self.event.value
 
     @property
+    def collision(self) -> str:
+        """At a border collision on a smooth join, what becomes of the cycle: persistence, or a nonsmooth fold."""
+        return self.event.collision.value if self.event.collision else ""
+
+    @property
     def supercritical(self) -> bool | None:
-        """True when the cycle that is born is stable where the old one is not; None where that is no question."""
+        """True when the cycle that is born is stable where the old one is not; None where no normal form decides."""
         return self.event.form.supercritical if self.event.form else None
 
 
 def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None, **interval: Any) -> FollowedOrbit:
-    """What becomes of a cycle as one parameter changes: `lam=(low, high)`, or a shape such as `alpha=(low, high)`.
+    """The branch of a cycle as one parameter varies: `lam=(low, high)`, or a shape such as `alpha=(low, high)`.
 
-    The ends are exact numbers or text. The branch is followed both ways from the cycle, through folds.
+    The ends are exact numbers or text. The branch is followed both ways from the cycle, through folds, and over joins
+    at which the curvature jumps.
     """
     import numpy as np
 
     from verification.cycles.arc import Steps
     from verification.cycles.branch import branch
-    from verification.cycles.chords import Chords
+    from verification.cycles.crossing import continued
 
+    if not isinstance(orbit, PeriodicOrbit):
+        raise ValueError(f"follow: {type(orbit).__name__} given; accepted: a cycle, as in find_cycles(...)[0]")
     if len(interval) != 1:
         raise ValueError(
             f"follow: {', '.join(interval) or 'no parameter'} given; one parameter varies, as in lam=(0, 1)"
         )
     ((parameter, ends),) = interval.items()
-    low, high = _ends(parameter, ends)
+    ring, value, fixed = ring_over(orbit, parameter, ends)
+    say = (lambda point: tick(f"{parameter} = {point.z[-1]:.4f}")) if tick else None
+    steps, within = Steps(most=points), ends_of(parameter, ends)
+    found = branch(ring, np.array(orbit.theta), parameter, value, within, fixed, steps, say)
+    return FollowedOrbit(orbit, parameter, continued(found, within, steps, say))
+
+
+def ring_over(orbit: PeriodicOrbit, parameter: str, ends: Any) -> "tuple[Chords, float, dict[str, float] | None]":
+    """The chord system of a cycle with `parameter` free, the parameter's value at the cycle, the fixed parameters."""
+    from verification.cycles.chords import Chords
+
+    ends_of(parameter, ends)
     scene = orbit.scene
     law, own = law_over(scene, parameter, ends), dict(scene.law.numbers)
-    ring, fixed = Chords(scene.table, orbit.components, law=law), None
-    value = float(scene.lam)
+    ring = Chords(scene.table, orbit.components, law=law)
+    if parameter == "lam":
+        return ring, float(scene.lam), None
+    fixed = {"lam": float(scene.lam)}
     if law.parameters:
-        value, fixed = float(exact(parameter, own[parameter])), {"lam": float(scene.lam)}
-    elif parameter != "lam":
-        if parameter not in scene.shape:
-            accepted = ", ".join(["lam", *scene.shape, *own])
-            raise ValueError(f"follow: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
-        ring = replace(ring, table=scene.over(parameter, *ends))
-        value, fixed = float(scene.shape[parameter]), {"lam": float(scene.lam)}
-    say = (lambda point: tick(f"{parameter} = {point.z[-1]:.4f}")) if tick else None
-    return FollowedOrbit(
-        orbit,
-        parameter,
-        branch(ring, np.array(orbit.theta), parameter, value, (low, high), fixed, Steps(most=points), say),
-    )
+        return ring, float(exact(parameter, own[parameter])), fixed
+    if parameter not in scene.shape:
+        accepted = ", ".join(["lam", *scene.shape, *own])
+        raise ValueError(f"follow: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
+    return replace(ring, table=scene.over(parameter, *ends)), float(scene.shape[parameter]), fixed
 
 
 def law_over(scene: Scene, parameter: str, ends: Sequence[Any]) -> Law:
-    """The scene's law, with `parameter` left free where it is the law's own; proved to be a law over the interval."""
+    """The scene's law, with `parameter` free where it is the law's own, proved to be a law over the interval `ends`."""
     law, lam = scene.law, (scene.lam, scene.lam)
     low, high = ends
     interval = exact(parameter, low), exact(parameter, high)
@@ -250,7 +315,7 @@ def law_over(scene: Scene, parameter: str, ends: Sequence[Any]) -> Law:
 
 
 def _over_shape(scene: Scene, parameter: str, interval: tuple[Any, Any]) -> None:
-    """Proves a law that speaks of arc length, which changes with the shape, over an interval of a shape parameter."""
+    """Proves that a law in arc length, which changes with the shape, remains a law over an interval of the shape."""
     table = scene.over(parameter, *interval)
     for index, part in enumerate(table.components):
         if part.start.free_symbols | part.end.free_symbols:
@@ -259,7 +324,8 @@ def _over_shape(scene: Scene, parameter: str, interval: tuple[Any, Any]) -> None
         law.check((scene.lam, scene.lam), (part.start, part.end), None, **dict.fromkeys(law.parameters, interval))
 
 
-def _ends(parameter: str, given: Any) -> tuple[float, float]:
+def ends_of(parameter: str, given: Any) -> tuple[float, float]:
+    """The two ends of an interval of the parameter as floats; `ValueError` where they form no interval."""
     if not isinstance(given, tuple | list) or len(given) != 2:
         raise ValueError(
             f"follow: {parameter} = {given!r} is no interval; give two numbers, as in {parameter}=('0.3', '1')"
@@ -273,75 +339,121 @@ def _ends(parameter: str, given: Any) -> tuple[float, float]:
     return low, high
 
 
-def certify(event: BranchEvent, *, digits: int = 30) -> "Located":
-    """The value of the parameter at an event to so many digits, with a proof in balls; its checklist says what holds.
+def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Located":
+    """A proof in balls, to so many digits: of an event, with its parameter; of a cycle, with its first bounce.
 
-    Folds, period doublings and pitchforks have certificates.
+    Folds, period doublings and pitchforks have certificates, and so have cycles. The checklist of what comes back says
+    what holds; `notes["stability"]` what the one-sided derivatives prove where the curvature jumps at a bounce.
+
+    >>> axis = find_cycles("ellipse", a="3/2", lam="1/2", period=2).stable[0]
+    >>> certify(axis, digits=10).certified
+    True
     """
     import time
 
     from verification.arithmetic.balls import decimal
     from verification.named.events import proof_of
-    from verification.named.locate import Located
+    from verification.named.locate import MOST_DIGITS, Located
 
-    if not isinstance(event, BranchEvent):
-        raise TypeError(f"certify: {type(event).__name__} given; it takes an event of a branch, as in branch.folds[0]")
-    started = time.perf_counter()
-    lam = None if event.parameter == "lam" else event.orbit.scene.lam
-    proof = proof_of(event.event, digits, event.parameter, lam)
-    if proof is None:
-        raise ValueError(f"certify: a {event.kind} has no certificate; accepted: fold, period doubling, pitchfork")
-    value, radius = decimal(proof.value, digits + 1)
-    name = f"{event.kind} of period {event.orbit.period} in {event.parameter}"
-    return Located(name, value, radius, digits, proof.checks, time.perf_counter() - started, proof.value, proof)
+    if not 1 <= digits <= MOST_DIGITS:
+        raise ValueError(f"certify: digits = {digits!r} is out of range; accepted: 1 to {MOST_DIGITS}")
+    started, notes = time.perf_counter(), dict[str, str]()
+    if isinstance(found, PeriodicOrbit):
+        cycle, name, place = _proof_of_cycle(found, digits), f"theta of the first bounce, period {found.period}", 0
+        proof, notes = cycle, {"stability": cycle.one_sided.value} if cycle.one_sided else {}
+    elif isinstance(found, BranchEvent):
+        lam = None if found.parameter == "lam" else found.orbit.scene.lam
+        event = proof_of(found.event, digits, found.parameter, lam)
+        if event is None:
+            raise ValueError(f"certify: a {found.kind} has no certificate; accepted: fold, period doubling, pitchfork")
+        proof, name, place = event, f"{found.kind} of period {found.orbit.period} in {found.parameter}", -1
+    else:
+        raise ValueError(
+            f"certify: {type(found).__name__} given; accepted: a cycle, as in find_cycles(...)[0], or an event of a "
+            "branch, as in branch.folds[0]"
+        )
+    ball = proof.enclosure.zero[place]
+    value, radius = decimal(ball, digits + 1)
+    return Located(name, value, radius, digits, proof.checks, time.perf_counter() - started, ball, proof, notes)
 
 
-KINDS = {"saddle-node": "fold", "doubling": "period doubling", "symmetry-breaking": "pitchfork"}  # of any scene
-SEARCHES = 3  # values of the parameter at which cycles are looked for
-ALIKE = 6  # decimals to which two events have one value, and two cycles the same multipliers
+def _proof_of_cycle(orbit: PeriodicOrbit, digits: int) -> "UniqueCycle":
+    """The proof of a cycle; `ValueError` where it is on joins, and the law depends on the place."""
+    from sympy import S
+
+    from verification.cycles.problem import Problem
+    from verification.named.locate import proof_near
+
+    scene = orbit.scene
+    if orbit.one_sided and scene.law.placed:
+        raise ValueError(
+            f"certify: a bounce lies on a join, and {scene.law} may jump there; accepted: laws in eta alone"
+        )
+    problem = Problem(scene.table, orbit.components, lam=S(scene.lam), law=scene.law)
+    return proof_near(problem, list(orbit.theta), digits)
 
 
-def bifurcations(
-    scene: Scene,
-    kind: str,
+def morse_graph(
+    table: Any,
     *,
-    period: int,
-    digits: int = 30,
-    searches: int = SEARCHES,
-    tick: Tick | None = None,
-    **interval: Any,
-) -> "tuple[Located, ...]":
-    """Where cycles of one period fold, double their period or lose a symmetry, as one parameter varies; with proofs.
+    lam: Any,
+    columns: int = 256,
+    rows: int = 128,
+    coarsest: int = 4,
+    law: Law | str | None = None,
+    **shape: Any,
+) -> "MorseGraph":
+    """The Morse sets of the map and their order, proved for a contraction or for all of `lam=(low, high)` at once.
 
-    `kind` is `saddle-node`, `doubling` or `symmetry-breaking`; the interval is given as for `follow`. Cycles are looked
-    for at some values of the parameter and followed through all of the interval. So each value that comes back is
-    proved to be one, and that there are no others is not: a branch may lie between the values of the searches.
+    The strip where every particle is after one bounce is covered by `columns` times `rows` cells, blocks of `coarsest`
+    of them first. From some bounce on every orbit that meets no join is in one of the sets. Convex tables only.
+
+    >>> len(morse_graph("ellipse", a="3/2", lam="1/2", columns=64, rows=32).attracting)
+    1
     """
-    if kind not in KINDS:
-        raise ValueError(f"locate: {kind} is not asked of a scene; accepted: {', '.join(KINDS)}")
-    if len(interval) != 1:
-        raise ValueError(f"locate: {', '.join(interval) or 'no parameter'} given; one parameter varies")
-    ((parameter, ends),) = interval.items()
-    _ends(parameter, ends)
-    low, high = (exact(parameter, end) for end in ends)
-    say, met = tick or (lambda said: None), dict[float, BranchEvent]()
-    for i in range(searches):
-        value: dict[str, Any] = {parameter: low + (high - low) * Fraction(2 * i + 1, 2 * searches)}
-        orbits = find_cycles(scene.at(**value), period=period)
-        say(f"{parameter} = {float(value[parameter]):.4g}")
-        for orbit in {same_multipliers(orbit): orbit for orbit in orbits}.values():
-            try:
-                followed = follow(orbit, **interval)
-            except ValueError:
-                continue  # at a bifurcation to within rounding: its neighbours lead there too
-            met |= {round(event.value, ALIKE): event for event in followed.events if event.kind == KINDS[kind]}
-    found = []
-    for _, event in sorted(met.items()):
-        found.append(certify(event, digits=digits))
-        say(f"{parameter} = {event.value:.6g}")
-    return tuple(found)
+    return _graph(table, lam, columns, rows, coarsest, law, shape)[1]
 
 
-def same_multipliers(orbit: PeriodicOrbit) -> tuple[complex, ...]:
-    """The multipliers, which images under a symmetry share."""
-    return tuple(complex(round(mu.real, ALIKE), round(abs(mu.imag), ALIKE)) for mu in orbit.multipliers)
+def trapping_region(
+    table: Any,
+    *,
+    lam: Any,
+    columns: int = 256,
+    rows: int = 128,
+    coarsest: int = 4,
+    law: Law | str | None = None,
+    **shape: Any,
+) -> "Region":
+    """The smallest trapping region that is proved on a grid: a union of cells that the map takes inside itself.
+
+    `lam`, `columns` and `rows` as for `morse_graph`. `ValueError` where nothing smaller than the whole strip is proved.
+
+    >>> trapping_region("ellipse", a="3/2", lam="1/2", columns=64, rows=32).checks["images_inside"]
+    True
+    """
+    from verification.proofs.global_dynamics.regions import region
+
+    map, graph = _graph(table, lam, columns, rows, coarsest, law, shape)
+    found = [one for one in (region(map, graph, index) for index in graph.attracting) if one is not None]
+    least = min(found, key=lambda one: int((one.cells.size.astype(int) ** 2).sum()), default=None)
+    if least is None or least.cells.chart.size >= int(graph.transitions.leaf.sum()):
+        raise ValueError(
+            f"trapping_region: none smaller than the whole strip is proved on {columns} by {rows} cells; "
+            "give more columns and rows, or another lam"
+        )
+    return least
+
+
+def _graph(
+    table: Any, lam: Any, columns: int, rows: int, coarsest: int, law: Law | str | None, shape: dict[str, Any]
+) -> "tuple[PinballImages, MorseGraph]":
+    """The map over a range of contractions, and its Morse graph on a grid."""
+    from verification.proofs.global_dynamics.images import PinballImages
+    from verification.rigorous.graph import Grid, morse_graph, refined
+
+    ends = [exact("lam", end) for end in (lam if isinstance(lam, tuple | list) else (lam, lam))]
+    if len(ends) != 2 or not all(isinstance(end, Fraction) for end in ends):
+        raise ValueError(f"lam = {lam!r} is no range of contractions; accepted: one rational number, or two")
+    low, high = (Fraction(str(end)) for end in ends)
+    map = PinballImages(as_scene(table, lam=low, law=law, **shape), (low, high))
+    return map, morse_graph(refined(map, Grid(map.charts, columns, rows), coarsest))

@@ -1,4 +1,4 @@
-"""Where manifolds of a saddle touch, in any scene whose boundary is one smooth formula: sought, then proved.
+"""Tangencies of the manifolds of a saddle, in any scene whose boundary is one smooth formula: sought, then proved.
 
 Each tangency is sought in float64 and then proved in balls. A crisis is such a tangency; that an attractor changes
 there is not shown here. Where the boundary is not convex each flight is proved to meet nothing on its way.
@@ -22,24 +22,25 @@ from verification.arithmetic.balls import decimal, working
 from verification.cycles.recurrence import Closure
 from verification.cycles.systems import reflected
 from verification.maps.first_hit import closes_smoothly
+from verification.named.bifurcations import FEW_SEARCHES, same_multipliers
 from verification.named.locate import Located
-from verification.named.questions import SEARCHES, PeriodicOrbit, Tick, find_cycles, same_multipliers
-from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
+from verification.named.questions import PeriodicOrbit, Tick, find_cycles
+from verification.proofs.manifolds.certificate import Tangency
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import settled
 from verification.proofs.manifolds.plane_map import pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened
-from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.manifolds.saddle import SaddleCycle
 from verification.proofs.manifolds.tangency import Contact, Touch
 
-BOUNCES, ROUNDS = 6, 6  # that an unstable manifold is followed: so many at least, and so many rounds
+BOUNCES, ROUNDS = 6, 6  # for which an unstable manifold is followed, at least
 TRIED = 6  # places on it from which a tangency is sought
-LEAST, BITS = 1e-12, 64  # of an error in float64, and of the ball that holds it
+LEAST, BITS = 1e-12, 64  # the least error in float64, and the bits of the ball that holds it
 SAME = 1e-6  # parameters of bounces that a symmetry exchanges, and of one tangency found twice, in float64
 
 
 def objection_of(scene: Scene) -> str:
-    """Why no tangency is sought in a scene; empty where the boundary is one smooth formula and the law one of angles.
+    """Reason why a scene has no search for tangencies; empty where boundary and law are one smooth formula each.
 
     >>> from symbolic import tables
     >>> objection_of(Scene(tables.stadium()))
@@ -64,10 +65,10 @@ def tangencies(
     period: int,
     lam: tuple[Any, Any] = ("0", "1"),
     digits: int = 30,
-    searches: int = SEARCHES,
+    searches: int = FEW_SEARCHES,
     tick: Tick | None = None,
 ) -> tuple[Located, ...]:
-    """Where the manifolds of a saddle touch as the contraction varies; saddles up to one period, each with its proof.
+    """Tangencies of manifolds of saddles up to one period, as the contraction varies; each with its proof.
 
     Cycles and their manifolds are looked at for some contractions: each tangency that comes back certified is proved,
     and that there are no others is not. There are infinitely many near any of them.
@@ -89,7 +90,7 @@ def tangencies(
 
 
 def located(scene: Scene, touch: Touch, cycle: PeriodicOrbit, digits: int) -> Located:
-    """A tangency that was found, with what is proved of it."""
+    """A tangency that was found, with its proof or the reason why there is none."""
     begun, contact = time.perf_counter(), touch.contact
     unstable, stable = touch.multipliers[1], touch.multipliers[0]
     notes = {
@@ -111,14 +112,14 @@ def located(scene: Scene, touch: Touch, cycle: PeriodicOrbit, digits: int) -> Lo
     return Located("tangency", value, radius, digits, checks, time.perf_counter() - begun, ball, made, notes)
 
 
-def proved(scene: Scene, contact: Contact, digits: int) -> TangencyProof | str:
-    """The proof that the manifolds touch, to so many digits or a few more; or why there is none."""
+def proved(scene: Scene, contact: Contact, digits: int) -> Tangency | str:
+    """The proof that the manifolds touch, to `digits` digits or a few more; or the reason why there is none."""
     map, asked = pinball(scene.table, scene.law), max(digits, LEAST_DIGITS)
     if why := objection(contact, map, contact.parameter):
         return why
     try:
         value = sharpened(contact, map, repr(contact.parameter), asked)
-        return worked_through(TangencyClaim(contact, scene.table, value, asked, scene.law))
+        return Tangency(contact, scene.table, value, asked, scene.law)
     except (ValueError, ArithmeticError) as why:
         return str(why)
 
@@ -126,7 +127,7 @@ def proved(scene: Scene, contact: Contact, digits: int) -> TangencyProof | str:
 def near(
     scene: Scene, ends: tuple[float, float], period: int, seed: int = 1, heard: Tick = lambda said: None
 ) -> Iterator[tuple[Touch, PeriodicOrbit]]:
-    """The tangencies between two contractions that Newton's method finds from the scene's, each with its saddle."""
+    """The tangencies between two contractions that Newton's method finds from the scene's own, each with its saddle."""
     mirror = scene.law.odd and reflected(scene.table)
     map, known = pinball(scene.table, scene.law), set[tuple[complex, ...]]()
     for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):
@@ -144,8 +145,8 @@ def near(
                 yield replace(touch, contact=settled(touch.contact, map)), cycle
 
 
-def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:
-    """The least part of a cycle that a symmetry continues, on angles that count turns.
+def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> SaddleCycle:
+    """The shortest part of a cycle that a symmetry maps to the next, in angles that count whole turns.
 
     >>> from symbolic import Scene
     >>> egg, thirds = Scene("egg", alpha="2/25"), (0.0, 2.0943951, -2.0943951)
@@ -162,5 +163,5 @@ def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> Orbit:
         for sign in (1, -1) if mirrored else (1,):
             moved = [(twice[i + k] - sign * twice[i]) / unit for i in range(cycle.period)]
             if all(abs(math.remainder(y - round(moved[0]), turn)) < SAME for y in moved):  # whole turns change nothing
-                return Orbit(name, tuple(x[:k]), Closure(sign, (round(moved[0]), turn)))
-    return Orbit(name, tuple(x[:-1]), Closure(1, (round(once / (2 * math.pi)), 1)))
+                return SaddleCycle(name, tuple(x[:k]), Closure(sign, (round(moved[0]), turn)))
+    return SaddleCycle(name, tuple(x[:-1]), Closure(1, (round(once / (2 * math.pi)), 1)))

@@ -1,1 +1,1 @@
-"""The paper: its claims and their judges, its figures, the report."""
+"""Verification of the paper: its claims with their judges, its figures, and the report."""

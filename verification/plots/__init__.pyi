@@ -2,7 +2,7 @@
 
 from . import results
 from .dynamics import plotted
-from .layout import PAD, Grid, plain_minor_ticks
+from .layout import PAD, GridLayout, plain_minor_ticks
 from .results import Marked, drawn, outline
 from .sheet import (
     AXES,
@@ -27,6 +27,7 @@ from .sheet import (
     cloud,
     encoded,
     figure,
+    figure_of,
     image,
     ink,
     legend,
@@ -54,7 +55,7 @@ __all__ = [
     "Array",
     "Curve",
     "Fact",
-    "Grid",
+    "GridLayout",
     "Marked",
     "Panel",
     "Panels",
@@ -63,6 +64,7 @@ __all__ = [
     "drawn",
     "encoded",
     "figure",
+    "figure_of",
     "image",
     "ink",
     "legend",

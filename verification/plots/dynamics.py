@@ -1,8 +1,8 @@
-"""Pictures of dynamics: branches of cycles, the tongue of the egg, a crisis.
+"""Figures of branches of cycles, of the egg's parameter plane and of its crises.
 
-A branch is drawn as a bounce against the parameter, solid where the cycle is stable, with its bifurcations marked;
-the tongue as the curves of the cascade over a sample of where attractors are chaotic; a crisis as the attractor with
-the manifolds, whole and close to where they touch (paper: section 6.7).
+A branch: `theta` of each bounce against the parameter, solid where the cycle is stable, bifurcations marked. The plane
+of `lam` and `alpha`: the curves of the cascade over the share of chaotic starts. A crisis (paper: section 6.7): the
+attractor and the invariant manifolds, whole and enlarged where they touch.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,13 +28,13 @@ from verification.named.curves import AccumulationCurve as Accumulation
 from verification.named.curves import BifurcationCurve, accumulation_curve, cascade, fold, largest_shape
 from verification.plots.results import MARK, closed, position
 from verification.plots.results import table as table_alone
-from verification.plots.sheet import AXES, figure
-from verification.proofs.corner.corner_orbit import CornerClaim
+from verification.plots.sheet import AXES, figure, figure_of
+from verification.proofs.corner.corner_orbit import CornerOrbit
 from verification.proofs.manifolds.grow import branch
 from verification.proofs.manifolds.known import CONTACTS, contact, table
 from verification.proofs.manifolds.saddle import local, saddle
 from verification.proofs.manifolds.tangency import Gap
-from verification.proofs.periodic.bifurcation import Claim
+from verification.proofs.periodic.cycle_in_box import SolutionInBox, UniqueCycle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,9 +54,12 @@ MARKS = {
 }
 
 
-def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> "Figure":
-    """The parameters of `bounces` (all when None) along each branch, in a figure of its own."""
-    made = figure(8, 5)
+def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None, axes: "Axes | None" = None) -> "Figure":
+    """Figure of branches, new or on `axes`: `theta` of the bounces with these indices (None: all) by the parameter."""
+    if axes is not None:
+        along(axes, branches, bounces)
+        return figure_of(axes)
+    made = figure(7, 4.4)
     axes = made.add_subplot()
     along(axes, branches, bounces)
     axes.set_title(", ".join(dict.fromkeys(b.system.label for b in branches)) + "  (dashed: unstable)", fontsize=10)
@@ -64,13 +67,13 @@ def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None) ->
 
 
 def along(axes: "Axes", branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> None:
-    """The parameters of `bounces` (all when None) along each branch, and what happens there."""
+    """Draws `theta` of the bounces with these indices (None: all) along each branch, and marks the bifurcations."""
     seen: set[BifurcationKind] = set()
     for number, followed in enumerate(branches):
         shown = range(followed.system.recurrence.period) if bounces is None else bounces
         colour = f"C{number}" if len(branches) > 1 else "black"
         for bounce in shown:
-            for values, angles, stable in runs(followed, bounce):
+            for values, angles, stable in (run for piece in followed.each for run in runs(piece, bounce)):
                 axes.plot(values, angles, color=colour, lw=1.4 if stable else 0.9, ls="-" if stable else "--")
             for event in followed.events:
                 marker, paint = MARKS[event.kind]
@@ -82,40 +85,41 @@ def along(axes: "Axes", branches: Sequence[Branch], bounces: Sequence[int] | Non
     axes.set_xlabel(
         {"lam": r"$\lambda$", "alpha": r"$\alpha$"}.get(branches[0].system.parameter, branches[0].system.parameter)
     )
-    axes.set_ylabel(r"$\theta$ of the bounces" if branches[0].system.parameter in ("lam", "alpha", "a") else "$x$")
+    axes.set_ylabel(r"$\theta$ of the bounces" if isinstance(branches[0].system.recurrence, Chords) else "$x$")
     if seen:
-        axes.legend(frameon=False, fontsize=9)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
 
 
-NEAR = 0.12  # of the parameter's range, that a picture shows either side of a located value
-MOST = 64  # images of a part of a cycle under the symmetry that continues it
-NUMBERED = {"band-merging": "4", "interior-crisis": "1"}  # which one, where nothing is said
+NEAR = 0.12  # share of the parameter's range that is shown on either side of a located value
+MOST = 64  # at most so many images of a part of a cycle under its symmetry
+NUMBERED = {"band-merging": "4", "interior-crisis": "1"}  # the crisis that is drawn when no number is given
 
 
 def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
-    """What was located, the first of several: its cycle in the table, and the branch near it with the value marked.
+    """Figure of the first located value: its cycle in the table, and the branch near it with the value marked.
 
-    A crisis is shown with its manifolds; the corner orbit with the position of its fourth bounce, as in section 5.2.
+    A crisis is drawn with its manifolds (`number` chooses among several of one name); the orbit through the corners
+    with the place of its fourth bounce, as in section 5.2.
     """
     one = found[0]
-    claim: Any = one.proof.claim if one.proof else None
-    if claim is None:
+    proof: Any = one.proof
+    if proof is None:
         raise ValueError(f"--plot: nothing was proved of {one.name} here, so there is no cycle to draw")
     kind = one.name.removesuffix("-crisis")
-    if isinstance(claim, CornerClaim) and claim.lam is None:
-        return _through_corners(float(one.value) if claim.value == "lam" else float(claim.centre[1].mid()))
-    if not isinstance(claim, Claim | CornerClaim):
+    if isinstance(proof, CornerOrbit):
+        return _through_corners(float(proof.centre[1].mid()))
+    if not isinstance(proof, SolutionInBox):
         kind = kind if kind in CONTACTS else f"{one.name}-{number or NUMBERED.get(one.name)}"
-        return portrait(kind, claim.alpha, law=claim.law)
-    z = np.array([float(x.mid()) for x in claim.centre])
-    problem = claim.problem if isinstance(claim, Claim) else None
-    ring, free, lam = _diameter(), "alpha", getattr(claim, "lam", None)
+        return portrait(kind, dict(proof.table.fixed)["alpha"], law=proof.law)
+    z = np.array([float(x.mid()) for x in proof.centre])
+    problem = proof.problem if isinstance(proof, UniqueCycle) else None
+    ring, free, lam = _diameter(), "alpha", getattr(proof, "lam", None)
     if problem:
         ring, free, lam = problem.ring, problem.free, problem.lam
     low, high = next(((float(p.range.start), float(p.range.end)) for p in ring.table.shapes), (-1.0, 1.0))
     low, high = (0.0, 1.0) if lam is None else (low, high)
     interval = max(low, z[-1] - NEAR * (high - low)), min(high, z[-1] + NEAR * (high - low))
-    generic = np.append(np.cos(np.arange(len(z) - 1.0)), 1.0)  # a fold's branch stands upright in the parameter
+    generic = np.append(np.cos(np.arange(len(z) - 1.0)), 1.0)  # at a fold the tangent has no part along the parameter
     system = Cycles(ring, free, {} if lam is None else {"lam": float(lam)})
     followed = through(system, z, generic, interval, Steps(largest=0.004, most=200))
     law = ring.law.at(**{free: Fraction(z[-1])}) if ring.law.parameters else ring.law
@@ -128,7 +132,7 @@ def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
     closed(left, map, ring.components * (len(whole) // len(ring.components)), whole, color="black", lw=0.9)
     if problem:
         along(right, [followed])
-    else:  # the diameter stays where it is, and its multipliers meet
+    else:  # the diameter does not move with the parameter; its multipliers meet
         right.plot(
             followed.values, [[abs(mu) for mu in each.multipliers] for each in followed.spectra()], color="black"
         )
@@ -140,12 +144,12 @@ def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
 
 
 def _diameter() -> Chords:
-    """Of the egg, whose multipliers become complex at alpha-hat."""
+    """The diameter of the egg as a chord system; its multipliers become complex at alpha-hat."""
     return Chords(egg(3), (0, 0))
 
 
 def _through_corners(lam: float) -> "Figure":
-    """The orbit through both corners of the cuspless cardioid, and where the fourth bounce from the upper one lands."""
+    """Figure of the cuspless orbit through both corners, and of `s` at the fourth bounce from the upper corner."""
     map, corner = PinballMap("cuspless", lam=lam), 2 * np.pi / 3
     made = figure(7.0, 3.2)
     left, right = made.subplots(1, 2, width_ratios=(1, 1.5))
@@ -167,7 +171,7 @@ def _through_corners(lam: float) -> "Figure":
 
 
 def _whole(closure: Closure, x: Array) -> list[float]:
-    """All bounces of a cycle of which a part is given, that its symmetry continues."""
+    """All bounces of a cycle: `x` are those of one part, and the symmetry maps each part to the next."""
     bounces, here = list(x), np.asarray(x)
     for _ in range(MOST):
         here = closure.turn * here + closure.radians
@@ -178,7 +182,7 @@ def _whole(closure: Closure, x: Array) -> list[float]:
 
 
 def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float], bool]]:
-    """Stretches of one stability that do not jump across the end of the circle."""
+    """Pieces `(parameters, angles, stable)` of a branch, each of one stability, cut where the angle jumps by a turn."""
     values: list[float] = []
     angles: list[float] = []
     for a, b in pairwise(branch.points):
@@ -187,7 +191,7 @@ def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float]
         if not values:
             values, angles = [ends[0][0]], [ends[0][1]]
         if abs(ends[1][1] - ends[0][1]) > np.pi:
-            yield values, angles, spectrum_of(a).stable  # the end at lam = 1 is on the edge itself
+            yield values, angles, spectrum_of(a).stable  # `b` may lie at lam = 1, between stable and unstable
             values, angles = [], []
             continue
         values.append(ends[1][0])
@@ -204,11 +208,11 @@ def _wrapped(theta: float) -> float:
 
 
 POSITIVE = 0.02  # an exponent per bounce above this counts as chaotic
-POINTS = 10_000  # parts that a convex table's range of shapes is cut into, to name a shape exactly
+POINTS = 10_000  # shapes are multiples of this part of their range, hence exact
 
 
 class Sample(NamedTuple):
-    """The share of starts with a positive exponent, rows for shapes and columns for contractions."""
+    """Share of starts with a positive exponent, by shape `alpha` (rows) and contraction `lam` (columns)."""
 
     alpha: Array
     lam: Array
@@ -216,7 +220,7 @@ class Sample(NamedTuple):
 
 
 def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed: int = 1) -> Sample:
-    """Exponents of random starts on a grid of shapes and contractions, after as many bounces that do not count.
+    """Share of chaotic random starts on a grid of `side` by `side`; `bounces` count, after as many that are discarded.
 
     >>> found = sampled(3, 3, 4, 200)
     >>> found.share.shape, float(found.share[0].max())
@@ -236,7 +240,7 @@ def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed:
 
 
 def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) -> "Figure":
-    """Doublings, symmetry breaking, accumulation and the fold of the polygons that take over, in (lam, alpha)."""
+    """Figure of doublings, symmetry breaking, accumulation and the folds of polygons in the plane of `lam`, `alpha`."""
     made = figure(7.5, 5.2)
     axes = made.add_subplot()
     top = largest_shape(K)
@@ -255,12 +259,12 @@ def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) 
     axes.set_xlabel(r"$\lambda$")
     axes.set_ylabel(r"$\alpha$")
     axes.set_title(f"egg with K = {K}" + ("; red: share of starts that end in chaos" if sample is not None else ""))
-    axes.legend(fontsize=8, frameon=True, loc="lower left")
+    axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     return made
 
 
 def turns(K: int) -> list[tuple[int, int]]:
-    """The rotation numbers `p/K` below 1/2 whose polygons fold.
+    """Rotation numbers `p/K` below 1/2 in lowest terms, as pairs `(p, K)`: those of the polygons that fold.
 
     >>> turns(5)
     [(1, 5), (2, 5)]
@@ -281,7 +285,7 @@ def _limit(axes: object, end: Accumulation) -> None:
 
 
 PARTICLES, BOUNCES, TRANSIENT, SEED = 300, 400, 2000, 1
-LENGTHS = dict.fromkeys(CONTACTS, (16.0, 12.0)) | {"boundary": (26.0, 9.0)}  # of each unstable and each stable branch
+LENGTHS = dict.fromkeys(CONTACTS, (16.0, 12.0)) | {"boundary": (26.0, 9.0)}  # of an unstable and of a stable branch
 ZOOM = dict.fromkeys(CONTACTS, (0.12, 0.009)) | {
     "boundary": (0.16, 0.09)
 }  # half the width and height of the second panel
@@ -290,9 +294,9 @@ COLOURS = {"unstable": "#c1272d", "stable": "#1f4e99", "attractor": "0.55"}
 
 
 def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0, law: Law = PAPERS_LAW) -> "Figure":
-    """A crisis of the egg, one of `CONTACTS`, modulo its rotations, in `theta` and `phi`.
+    """Figure of a crisis of the egg in `theta` modulo 2*pi/3 and `phi`; `kind` is a key of `CONTACTS`.
 
-    `below` moves the contraction below the tangency; `share` shortens the curves, for a quick look.
+    `below` is subtracted from the contraction of the tangency; `share` scales the lengths of the manifolds.
     """
     where = contact(kind, alpha, law)
     map, lam = table(alpha, law).over(FLOAT64), where.parameter - below
@@ -330,12 +334,12 @@ def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0, law
     for word, colour in COLOURS.items():
         whole.plot([], [], color=colour, label=word if word == "attractor" else f"{word} manifold")
     whole.plot([], [], "o", ms=4, color="black", label=found.orbit.name)
-    whole.legend(loc="upper left", fontsize=8, framealpha=0.9)
+    made.legend(loc="outside lower center", ncols=4, fontsize=8)
     return made
 
 
 def attractor(kind: str, alpha: Expr, lam: float, law: Law = PAPERS_LAW) -> tuple[Any, Any]:
-    """A cloud of points on the chaotic attractor, just below the crisis where it still attracts."""
+    """`theta` and `phi` of points on the chaotic attractor, at a contraction just below the crisis `lam`."""
     rng = np.random.default_rng(SEED)
     map = PinballMap("egg", lam=lam - (1e-4 if kind == "boundary" else 1e-6), alpha=alpha, law=law)
     theta, phi = rng.uniform(-0.05, 0.05, (2, PARTICLES))
@@ -346,7 +350,7 @@ def attractor(kind: str, alpha: Expr, lam: float, law: Law = PAPERS_LAW) -> tupl
 
 
 def _touching_point(where: Any, map: Any) -> tuple[float, float]:
-    """The bounce of the tangency orbit that is farthest from the saddle, in the cell of the first panel."""
+    """`theta` modulo 2*pi/3 and `phi` of the tangency orbit's most sensitive bounce; for a 2-cycle of its last."""
     gap = Gap(where, map, where.parameter, 28, 1e-16)
     flight = [jet.c[0] for jet in gap.orbit(gap.extremum()[0])]
     moves = [abs(jet.c[1]) for jet in gap.orbit(gap.start)[:-1]]
@@ -356,7 +360,7 @@ def _touching_point(where: Any, map: Any) -> tuple[float, float]:
 
 
 def _curve(axes: Any, x: Any, y: Any, colour: str, width: float) -> None:
-    """A line that is broken where it leaves the cell, and where its points are too far apart to be joined."""
+    """Draws a curve with `theta` modulo 2*pi/3, broken where neighbouring points are more than `JOINED` apart."""
     cell = _modulo(x)
     broken = np.hypot(np.diff(cell), np.diff(y)) > JOINED
     at = np.nonzero(broken)[0] + 1

@@ -1,4 +1,4 @@
-"""Pictures of Morse graphs: the sets over phase space, and what continues over boxes of parameters."""
+"""Figures of Morse graphs: the Morse sets in phase space, and the parameter boxes over which a graph continues."""
 
 from typing import TYPE_CHECKING
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from verification.proofs.global_dynamics.graph import MorseGraph
+    from verification.rigorous.graph import MorseGraph
 
 NAMED = len(PALETTE)  # classes that have a colour of their own
 
 
 def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
-    """The Morse sets over phase space, and in pale colours the basins that are proved; a panel for each component."""
+    """Figure of the Morse sets in phase space, proved basins in pale colours; a panel for each boundary component."""
     from matplotlib.colors import to_rgb
 
     grid, leaf, count = graph.transitions.grid, graph.transitions.leaf, graph.transitions.count
@@ -31,7 +31,7 @@ def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
         paint = f"C{attracting.index(index) % 10}" if index in attracting else "black"
         colours[members] = to_rgb(paint)
     everything = np.append(leaf, False)
-    picture = grid.painted(graph.transitions.chosen(everything), np.flatnonzero(leaf), count)
+    picture = grid.to_array(graph.transitions.chosen(everything), np.flatnonzero(leaf), count)
     made = figure(7.0, 3.2 * len(grid.charts))
     panels = np.atleast_1d(made.subplots(len(grid.charts), 1))
     for axes, chart, cells in zip(panels, grid.charts, picture, strict=True):
@@ -44,12 +44,13 @@ def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
         )
         axes.set_xlabel(rf"$\theta$, {chart.name}")
         axes.set_ylabel(r"$\varphi$")
-    panels[0].set_title(f"{label}: {len(graph.sets)} Morse sets, {len(attracting)} attracting")
+    word = "set" if len(graph.sets) == 1 else "sets"
+    panels[0].set_title(f"{label}: {len(graph.sets)} Morse {word}, {len(attracting)} attracting")
     return made
 
 
 def database(found: "xr.Dataset") -> "Figure":
-    """Boxes of parameters, coloured alike where all continues, and by how many trapping regions are proved."""
+    """Figure of parameter boxes: coloured alike where the Morse graph continues, and by number of trapping regions."""
     from matplotlib.colors import ListedColormap, to_rgb
 
     from verification.proofs.global_dynamics.database import continued

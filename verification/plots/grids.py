@@ -1,6 +1,6 @@
-"""Pictures of sweeps: basins, attractors against a parameter, parameter space, exponents by attractor.
+"""Figures of sweeps: basins, attractors against a parameter, parameter space, exponents by attractor.
 
-Each cell of a grid has a dot of its own at least: none is dropped where there are many.
+The resolution is high enough for each cell of a grid to have a pixel.
 """
 
 from collections.abc import Iterable, Sequence
@@ -10,21 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.plots.results import CELLS, LABELLED, MARK, Marked
-from verification.plots.sheet import AXES, FAINT, INK, PALETTE, Array, figure, ink, shaded, sides
+from verification.plots.sheet import AXES, FAINT, INK, PALETTE, Array, figure, figure_of, ink, shaded, sides
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ROWS = 500  # of the density of a bifurcation diagram, at least; it has a column for each value
+ROWS = 500  # at least, in the density of a bifurcation diagram, which has a column for each value
 FINEST = 2000.0  # dots per inch, at most
 SHOWN = (2, 3, 4, 6, 8, 10)  # periods that a legend names
 NAMED = 12  # periods up to this one have a colour of their own
 
 
 def fine(made: "Figure", axes: "Axes", columns: int, rows: int) -> None:
-    """Dots enough for every cell of the axes to have one of its own.
+    """Raises the resolution, up to `FINEST`, until each of `columns` times `rows` cells of the axes has a pixel.
 
     >>> made = figure(4.0, 3.0)
     >>> fine(made, made.add_subplot(), 2000, 3000)
@@ -32,14 +32,14 @@ def fine(made: "Figure", axes: "Axes", columns: int, rows: int) -> None:
     >>> [bool(side > cells) for side, cells in zip(made.axes[0].get_window_extent().size, (2000, 3000))]
     [True, True]
     """
-    made.draw_without_rendering()  # which settles where the axes are
+    made.draw_without_rendering()  # which places the axes
     _, _, width, height = axes.get_window_extent().bounds
     asked = made.dpi * max(columns / width, rows / height)
     made.set_dpi(max(made.dpi, min(FINEST, 1.02 * asked)))
 
 
-def basins(found: "xr.Dataset") -> "Figure":
-    """The attractor that each start reaches, a colour for each; what reaches none of them is left blank."""
+def basins(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
+    """Figure of the starts `(s, sin(phi))`, each in the colour of the attractor it reaches, blank for none."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 
@@ -47,8 +47,9 @@ def basins(found: "xr.Dataset") -> "Figure":
 
     label, known = np.asarray(found.label.values), attractors_of(found.attrs["settings"])
     paint = np.array([to_rgba(PALETTE[i % len(PALETTE)]) for i in range(len(known))] + [(0.0, 0.0, 0.0, 0.0)])
-    made = figure(7.0, 4.0)
-    axes = made.add_subplot()
+    own = axes is None
+    made = figure(7.0, 4.0) if axes is None else figure_of(axes)
+    axes = made.add_subplot() if axes is None else axes
     edges = [sides(np.asarray(found[name].values)) for name in ("s", "sin_phi")]
     axes.imshow(paint[label], extent=(*edges[0], *edges[1]), **CELLS)
     axes.set_xlabel(AXES["s"])
@@ -57,20 +58,26 @@ def basins(found: "xr.Dataset") -> "Figure":
     names = [f"period {one['period']}" if one["period"] else one["kind"] for one in known]
     shown = list(enumerate(names))[:LABELLED]
     handles = [Patch(color=PALETTE[i], label=f"{name}, {np.mean(label == i):.1%}") for i, name in shown]
-    made.legend(handles=handles, loc="outside lower center", ncols=min(4, max(1, len(handles))))
-    fine(made, axes, label.shape[1], label.shape[0])
+    if own:
+        made.legend(handles=handles, loc="outside lower center", ncols=min(4, max(1, len(handles))))
+        fine(made, axes, label.shape[1], label.shape[0])
+    else:
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     return made
 
 
-def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
-    """The attractors against the parameter as a density, proved values as lines, and the exponents below."""
+def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = (), axes: "Axes | None" = None) -> "Figure":
+    """Figure of the attractors against the parameter as a density, proved values as lines, and exponents below.
+
+    On given axes only the attractors are drawn.
+    """
     parameter = str(found.chaotic.dims[0])
     values = np.asarray(found[parameter].values)
     one = int(found.component.max()) == 0
     place = np.asarray((found.theta if one else found.s).values).reshape(values.size, -1)
     place = np.where(np.isfinite(found.s.values.reshape(place.shape)), place, np.nan)
-    made = figure(7.0, 6.2)
-    top, bottom = made.subplots(2, 1, sharex=True, height_ratios=(2.8, 1))
+    made = figure(7.0, 6.2) if axes is None else figure_of(axes)
+    top, bottom = made.subplots(2, 1, sharex=True, height_ratios=(2.8, 1)) if axes is None else (axes, None)
     ends = (-np.pi, np.pi) if one else (float(np.nanmin(place)), float(np.nanmax(place)))
     place = np.remainder(place + np.pi, 2 * np.pi) - np.pi if one else place
     columns = np.broadcast_to(np.arange(values.size)[:, None], place.shape)
@@ -83,6 +90,10 @@ def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
     top.set_ylabel(AXES["theta" if one else "s"])
     if one:
         top.set_yticks([-np.pi, 0, np.pi], [r"$-\pi$", "$0$", r"$\pi$"])
+    top.set_xlim(*edges)
+    if bottom is None:
+        top.set_xlabel(AXES.get(parameter, parameter))
+        return made
     nu, error = np.asarray(found.nu_plus.values), np.asarray(found.nu_plus_error.values)
     largest = np.nanargmax(np.where(np.isfinite(nu), nu, -np.inf), axis=1)
     upper, width = (np.take_along_axis(x, largest[:, None], 1)[:, 0] for x in (nu, error))
@@ -101,7 +112,7 @@ def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = ()) -> "Figure":
 
 
 def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[float, float]) -> None:
-    """Lines at values of the parameter, and their words above them, moved apart where they would lie on each other."""
+    """Draws lines at the marks in both axes, and their words above `top`, shifted where they would overlap."""
     near, at = 0.022 * (ends[1] - ends[0]), -np.inf
     for value, words in marks:
         for axes in (top, bottom):
@@ -112,15 +123,18 @@ def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[f
         top.annotate(words, (value, 1.0), (at, 1.02), **coords, **look)
 
 
-def parameter_space(found: "xr.Dataset") -> "Figure":
-    """The largest exponent over a shape and the contraction, and beside it the period of the least chaotic particle.
+def parameter_space(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
+    """Figure of the largest exponent over shape and contraction; below it, the period of the least chaotic particle.
 
-    Exponents are red where positive, with a line where some particle is chaotic; periods have a colour each, and what
-    comes back to no cycle is grey, the darker the larger the smallest exponent.
+    Exponents are red where positive, with a line around cells with a chaotic particle. Each period has a colour; a cell
+    without a cycle is grey, darker for a larger smallest exponent. On given axes only the exponents are drawn.
     """
     shape = str(found.chaotic.dims[0])
     lams, values = np.asarray(found.lam.values), np.asarray(found[shape].values)
     nu, chaotic = np.asarray(found.nu_max.values, dtype=float), np.asarray(found.chaotic.values > 0, dtype=float)
+    if axes is not None:
+        shaded(figure_of(axes), lams, values, nu, chaotic, shape, axes)
+        return figure_of(axes)
     made = figure(7.0, 7.6)
     top, bottom = made.subplots(2, 1, sharex=True)
     shaded(made, lams, values, nu, chaotic, shape, top)
@@ -138,7 +152,7 @@ def parameter_space(found: "xr.Dataset") -> "Figure":
 
 
 def periods(period: NDArray[Any], nu: Array) -> Array:
-    """Periods and exponents as an image: a colour for a period, grey where there is none.
+    """RGB image, shape `(rows, columns, 3)`: a colour for each period, grey without one, darker for larger `nu`.
 
     >>> periods(np.array([[2, 0]]), np.array([[-1.0, 0.6]]))[0, 1].round(2).tolist()
     [0.4, 0.4, 0.4]
@@ -152,7 +166,7 @@ def periods(period: NDArray[Any], nu: Array) -> Array:
 
 
 def colour(period: int) -> str:
-    """The colour of a period: black for 8, since chaos has the greys.
+    """The colour of a period; black for 8, whose colour in the palette is grey as for chaos.
 
     >>> colour(8), colour(2) == PALETTE[1]
     ('#000000', True)
@@ -161,7 +175,7 @@ def colour(period: int) -> str:
 
 
 def by_attractor(found: "xr.Dataset") -> "Figure":
-    """Both exponents of each attractor against the parameter, with twice their standard errors."""
+    """Figure of both exponents of each attractor against the parameter, with twice their standard errors."""
     parameter = str(found.orbits.dims[0])
     values = np.asarray(found[parameter].values)
     made = figure(7.0, 3.8)
@@ -177,5 +191,5 @@ def by_attractor(found: "xr.Dataset") -> "Figure":
             label = None
     axes.set_xlabel(AXES.get(parameter, parameter))
     axes.set_ylabel("exponents, per bounce")
-    axes.legend()
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
     return made

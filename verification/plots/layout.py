@@ -1,8 +1,7 @@
-"""Where the axes of a figure lie: a grid of equal cells, with the room that words and legends need around them.
+"""Layout of a figure: a grid of equal axes, with room around them for labels and legends.
 
-It is where Matplotlib's constrained layout puts them, but each word is measured once, and not a dozen times: the name
-of an axis is put at a distance from the axes, which stays as it is when these move. Only what draws imports this
-module, which needs Matplotlib.
+The places are those of Matplotlib's constrained layout, but each text is measured once instead of a dozen times, since
+an axis label keeps its distance when the axes move. Import this module only to draw: it needs Matplotlib.
 """
 
 from collections.abc import Iterable
@@ -25,27 +24,27 @@ if TYPE_CHECKING:
 
     from verification.plots.sheet import Array
 
-PAD = 3 / 72  # inches around all that belongs to one axes
+PAD = 3 / 72  # inches around axes with their labels
 BETWEEN = 0.02  # of a figure's side: the least room between all columns or all rows together
-PASSES = 2  # a legend lies at a part of the size of its axes, which depends on the room for legends
-DECADE = 10.0  # an axis over no more than one has numbers at its minor ticks
+PASSES = 2  # a legend's place depends on the size of its axes, which depends on the room for legends
+DECADE = 10.0  # an axis that spans no more than one has numbers at its minor ticks
 _parsers: dict[str, Any] = {}
 
 
 class Canvas(FigureCanvasAgg):
-    """A canvas that shares the formulas it has parsed with all others of the process."""
+    """Canvas that shares its parser of formulas with all other canvases of the process."""
 
     def get_renderer(self) -> RendererAgg:
-        """Matplotlib's, with the parser of the first one; each would have its own, and parse the same numbers anew."""
+        """Matplotlib's renderer with the parser of the first one made, so that equal formulas are parsed once."""
         made: RendererAgg = super().get_renderer()  # type: ignore[no-untyped-call]
         made.mathtext_parser = _parsers.setdefault("agg", made.mathtext_parser)
         return made
 
 
-class Grid(LayoutEngine):
-    """The layout of axes that are the cells of one grid, each row and each column with the room that it needs.
+class GridLayout(LayoutEngine):
+    """Layout engine for equal axes in one grid; each row and column gets the room that its labels need.
 
-    There are no colour bars; texts of the figure lie at its foot, and titles stay at the top of their axes.
+    It makes no room for colour bars; texts of the figure lie at its foot, and titles at the top of their axes.
     """
 
     _adjust_compatible = False
@@ -60,24 +59,24 @@ class Grid(LayoutEngine):
         rows, columns = next(iter(cells.values())).get_gridspec().get_geometry()
         foot = max((text.get_window_extent(renderer).height / fig.dpi + 2 * PAD for text in fig.texts), default=0.0)
         for _ in range(PASSES):
-            across, upward = np.zeros((columns, 2)), np.zeros((rows, 2))  # the room at both ends, in inches
+            across, upward = np.zeros((columns, 2)), np.zeros((rows, 2))  # inches before and after each column and row
             for cell, spec in cells.items():
                 low, high = cell.beyond(renderer)
                 column, row = spec.colspan.start, rows - 1 - spec.rowspan.start
                 across[column] = np.maximum(across[column], (low[0], high[0]))
                 upward[row] = np.maximum(upward[row], (low[1], high[1]))
-            x, width = _parted(fig.get_figwidth(), across)
-            y, height = _parted(fig.get_figheight(), upward, foot)
+            x, width = _cell_starts(fig.get_figwidth(), across)
+            y, height = _cell_starts(fig.get_figheight(), upward, foot)
             for cell, spec in cells.items():
                 cell.axes.set_position((x[spec.colspan.start], y[rows - 1 - spec.rowspan.start], width, height))
         for cell in cells:
             cell.words(renderer)
 
 
-def _parted(size: float, room: "Array", foot: float = 0.0) -> "tuple[Array, float]":
-    """Where the cells in a row begin and how long each of them is, as parts of the whole size.
+def _cell_starts(size: float, room: "Array", foot: float = 0.0) -> "tuple[Array, float]":
+    """Starts of the cells along a side of the figure and their length, as shares of `size`; `room` in inches.
 
-    >>> _parted(10.0, np.array([[1.0, 0.0]]))[0].round(3).tolist()
+    >>> _cell_starts(10.0, np.array([[1.0, 0.0]]))[0].round(3).tolist()
     [0.104]
     """
     count = len(room)
@@ -89,23 +88,23 @@ def _parted(size: float, room: "Array", foot: float = 0.0) -> "tuple[Array, floa
 
 
 def _outside(box: Bbox, inner: BboxBase) -> "Array":
-    """How far a box reaches beyond another: to the left and down, to the right and up."""
+    """Lengths by which `box` reaches beyond `inner`: `[[left, below], [right, above]]`."""
     (left, foot), (right, top) = box.get_points() - inner.get_points()
     return np.array([[-left, -foot], [right, top]])
 
 
 @dataclass(eq=False)
 class Cell:
-    """Axes, and how far their numbers, names and title reach, measured anew only where there are other numbers."""
+    """Axes and how far their numbers, labels and title reach; measured again only when their numbers change."""
 
     axes: "Axes"
     dpi: float
     numbered: "list[list[float]] | None" = None
-    legend: "Array | None" = None  # its corners, from the point that it hangs on
+    legend: "Array | None" = None  # its corners, relative to its anchor
     reach: "Array" = field(default_factory=lambda: np.zeros((2, 2)))
 
     def beyond(self, renderer: RendererAgg) -> "Array":
-        """How far all that belongs to the axes reaches beyond their cell, in inches: left, foot; right, top."""
+        """Reach of the axes with labels and legend beyond their cell, in inches: `[[left, below], [right, above]]`."""
         words = self.words(renderer)
         box = Bbox(self.axes.bbox.get_points() + self.dpi * words * [[-1], [1]])
         legend = self.axes.get_legend()
@@ -118,13 +117,13 @@ class Cell:
         return _outside(box, cell) / self.dpi
 
     def words(self, renderer: RendererAgg) -> "Array":
-        """The same for words, beyond the axes as they are drawn; the names are put where they stay."""
+        """Reach of numbers, labels and title beyond the axes as drawn, as by `beyond`; places the axis labels."""
         self.axes.apply_aspect()
         shown = (self.axes.xaxis, self.axes.yaxis) if self.axes.axison else ()
         numbered = [list(axis.get_majorticklocs()) for axis in shown]
         if numbered != self.numbered:
             inside = self.axes.bbox
-            boxes = [inside, *(box for axis in shown for box in self._named(axis, renderer))]
+            boxes = [inside, *(box for axis in shown for box in self._label_boxes(axis, renderer))]
             for text in self.axes.get_children():
                 if type(text) is Text and text.get_text():
                     title = text.get_window_extent(renderer)
@@ -134,8 +133,8 @@ class Cell:
             self.reach = _outside(box, inside) / self.dpi
         return self.reach
 
-    def _named(self, axis: "Axis", renderer: RendererAgg) -> list[Bbox]:
-        """The boxes of an axis's numbers, and of its name, which is put beside them."""
+    def _label_boxes(self, axis: "Axis", renderer: RendererAgg) -> list[Bbox]:
+        """Boxes of the numbers of an axis and of its label, which is placed beside them."""
         inside, across = self.axes.bbox, axis is self.axes.xaxis
         numbers = [text.get_window_extent(renderer) for text in _numbers(axis)]
         away = _outside(Bbox.union([inside, *numbers]), inside)[0, int(across)] / self.dpi + axis.labelpad / 72
@@ -151,7 +150,7 @@ class Cell:
 
 
 def _numbers(axis: "Axis") -> "Iterable[Text]":
-    """What is written at the ticks that are in view."""
+    """The texts at the ticks that are in view."""
     low, high = sorted(axis.get_view_interval())
     slack = 1e-10 * (high - low)
     for place, text in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False):
@@ -160,9 +159,9 @@ def _numbers(axis: "Axis") -> "Iterable[Text]":
 
 
 def plain_minor_ticks(axes: "Axes") -> None:
-    """The minor ticks of a logarithmic abscissa as two rows of marks, for its limits as they are now.
+    """Draws the minor ticks of a logarithmic x-axis as two rows of markers, for the limits that it has now.
 
-    They look as Matplotlib's do, each of which is five artists.
+    They look like Matplotlib's, each of which takes five artists.
     """
     low, high = axes.get_xlim()
     if not high > DECADE * low:

@@ -1,10 +1,11 @@
-"""What a command computed, as a picture: `--plot FILE` hands over the numbers that were printed, and these draw them.
+"""Figures of the results of commands: `--plot FILE` draws the numbers that were printed.
 
-Many points are drawn as densities, whose opacity is the logarithm of a count. Tables of several components, with
-holes or without, are drawn like others; so are laws, which no picture depends on.
+Many points are drawn as a density, whose opacity is the logarithm of the count. All tables can be drawn, also with
+several components or holes, under every reflection law.
 """
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from importlib import import_module
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,6 +22,7 @@ from verification.plots.sheet import (
     PALETTE,
     Array,
     figure,
+    figure_of,
     image,
     ink,
     styled,
@@ -31,35 +33,54 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from numeric.dynamics.attractors import Attractor
-    from numeric.pinball.states import Slap
+    from numeric.pinball.states import Orbit, Slap
     from symbolic.tables.scene import Scene
     from verification.cycles.search import Catalogue
 
-OUTLINE_POINTS = 721  # of a component
+OUTLINE_POINTS = 721  # on the outline of a component
 DOTS = 2000  # points that are drawn one by one; more are a density
-FLIGHTS = 600  # of an orbit or of a chaotic attractor, drawn in the table
-SMALL = 12  # tables on a sheet of cycles
-LABELLED = 10  # attractors and iterates that a legend names
+FLIGHTS = 600  # at most, of an orbit or a chaotic attractor in the table
+SMALL = 12  # at most, tables on a sheet of cycles
+LABELLED = 10  # at most, attractors or iterates in a legend
 MARK = "#b3261e"
 CELLS: dict[str, Any] = {"origin": "lower", "aspect": "auto", "interpolation": "nearest"}
 
 
 class Marked(NamedTuple):
-    """A proved value of the parameter, and what happens there."""
+    """A proved value of the parameter, and a text on what happens there."""
 
     value: float
     words: str
 
 
 def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
-    """The picture of a command's results as a file: `kind` is a module of this room and a function that draws them."""
+    """Bytes of the picture of a command's results; `kind` is `module.function` of this package, `ending` as `.png`."""
     module, _, name = kind.partition(".")
     with styled():
         return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
 
 
+def shown(kind: str, results: Sequence[Any], axes: "Axes | None" = None) -> "Figure":
+    """Figure of results for a script or a notebook, on the axes given or new.
+
+    `kind` is `module.function` of this package, or a function named in full.
+    """
+    module, _, name = kind.rpartition(".")
+    where = module if "." in module else f"verification.plots.{module}"
+    with styled():
+        made: Figure = getattr(import_module(where), name)(*results, axes=axes)
+    if axes is None:
+        vars(made)["_repr_png_"] = partial(_png, made)  # by which a notebook shows it
+    return made
+
+
+def _png(made: "Figure") -> bytes:
+    with styled():
+        return image(made, ".png")
+
+
 def outline(map: PinballMap) -> tuple[Array, Array]:
-    """The boundary in the plane; a nan ends a component that the next one does not continue."""
+    """`x` and `y` of points along the boundary; a nan separates components that do not join."""
     x: list[Array] = []
     y: list[Array] = []
     for index, (low, high) in enumerate(map.states.ends):
@@ -74,7 +95,7 @@ def outline(map: PinballMap) -> tuple[Array, Array]:
 
 
 def position(map: PinballMap, s: Array) -> tuple[Array, tuple[float, float]]:
-    """Arc length as the paper has it, within half the perimeter, on a table without holes; and its two ends.
+    """Arc length within half the perimeter either side of 0 (with holes: unchanged), and the two ends of its range.
 
     >>> position(PinballMap("circle"), np.array([4.0]))[0].round(4).tolist()
     [-2.2832]
@@ -87,7 +108,7 @@ def position(map: PinballMap, s: Array) -> tuple[Array, tuple[float, float]]:
 
 
 def joins(axes: "Axes", map: PinballMap) -> None:
-    """A faint line where one component ends and another begins."""
+    """Draws a faint line at the arc length of each join of two components."""
     ends = [ends[0] for ends in map.states.ends]
     if len(ends) > 1:
         s = np.array([map.arclength.s(np.array(low), index) for index, low in enumerate(ends)], dtype=float)
@@ -96,14 +117,14 @@ def joins(axes: "Axes", map: PinballMap) -> None:
 
 
 def table(axes: "Axes", map: PinballMap) -> None:
-    """The boundary alone, to scale."""
+    """Draws the boundary alone, to scale."""
     axes.plot(*outline(map), **OUTLINE)
     axes.set_aspect("equal")
     axes.set_axis_off()
 
 
 def phase(axes: "Axes", map: PinballMap) -> tuple[float, float]:
-    """Labels and limits of the phase space of `s` and `sin(phi)`; the ends of `s`."""
+    """Labels the axes as phase space of `s` and `sin(phi)`, sets their limits, and returns the ends of `s`."""
     ends = position(map, np.zeros(1))[1]
     joins(axes, map)
     axes.set_xlim(*ends)
@@ -114,7 +135,7 @@ def phase(axes: "Axes", map: PinballMap) -> tuple[float, float]:
 
 
 def cloud(axes: "Axes", x: Array, y: Array, colour: str, size: float = 2.5) -> None:
-    """Points within the limits of the axes, as dots while they are few, and as a density."""
+    """Draws points within the limits of the axes: as dots up to `DOTS`, else as a density."""
     from matplotlib.colors import to_rgb
 
     if x.size <= DOTS:
@@ -126,61 +147,119 @@ def cloud(axes: "Axes", x: Array, y: Array, colour: str, size: float = 2.5) -> N
 
 
 def pair() -> "tuple[Figure, Axes, Axes]":
-    """A figure with the table on its left and phase space on its right."""
+    """A figure, its axes on the left for the table and on the right for phase space."""
     made = figure(7.0, 3.0)
     left, right = made.subplots(1, 2, width_ratios=(1, 1.25))
     return made, left, right
 
 
 def orbit(map: PinballMap, entries: Sequence[Mapping[str, Any]]) -> "Figure":
-    """The flights of one particle in the table, later ones darker, and its bounces in phase space."""
-    from matplotlib.collections import LineCollection
-
+    """Figure of the flights of one particle in the table, later ones darker, and of its bounces in phase space."""
+    x, y, s, phi = (
+        np.array([np.nan if entry[key] is None else float(entry[key]) for entry in entries])
+        for key in ("x", "y", "s", "phi")
+    )
     made, left, right = pair()
-    x, y, s, phi = (np.array([float(entry[key]) for entry in entries]) for key in ("x", "y", "s", "phi"))
     table(left, map)
-    shown = slice(max(0, x.size - FLIGHTS - 1), None)
-    points = np.stack([x[shown], y[shown]], axis=1)
-    opacity = np.linspace(0.25, 1.0, max(1, len(points) - 1)) * min(1.0, 0.25 + 40 / len(points))
-    paint = [(*INK, float(share)) for share in opacity]
-    left.add_collection(LineCollection(list(np.stack([points[:-1], points[1:]], axis=1)), colors=paint, linewidths=0.7))
-    left.plot(x[:1], y[:1], "o", ms=4, mfc="none", color=MARK)
+    _flights(left, x, y)
     phase(right, map)
-    cloud(right, position(map, s)[0], np.sin(phi), "#12264f")
-    right.plot(position(map, s[:1])[0], np.sin(phi[:1]), "o", ms=5, mfc="none", color=MARK, label="start")
-    more = f", the last {FLIGHTS} drawn" if x.size > FLIGHTS + 1 else ""
-    left.set_title(f"{x.size - 1} bounces{more}", loc="left")
-    right.legend(loc="upper right")
+    _bounces(right, map, s, phi, "#12264f")
+    right.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0))
     return made
 
 
-def attractors(map: PinballMap, found: "Sequence[Attractor]") -> "Figure":
-    """Each attractor in a colour: its flights in the table, its points in phase space, and its share of the starts."""
-    made, left, right = pair()
-    made.set_size_inches(7.0, 3.5)
+def flights(found: "Orbit", axes: "Axes | None" = None) -> "Figure":
+    """Figure of the flights and bounces of an `Orbit`, its first particles in colours; on given axes flights alone."""
+    map = found.map
+    assert map is not None
+    rows: list[Any] = [np.asarray(row).reshape(len(found.theta), -1)[:, :LABELLED] for row in found]
+    component, theta, phi, _, x, y, _ = rows
+    left: Any
+    right: Any
+    made, left, right = pair() if axes is None else (figure_of(axes), axes, None)
     table(left, map)
+    if right is not None:
+        phase(right, map)
+    for number in range(theta.shape[1]):
+        colour = PALETTE[number % len(PALETTE)] if theta.shape[1] > 1 else "#12264f"
+        _flights(left, x[:, number], y[:, number], colour)
+        if right is not None:
+            s = np.asarray(map.arclength.s(theta[:, number], component[:, number]))
+            _bounces(right, map, s, phi[:, number], colour, None if number else "start")
+    if right is not None:
+        right.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0))
+    return made
+
+
+def _flights(axes: "Axes", x: Array, y: Array, colour: Any = INK) -> None:
+    """Draws the last flights of one particle, later ones darker, and a ring where it started."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb
+
+    shown = slice(max(0, x.size - FLIGHTS - 1), None)
+    points = np.stack([x[shown], y[shown]], axis=1)
+    opacity = np.linspace(0.25, 1.0, max(1, len(points) - 1)) * min(1.0, 0.25 + 40 / len(points))
+    paint = [(*to_rgb(colour), float(share)) for share in opacity]
+    axes.add_collection(LineCollection(list(np.stack([points[:-1], points[1:]], axis=1)), colors=paint, linewidths=0.7))
+    axes.plot(x[:1], y[:1], "o", ms=4, mfc="none", color=MARK)
+    more = f", the last {FLIGHTS} drawn" if x.size > FLIGHTS + 1 else ""
+    axes.set_title(f"{x.size - 1} bounces{more}", loc="left")
+
+
+def _bounces(axes: "Axes", map: PinballMap, s: Array, phi: Array, colour: str, label: str | None = "start") -> None:
+    """Draws the bounces of one particle in phase space, with a ring at the first."""
+    cloud(axes, position(map, s)[0], np.sin(phi), colour)
+    axes.plot(position(map, s[:1])[0], np.sin(phi[:1]), "o", ms=5, mfc="none", ls="", color=MARK, label=label)
+
+
+def attractors(map: PinballMap, found: "Sequence[Attractor]", axes: "Axes | None" = None) -> "Figure":
+    """Figure of attractors, each in a colour: flights in the table, points in phase space, share of the starts.
+
+    On given axes phase space alone.
+    """
+    left: Any
+    right: Any
+    made, left, right = pair() if axes is None else (figure_of(axes), None, axes)
     phase(right, map)
+    if left is not None:
+        made.set_size_inches(7.0, 3.5)
+        table(left, map)
     for number, one in enumerate(found):
         colour = PALETTE[number % len(PALETTE)]
         component, theta, phi = one.points
         few = slice(None) if one.period else slice(0, FLIGHTS)
         leg = map.orbit(theta[few], phi[few], 1, component[few])
         going = leg.code[1] == 0
-        left.plot(leg.x[:, going], leg.y[:, going], color=colour, lw=1.1 if one.period else 0.25, alpha=0.9)
+        if left is not None:
+            left.plot(leg.x[:, going], leg.y[:, going], color=colour, lw=1.1 if one.period else 0.25, alpha=0.9)
         s = position(map, np.asarray(map.arclength.s(theta, component)))[0]
         cloud(right, s, np.sin(phi), colour, 4.0 if one.period else 1.5)
         name = f"period {one.period}" if one.period else one.kind.name.lower()
         share = f", {one.share.count / one.share.of:.1%}" if one.share else ""
         if number < LABELLED:
             right.plot([], [], "o", ms=5, mew=0, color=colour, label=name + share)
-    made.legend(loc="outside lower center", ncols=min(4, max(1, len(found))))
+    beside(made, right, axes is None, min(4, max(1, len(found))))
     return made
 
 
-def exponents(document: Mapping[str, Any]) -> "Figure":
-    """Both exponents of each attractor with twice their standard errors, and how the errors fell with the count."""
-    made = figure(7.0, 3.4)
-    left, right = made.subplots(1, 2)
+def beside(made: "Figure", axes: "Axes", own: bool, columns: int) -> None:
+    """Puts the legend outside the axes: below a figure of its own, to the right of axes that were given."""
+    if own:
+        made.legend(loc="outside lower center", ncols=columns)
+    else:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
+
+
+def exponents(document: Mapping[str, Any], axes: "Axes | None" = None) -> "Figure":
+    """Figure of both exponents of each attractor with twice their standard errors, and of the errors by bounces.
+
+    On given axes the exponents alone.
+    """
+    if axes is None:
+        made = figure(7.0, 3.4)
+        left, right = made.subplots(1, 2)
+    else:
+        made, left, right = figure_of(axes), axes, None
     groups = [group for group in document["groups"] if group["nu_plus"] is not None]
     left.axhline(0, **FAINT)
     for number, group in enumerate(groups):
@@ -190,7 +269,7 @@ def exponents(document: Mapping[str, Any]) -> "Figure":
                 error = 2 * (group[f"{name}_stderr"] or 0.0)
                 left.errorbar(number, group[name], error, fmt="o", ms=5, mfc=face, color=colour, capsize=3)
         trace = [row for row in group.get("trace", ()) if row["nu_plus_stderr"]]
-        if trace and not group.get("period"):  # a cycle's exponents are those of its multipliers
+        if right is not None and trace and not group.get("period"):  # a cycle's exponents are those of its multipliers
             count = [row["collisions"] for row in trace]
             right.loglog(count, [row["nu_plus_stderr"] for row in trace], "o-", ms=3, color=colour)
         name = f"period {group['period']}" if group.get("period") else group["kind"]
@@ -199,15 +278,16 @@ def exponents(document: Mapping[str, Any]) -> "Figure":
     left.set_xticks([])
     left.set_xlim(-0.7, max(0.7, len(groups) - 0.3))
     left.set_ylabel(r"$\nu_+$ (filled), $\nu_-$ (open)")
-    right.set_xlabel("bounces counted")
-    right.set_ylabel(r"standard error of $\nu_+$")
+    if right is not None:
+        right.set_xlabel("bounces counted")
+        right.set_ylabel(r"standard error of $\nu_+$")
     if groups:
-        made.legend(loc="outside lower center", ncols=min(3, len(groups)))
+        beside(made, left, axes is None, min(3, len(groups)))
     return made
 
 
 def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "Slap") -> "Figure":
-    """The slap map's iterates over arc length, the diagonal, and the slope of the map."""
+    """Figure of the iterates of the slap map over arc length with the diagonal, and of the slope of the map."""
     s, ends = position(map, np.asarray(map.arclength.s(theta, component)))
     order = np.argsort(s)
     made = figure(7.0, 3.6)
@@ -219,9 +299,9 @@ def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "S
         images = np.where(values.code[k] == 0, images, np.nan)[order]
         look = looks[k - 1] if k <= len(looks) else {"color": "0.6", "lw": 0.6}
         label = f"$T_0^{{{k}}}$" if k > 1 else "$T_0$"
-        left.plot(s[order], _broken(images), zorder=9 - k, label=label if k < LABELLED else None, **look)
+        left.plot(s[order], _with_gaps(images), zorder=9 - k, label=label if k < LABELLED else None, **look)
     right.axhspan(-1, 1, color="0.85", lw=0)
-    right.plot(s[order], _broken(values.slope[order]), color=INK)
+    right.plot(s[order], _with_gaps(values.slope[order]), color=INK)
     bound = 1.3 * float(np.nanquantile(np.abs(values.slope), 0.98)) if np.isfinite(values.slope).any() else 1.5
     right.set_ylim(-max(bound, 1.5), max(bound, 1.5))
     left.set_ylim(*ends)
@@ -236,10 +316,10 @@ def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "S
     return made
 
 
-def _broken(values: Array) -> Array:
-    """A graph with a gap where it jumps: by much more than most of its steps.
+def _with_gaps(values: Array) -> Array:
+    """Values with nan before each jump: a step more than 8 times the upper quartile of the steps.
 
-    >>> _broken(np.array([0.0, 1.0, 2.0, 30.0, 31.0, 32.0])).tolist()
+    >>> _with_gaps(np.array([0.0, 1.0, 2.0, 30.0, 31.0, 32.0])).tolist()
     [0.0, 1.0, nan, 30.0, 31.0, 32.0]
     """
     steps = np.abs(np.diff(values, append=values[-1:]))
@@ -248,7 +328,7 @@ def _broken(values: Array) -> Array:
 
 
 def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequence[float], **look: Any) -> None:
-    """A cycle in the table, each chord once: one that runs back on itself would fill the gaps of a dashed line."""
+    """Draws each chord of a cycle once: a second dashed line on the first would fill its gaps."""
     x, y = map.states.point(np.array([*components, components[0]]), np.array([*theta, theta[0]], dtype=float))
     ends = [tuple(end) for end in np.round(np.stack([x, y], axis=1), 6)]
     chords = {frozenset(pair): i for i, pair in reversed(list(enumerate(pairwise(ends))))}
@@ -257,7 +337,7 @@ def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequ
 
 
 def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":
-    """Each cycle in a table of its own, the first ones of the list; stable ones drawn full, unstable ones dashed."""
+    """Figure of the first cycles of the list, each in a table of its own; solid if stable, dashed if unstable."""
     map, found = PinballMap(scene), catalogue.cycles
     rows = max(1, -(-min(len(found), SMALL) // 4))
     made = figure(7.0, 2.0 * rows + 0.3)

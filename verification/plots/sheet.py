@@ -1,8 +1,7 @@
-"""A figure as data: panels of named point sequences, in the quantities of the paper's axes; and how it is drawn.
+"""Figures as data (panels of named curves, in the quantities of the paper's axes), and how they are drawn.
 
-Every figure has the same paper, axes and marks, readable in black and white. Matplotlib is imported here, inside
-functions, and only when something is drawn. No pyplot, no global state: what the style sets holds while a figure is
-made and saved, and no longer.
+All figures have the same style, readable in black and white. Matplotlib is imported inside functions, and only when
+something is drawn. No pyplot and no global state: the style's settings hold only while a figure is made and saved.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,14 +25,14 @@ Fact = str | int | float
 
 
 class Curve(NamedTuple):
-    """Points in order; a nan is a gap, where no line is drawn."""
+    """Points of a curve in order; nan is a gap, where no line is drawn."""
 
     x: Array
     y: Array
 
 
 class Raster(NamedTuple):
-    """A label for each cell of a grid: `names[labels[row, column]]`, the first row lowest."""
+    """Labels for the cells of a grid: `names[labels[row, column]]`; the first row is the lowest."""
 
     x: Array
     y: Array
@@ -43,7 +42,7 @@ class Raster(NamedTuple):
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes. `x` and `y` name what they measure, `facts` what the data were computed from."""
+    """One pair of axes: `x` and `y` are keys of `AXES`, `facts` the settings from which the data were computed."""
 
     title: str
     x: str
@@ -53,7 +52,7 @@ class Panel:
     facts: Mapping[str, Fact] = field(default_factory=dict)
 
     def document(self) -> dict[str, Any]:
-        """The panel as JSON has it; a gap is null.
+        """The panel as a JSON object; null stands for a gap.
 
         >>> gap = Curve(np.array([0.0, 1.0]), np.array([2.0, np.nan]))
         >>> Panel("a", "s", "s_1", {"T_0": gap}).document()["curves"]["T_0"]
@@ -71,7 +70,7 @@ Panels = tuple[Panel, ...]
 
 
 def scaled(count: int, fine: float, least: int = 2) -> int:
-    """How many at resolution `fine`, of which a draft has `count`.
+    """The number of points at resolution `fine`, relative to `count` in a draft; at least `least`.
 
     >>> scaled(100, 8.0), scaled(100, 0.001)
     (800, 2)
@@ -124,14 +123,16 @@ BLACK, DARK, MIDDLE, LIGHT = "#000000", "#1f4e79", "#c8691c", "#9fc5e8"  # in or
 INK = (0.07, 0.15, 0.33)
 PALE = 0.18  # opacity of a single point of a density
 PALETTE = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf")
-FORMATS: dict[str, dict[str, Any]] = {  # of files, and what keeps the time and versions out of them
+FORMATS: dict[str, dict[str, Any]] = {  # file formats, with options that keep times and versions out of the files
     ".png": {"metadata": {"Software": None}},
     ".svg": {"metadata": {"Date": None}},
     ".pdf": {"metadata": {"CreationDate": None, "Producer": None}},
     ".webp": {"pil_kwargs": {"quality": 85, "method": 6}},
 }
-VECTORS = (".svg", ".pdf")  # of 72 units an inch
-SMALL: dict[str, Any] = {"pil_kwargs": {"quality": 55, "alpha_quality": 70, "method": 2}}  # of a WebP for a page
+VECTORS = (".svg", ".pdf")  # these have 72 units an inch
+SMALL: dict[str, Any] = {
+    "pil_kwargs": {"quality": 55, "alpha_quality": 70, "method": 2}
+}  # options of a small WebP for a web page
 OUTLINE: dict[str, Any] = {"color": "0.35", "lw": 1.1, "solid_joinstyle": "miter"}
 FAINT: dict[str, Any] = {"color": "0.6", "lw": 0.5, "ls": ":"}
 CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew": 1.4, "zorder": 5}
@@ -139,7 +140,7 @@ CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew"
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Matplotlib's settings for the figures, put back afterwards."""
+    """Sets Matplotlib's options for the figures, and restores them afterwards."""
     try:
         import matplotlib
     except ImportError:
@@ -149,7 +150,7 @@ def styled() -> Iterator[None]:
 
 
 def figure(width: float, height: float) -> "Figure":
-    """An empty figure, in inches, with a canvas of its own."""
+    """A new, empty figure with a canvas; width and height in inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -158,17 +159,23 @@ def figure(width: float, height: float) -> "Figure":
     return made
 
 
+def figure_of(axes: "Axes") -> "Figure":
+    """The figure that some axes belong to."""
+    made: Figure = axes.figure  # type: ignore[assignment]  # or a part of one
+    return made
+
+
 def image(drawn: "Figure", ending: str) -> bytes:
-    """A figure as a file of the kind that the ending names; the same figure gives the same bytes."""
+    """Bytes of a figure's file in the format of `ending`, such as `.png`; equal figures give equal bytes."""
     from matplotlib import rcParams
 
     return encoded(drawn, ending, dpi=max(rcParams["savefig.dpi"], drawn.dpi))
 
 
 def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> bytes:
-    """A figure as the bytes of a file, with whatever `savefig` may be told besides.
+    """Bytes of a figure's file, with further options of `savefig`.
 
-    It is laid out here, and once: `savefig` would do that in a drawing of its own, which it throws away.
+    The layout is made here, once: `savefig` would make it in an extra drawing, which it throws away.
     """
     from verification.plots.layout import Canvas
 
@@ -184,7 +191,7 @@ def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> byt
 
 
 def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array:
-    """Counts as an image: opaque where there are most, empty where there are none; the first row lowest.
+    """RGBA image of counts: opaque at the largest, transparent at 0; the first row is the lowest.
 
     >>> ink(np.array([[0, 9]]))[..., 3].tolist()
     [[0.0, 1.0]]
@@ -197,7 +204,7 @@ def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array
 def shaded(
     made: "Figure", lams: Array, shapes: Array, nu: Array, chaotic: Array, name: str, axes: "Axes | None" = None
 ) -> "Axes":
-    """Axes with the largest exponent over contractions and shapes, red where positive; a line where chaos begins."""
+    """Axes with the largest exponent over contractions and shapes, red if positive; a line around chaotic cells."""
     from matplotlib.colors import TwoSlopeNorm
 
     axes = axes or made.add_subplot()
@@ -220,7 +227,7 @@ def shaded(
 
 
 def sides(centres: Array) -> tuple[float, float]:
-    """The outer sides of cells with these centres.
+    """The two outer ends of equal cells with these centres.
 
     >>> sides(np.array([0.5, 1.5]))
     (0.0, 2.0)
@@ -230,14 +237,14 @@ def sides(centres: Array) -> tuple[float, float]:
 
 
 def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tuple[Figure, list[Axes]]":
-    """A figure with one pair of axes for each panel, named and labelled; `height` in inches, of a row."""
+    """A figure with one pair of axes for each panel, titled and labelled; `height` of a row in inches."""
     from matplotlib.figure import Figure
 
-    from verification.plots.layout import Grid
+    from verification.plots.layout import GridLayout
 
     rows = -(-len(panels) // columns)
     width = WIDTH if columns > 1 else 4.2
-    figure = Figure(figsize=(width, rows * height), layout=Grid())
+    figure = Figure(figsize=(width, rows * height), layout=GridLayout())
     axes: list[Any] = []
     for i, panel in enumerate(panels):
         ax = figure.add_subplot(rows, columns, i + 1)
@@ -249,7 +256,7 @@ def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tu
 
 
 def _prepare(ax: "Axes", panel: Panel) -> None:
-    """Labels, limits and ticks that follow from what the axes measure."""
+    """Sets labels, limits and ticks for the quantities on the axes."""
     if panel.x == "x":
         ax.set_aspect("equal")
         ax.set_axis_off()
@@ -275,12 +282,12 @@ def _pi(halves: int) -> str:
 
 
 def cloud(ax: "Axes", curve: Curve, color: str, size: float = 0.6, label: str | None = None) -> None:
-    """Many points, as pixels in a vector file."""
+    """Draws a curve as separate points; more than 4000 become pixels also in a vector file."""
     ax.plot(*curve, ls="", marker="o", mew=0, ms=size, color=color, rasterized=curve.x.size > 4000, label=label)
 
 
 def legend(ax: "Axes", columns: int = 3) -> None:
-    """A legend below the axes, whose marks are large enough to be told apart."""
+    """Draws a legend below the axes, with marks large enough to distinguish."""
     shown = ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=columns, handletextpad=0.4)
     handles: list[Any] = shown.legend_handles
     for handle in handles:
@@ -288,7 +295,7 @@ def legend(ax: "Axes", columns: int = 3) -> None:
 
 
 def graphs(ax: "Axes", panel: Panel) -> None:
-    """Graphs of a map and its iterates with the diagonal; the higher the iterate, the lighter the line."""
+    """Draws graphs of a map and its iterates with the diagonal, lighter for higher iterates."""
     low = min(float(curve.x[0]) for curve in panel.curves.values())
     high = max(float(curve.x[-1]) for curve in panel.curves.values())
     ax.plot([low, high], [low, high], **FAINT)

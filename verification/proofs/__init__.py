@@ -1,1 +1,1 @@
-"""Proofs in balls, a room for each subject."""
+"""Theorems on the paper's billiards, proved in ball arithmetic: one package for each subject."""

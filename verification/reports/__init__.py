@@ -1,4 +1,4 @@
-"""What becomes of any scene: a report by sections, in the time given, as a page, as JSON and as LaTeX."""
+"""Reports on any scene, made in the time given: a page by sections, JSON and LaTeX."""
 
 import lazy_loader
 

@@ -1,7 +1,7 @@
-"""What a report is asked for, how its commands are written, and the parts of it that are kept on disk.
+"""The settings of a report, its command lines, and its parts, which are kept on disk.
 
-Each step of the work leaves one file, with a digest of the question in it: a report that was stopped goes on from
-there, and the files of another question are not taken for its own.
+Each step of the work leaves one file, with a digest of the settings in it: a report that was stopped goes on from
+there, and the files of other settings are not used.
 """
 
 import json
@@ -17,19 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric.lowering.cache import sources
+from numeric.lowering.files import PARTIAL, json_text, replacing, write_whole
 from numeric.sweeps.sweep import versions
 from symbolic.tables.definition import exact, value_text
 from symbolic.tables.scene import Scene
 
 Arrays = Mapping[str, NDArray[Any]]
 FILE = "scene.toml"  # among the parts: the scene as a file that `--scene` reads
-DRAWN = "--plot FILE.svg"  # of the command beneath a picture
+DRAWN = "--plot FILE.svg"  # option of the command beneath a picture
 CONTRACTIONS = ("1/10", "1/2", "9/10")
 
 
 @dataclass(frozen=True)
 class Asked:
-    """The question: a scene, the interval of the parameter that varies, and what is looked at on the way.
+    """The settings of a report: a scene, the interval of the parameter that varies, and what is examined on it.
 
     `low` and `high` are exact numbers as text, `at` the contractions of portraits and censuses, `period` the longest
     cycle that is searched for, `digits` those of a certificate. `second` is a parameter of the table or of the law that
@@ -61,25 +62,25 @@ class Asked:
 
     @cached_property
     def digest(self) -> str:
-        """Of the question, the program and the versions: what the bits of the answers depend on."""
+        """Digest of the settings, the program and the versions, on which the bits of the answers depend."""
         program = sources("symbolic", "numeric", "verification")
         said = {**asdict(self), "scene": self.scene.text, "versions": versions(), "program": program}
         return sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The interval in float64."""
+        """The ends of the interval in float64."""
         return float(exact(self.parameter, self.low)), float(exact(self.parameter, self.high))
 
     @property
     def title(self) -> str:
-        """The table in a few words: its name, or the radius."""
+        """The table in a few words: its name, or its formula for the radius."""
         said = self.scene.document
         return f"r = {said['polar']}" if "polar" in said and "name" not in said else self.scene.name
 
     @property
     def both(self) -> str:
-        """The options of a report in two parameters that name the second one."""
+        """The option `--vary` for a second parameter; empty without one."""
         return "" if self.second is None else "--vary {}={}:{}".format(*self.second)
 
     @property
@@ -90,14 +91,25 @@ class Asked:
         return float(exact(name, value_text(self.scene.document["shape"][name])))
 
     @property
+    def own_value(self) -> float:
+        """The scene's own value of the parameter that varies, or the nearer end of the interval."""
+        low, high = self.ends
+        own = (
+            self.scene.lam
+            if self.parameter == "lam"
+            else exact(self.parameter, value_text(self.scene.document["shape"][self.parameter]))
+        )
+        return float(min(max(float(own), low), high))
+
+    @property
     def varied(self) -> str:
-        """What varies, as options of a command that follows."""
+        """The parameter that varies, as options of `pinball follow`."""
         if self.parameter == "lam":
             return f"--lam {self.low}:{self.high}"
         return f"--lam {self.at[0]} --shape {self.parameter}={self.low}:{self.high}"
 
     def command(self, name: str, *options: str, lam: str | None = None) -> str:
-        """A command line that asks the scene, at `lam` if it is given.
+        """A command line about the scene, at `lam` if it is given.
 
         >>> Asked(Scene("egg", alpha="2/25")).command("attractor", "--seed 1", lam="1/2")
         'pinball attractor egg --alpha 2/25 --lam 1/2 --seed 1'
@@ -129,48 +141,88 @@ class Asked:
 class Parts:
     """The folder of a report's parts: a document for each step, arrays and pictures.
 
-    `scheduler` is the address of a Dask cluster whose workers do the grids; left out, this machine does them.
+    A document carries a checksum of itself and of the files of its step, which begins with the digest of the settings:
+    what was altered since is made again. Certificates among the parts of an earlier run are proved again before they
+    are shown. `scheduler` is the address of a Dask cluster whose workers compute the grids; left out, this machine
+    does.
     """
 
     def __init__(self, folder: Path, digest: str, scheduler: str | None = None) -> None:
         self.folder, self.digest, self.scheduler = folder, digest, scheduler
+        self.believed: dict[str, dict[str, Any]] = {}  # documents of this run, and those that were checked in it
+        self.files: dict[str, str] = {}  # names and checksums of files since the last document
+        self.drawn: set[str] = set()  # names of pictures of this run
+        self.memory: dict[str, Any] = {}  # further results of this run
 
     def made(self, asked: Asked) -> None:
         """Makes the folder, with the scene as a file in it."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.text(FILE, asked.scene_file())
+        for left in self.folder.glob(f".*{PARTIAL}"):  # of a report that was killed
+            left.unlink(missing_ok=True)
+        write_whole(self.folder / FILE, asked.scene_file())
 
     def read(self, name: str) -> dict[str, Any] | None:
-        """The document of a step, if it is there and answers the same question."""
-        try:
-            found = json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return None
-        return found if isinstance(found, dict) and found.get("digest") == self.digest else None
+        """The document of a step, if it exists, has the same settings and is as it was written; else None."""
+        if name not in self.believed:
+            try:
+                found = json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
+            except (OSError, ValueError):
+                return None
+            if not isinstance(found, dict) or found.get("digest") != self.digest or not self._unaltered(name, found):
+                return None
+            self.believed[name] = found
+        return self.believed[name]
 
     def write(self, name: str, document: Mapping[str, Any]) -> None:
-        """Keeps the document of a step; a reader finds all of it or nothing."""
-        self.text(f"{name}.json", json.dumps({"digest": self.digest, **document}, allow_nan=False))
-
-    def text(self, name: str, text: str) -> None:
-        """Writes a file at once."""
-        path = self.folder / name
-        temporary = path.with_name(f".{name}")
-        temporary.write_text(text, encoding="utf-8")
-        temporary.replace(path)
+        """Keeps the document of a step, with the checksums of the files that the step has kept."""
+        whole = json.loads(json_text({"digest": self.digest, "files": self.files, **document}))
+        write_whole(self.folder / f"{name}.json", json_text({**whole, "checksum": self._checksum(name, whole)}))
+        self.believed[name], self.files = whole, {}
 
     def keep(self, name: str, arrays: Arrays) -> None:
-        """Keeps arrays."""
-        temporary = self.folder / f".{name}.npz"
+        """Keeps arrays in the file `name.npz`."""
         named: dict[str, Any] = dict(arrays)
-        np.savez_compressed(temporary, **named)
-        temporary.replace(self.folder / f"{name}.npz")
+        with replacing(self.folder / f"{name}.npz") as file:
+            np.savez_compressed(file, **named)
+        self.noted(f"{name}.npz")
+
+    def noted(self, file: str) -> None:
+        """Notes that a file belongs to the step whose document is written next."""
+        self.files[file] = sha256((self.folder / file).read_bytes()).hexdigest()
 
     def arrays(self, name: str) -> dict[str, NDArray[Any]]:
-        """The arrays that were kept under a name."""
+        """The arrays of the file `name.npz`."""
         with np.load(self.folder / f"{name}.npz") as found:
             return dict(found)
 
     def picture(self, name: str) -> Path:
-        """Where a picture lies."""
+        """The path of a picture's SVG file."""
         return self.folder / f"{name}.svg"
+
+    def _checksum(self, name: str, document: Mapping[str, Any]) -> str:
+        text = json.dumps({key: value for key, value in document.items() if key != "checksum"}, sort_keys=True)
+        return sha256(f"{self.digest} {name} {text}".encode()).hexdigest()
+
+    def _unaltered(self, name: str, document: Mapping[str, Any]) -> bool:
+        """Is a document of an earlier run unchanged, with its files, and do its certificates hold?"""
+        if document.get("checksum") != self._checksum(name, document):
+            return False
+        try:
+            files = [sha256((self.folder / file).read_bytes()).hexdigest() for file in document["files"]]
+        except OSError:
+            return False
+        blocks = [block["document"] for block in document["blocks"] if block["kind"] == "certificate"]
+        blocks += [document["data"]["certificate"]] if "certificate" in document["data"] else []
+        return files == list(document["files"].values()) and all(self._holds(given, document) for given in blocks)
+
+    @staticmethod
+    def _holds(given: Mapping[str, Any], document: Mapping[str, Any]) -> bool:
+        """Is a certificate proved anew, and is the value that it proves among the numbers of its step?"""
+        from verification.named.theorems import checked
+
+        try:
+            proof = checked(given)
+        except (ValueError, ArithmeticError):
+            return False
+        shown = {**document, "blocks": [block for block in document["blocks"] if block["kind"] != "certificate"]}
+        return proof.proved and proof.result["value"] in json.dumps(shown)

@@ -1,4 +1,4 @@
-"""What a report is made of: sections of words, formulas, tables, figures and certificates, as plain data.
+"""The content of a report: sections of words, formulas, tables, figures and certificates, as plain data.
 
 A section is written once and shown three times: as a page, as JSON and as LaTeX. Every number says how it is known:
 exactly, by a proof in balls, in float64, or from a sample with its error.
@@ -21,10 +21,10 @@ class Known(Enum):
 
 
 @dataclass(frozen=True)
-class Number:
-    """A value as it is shown, its error bar or radius if it has one, and how it is known.
+class ShownNumber:
+    """A value as text, its error bar or radius if it has one, and how it is known.
 
-    >>> Number("0.142", "1e-3", Known.SAMPLED).words
+    >>> ShownNumber("0.142", "1e-3", Known.SAMPLED).words
     '0.142 ± 1e-3'
     """
 
@@ -34,33 +34,33 @@ class Number:
 
     @property
     def words(self) -> str:
-        """On one line."""
+        """The value and its error as text."""
         return f"{self.value} ± {self.error}" if self.error else self.value
 
 
-def solved(value: float, digits: int, error: float = 0.0) -> Number:
-    """A number that was solved for in float64, to so many digits: it errs by half a unit of the last one, or by more.
+def solved(value: float, digits: int, error: float = 0.0) -> ShownNumber:
+    """A number solved for in float64, to `digits` digits; its error is half a unit of the last, or `error` if larger.
 
     >>> solved(2 / 3, 4).words, solved(0.25, 4, 0.01).words
     ('0.6667 ± 5e-05', '0.25 ± 1e-02')
     """
     unit = 10.0 ** (floor(log10(abs(value))) + 1 - digits) if value else 10.0**-digits
-    return Number(f"{value:.{digits}g}", f"{max(unit / 2, error):.0e}", Known.FLOAT)
+    return ShownNumber(f"{value:.{digits}g}", f"{max(unit / 2, error):.0e}", Known.FLOAT)
 
 
-Cell = str | Number
+Cell = str | ShownNumber
 
 
 @dataclass(frozen=True)
-class Words:
-    """A paragraph."""
+class Paragraph:
+    """A paragraph of text."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Formula:
-    """A displayed formula in LaTeX, under a name."""
+    """A displayed formula in LaTeX, with a name."""
 
     name: str
     latex: str
@@ -69,7 +69,7 @@ class Formula:
 
 @dataclass(frozen=True)
 class Listing:
-    """A table of cells, its caption, and the command that makes it again."""
+    """A table: caption, column names, rows of cells, and the command that makes it again."""
 
     caption: str
     columns: tuple[str, ...]
@@ -93,15 +93,15 @@ class Picture:
 
 @dataclass(frozen=True)
 class Certificate:
-    """A certificate file, as `pinball check` reads it."""
+    """The content of a certificate file, which `pinball check` reads."""
 
     name: str
     document: Mapping[str, Any]
 
 
-Block = Words | Formula | Listing | Picture | Certificate
+Block = Paragraph | Formula | Listing | Picture | Certificate
 KINDS: dict[str, type[Block]] = {
-    "words": Words,
+    "words": Paragraph,
     "formula": Formula,
     "table": Listing,
     "figure": Picture,
@@ -111,7 +111,7 @@ KINDS: dict[str, type[Block]] = {
 
 @dataclass(frozen=True)
 class Effort:
-    """What a question cost: its seconds, and the error that its answer was left with."""
+    """The cost of a question: its seconds, and the remaining error of its answer."""
 
     question: str
     size: str
@@ -121,7 +121,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Section:
-    """A section by name and title: its blocks in order, and what they cost."""
+    """A section: name, title, blocks in order, and what they cost."""
 
     name: str
     title: str
@@ -129,9 +129,9 @@ class Section:
     efforts: tuple[Effort, ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """The section as JSON has it.
+        """The section as JSON.
 
-        >>> section = Section("scene", "The scene", (Listing("", ("x",), ((Number("1"),),)),))
+        >>> section = Section("scene", "The scene", (Listing("", ("x",), ((ShownNumber("1"),),)),))
         >>> Section.read(section.document()) == section
         True
         """
@@ -144,13 +144,13 @@ class Section:
 
     @classmethod
     def read(cls, given: Mapping[str, Any]) -> "Section":
-        """The section of a document."""
+        """The section from its JSON."""
         blocks = tuple(_block(block) for block in given["blocks"])
         return cls(given["name"], given["title"], blocks, tuple(Effort(**each) for each in given["efforts"]))
 
 
 def costs(efforts: tuple[Effort, ...]) -> Listing:
-    """What each question took in this run, and the error that its answer was left with."""
+    """A table of the seconds of each question in this run, and of the errors of the answers."""
     rows = tuple((each.question, each.size, f"{each.seconds:.2f}", each.error or "-") for each in efforts)
     caption = (
         "What each question cost on this machine, and the error that its answer is left with; later rows of a question "
@@ -185,4 +185,4 @@ def _block(given: Mapping[str, Any]) -> Block:
 
 
 def _cell(given: Any) -> Cell:
-    return given if isinstance(given, str) else Number(given["value"], given["error"], Known(given["known"]))
+    return given if isinstance(given, str) else ShownNumber(given["value"], given["error"], Known(given["known"]))

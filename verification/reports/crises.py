@@ -1,9 +1,9 @@
-"""Where the sampled attractor changes at once: homoclinic tangencies near by, of the saddles that a search finds there.
+"""Homoclinic tangencies near contractions at which the sampled attractor suddenly changes.
 
 A crisis is such a tangency. Each is sought in float64 and then proved in balls. That the attractor changes at the one
 that was located, and not beside it, is what sampling shows, and no proof; so a tangency is not called a crisis here.
-The boundary has to be one smooth formula; where it is not convex each flight is proved to meet nothing on its way. Of
-other tables only the changes are told (`parted`).
+The boundary has to be one smooth formula; where it is not convex each flight is proved to meet nothing on its way. For
+other tables only the changes are reported (`parted`).
 """
 
 from collections.abc import Iterator, Mapping
@@ -21,29 +21,28 @@ from numeric.sweeps.run import run
 from numeric.sweeps.sweep import text_of
 from verification.arithmetic.balls import decimal
 from verification.named import tangencies
-from verification.named.files import document
 from verification.named.questions import PeriodicOrbit, Tick
 from verification.named.tangencies import LEAST, SAME, near, objection_of
-from verification.proofs.manifolds.claim import contact_of, contact_said
+from verification.proofs.manifolds.certificate import contact_of, contact_said
 from verification.proofs.manifolds.proof import LEAST_DIGITS
 from verification.proofs.manifolds.tangency import Touch
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Block, Certificate, Effort, Known, Listing, Number, Words
+from verification.reports.blocks import Block, Certificate, Effort, Known, Listing, Paragraph, ShownNumber
 from verification.reports.dynamics import density
 from verification.reports.parted import near_changes, told_of
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
 Document = dict[str, Any]
 GROWN = 0.15  # part of the cells that an attractor meets, gained or lost from one contraction to the next
-MOST = 3  # changes that are looked into
-COLUMNS, ORBITS, POINTS, LONG = 25, 16, 512, 20_000  # of the closer look: contractions, particles, bounces, transient
-NEAR = 4  # steps of that look within which a tangency belongs to a change
-SHOWN = 5e-6  # of a multiplier, half a unit of its last digit
+MOST = 3  # changes that are examined, at most
+COLUMNS, ORBITS, POINTS, LONG = 25, 16, 512, 20_000  # of the finer scan: contractions, particles, bounces, transient
+NEAR = 4  # steps of that scan within which a tangency belongs to a change
+SHOWN = 5e-6  # relative error of a multiplier: half a unit of its last digit
 DIGITS = 10  # of a multiplier
 
 
 def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found:
-    """The tangencies near the changes that the diagram shows, sought in float64; nothing of them is proved yet."""
+    """The tangencies near the changes that the diagram shows, found in float64 and not proved yet."""
     arrays = parts.arrays("diagram-0")
     changes = changed(arrays["counts"], arrays["chaotic"])
     if objection_of(asked.scene):
@@ -63,7 +62,7 @@ def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found
 
 
 def _about(low: float, high: float) -> tuple[float, float]:
-    """The contractions within which a tangency belongs to a change between two of them."""
+    """The contractions within which a tangency is attributed to a change between `low` and `high`."""
     reach = min(NEAR * (high - low), (low + high) / 2 - SAME, 1 - (low + high) / 2)
     return (low + high) / 2 - reach, (low + high) / 2 + reach
 
@@ -74,21 +73,19 @@ def proved(asked: Asked, said: Document, number: int) -> Found:
     made = tangencies.proved(asked.scene, contact_of(said["contact"]), asked.digits)
     if isinstance(made, str):
         return [], [effort], {"open": made}
-    proof = made.proof
-    unknown = [item for item, holds in proof.checks.items() if holds is not True]
-    if unknown:
-        return [], [effort], {"open": ", ".join(unknown)}
-    ball = dict(zip(("value", "radius"), decimal(proof.parameter, asked.digits + 1), strict=True))
-    multipliers = [decimal(x, DIGITS) for x in (proof.multipliers[1], proof.multipliers[0])]
-    found = ball | {"multipliers": multipliers, "items": len(proof.checks)}
-    with suppress(ValueError, ArithmeticError):  # what the format does not hold
-        found["certificate"] = document(made)
+    if not made.proved:
+        return [], [effort], {"open": ", ".join(made.open)}
+    ball = dict(zip(("value", "radius"), decimal(made.value, asked.digits + 1), strict=True))
+    multipliers = [decimal(x, DIGITS) for x in reversed(made.strange.multipliers)]
+    found = ball | {"multipliers": multipliers, "items": len(made.checks)}
+    with suppress(ValueError, ArithmeticError):  # a tangency that has no certificate file
+        found["certificate"] = made.document()
     return [], [replace(effort, error=ball["radius"])], found
 
 
 @dataclass(frozen=True)
 class Told:
-    """What is said of tangencies: a table, lines of the diagram, and events for JSON."""
+    """Report on tangencies: a table, lines of the diagram, and events for JSON."""
 
     blocks: list[Block]
     lines: list[list[Any]]
@@ -99,7 +96,7 @@ NOTHING = Told([], [], [])
 
 
 def told(asked: Asked, made: Mapping[str, Document]) -> Told:
-    """What is said of the tangencies that were found, each with its proof where that is among the parts."""
+    """The report on the tangencies found, each with its proof where there is one among the parts."""
     said = made["crises"]["data"]
     if "touches" not in said:
         return NOTHING
@@ -128,7 +125,7 @@ def changed(counts: NDArray[Any], chaotic: NDArray[Any]) -> list[int]:
 
 
 def closer(asked: Asked, parts: Parts, values: NDArray[Any], j: int) -> tuple[float, float]:
-    """The change after column `j` between two nearer contractions, where chaos that only lasts long has more time."""
+    """Two nearer contractions around the change after column `j`, by a finer scan with a longer transient."""
     first, last = max(0, j - 2), min(len(values) - 1, j + 3)
     finer = np.linspace(values[first], values[last], COLUMNS)
     sweep = bifurcation(text_of(asked.scene), finer, ORBITS, POINTS, POINTS, LONG, asked.seed)
@@ -155,14 +152,14 @@ def _touched(touch: Touch, cycle: PeriodicOrbit, change: tuple[float, float]) ->
 def _row(said: Document, proof: Document) -> tuple[Any, ...]:
     low, high = said["change"]
     if "value" in proof:
-        where = Number(proof["value"], proof["radius"], Known.PROVED)
-        stretch = [Number(value, radius, Known.PROVED) for value, radius in proof["multipliers"]]
+        where = ShownNumber(proof["value"], proof["radius"], Known.PROVED)
+        stretch = [ShownNumber(value, radius, Known.PROVED) for value, radius in proof["multipliers"]]
         checks = f"all {proof['items']} items hold" + ("" if "certificate" in proof else "; no file")
     else:
-        where = Number(f"{said['value']:.12f}", f"{said['error']:.0e}", Known.FLOAT)
-        stretch = [Number(f"{x:.6g}", f"{SHOWN * abs(x):.0e}", Known.FLOAT) for x in said["multipliers"]]
+        where = ShownNumber(f"{said['value']:.12f}", f"{said['error']:.0e}", Known.FLOAT)
+        stretch = [ShownNumber(f"{x:.6g}", f"{SHOWN * abs(x):.0e}", Known.FLOAT) for x in said["multipliers"]]
         checks = f"open: {proof['open']}" if "open" in proof else "left for more time"
-    middle = Number(f"{(low + high) / 2:.4f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
+    middle = ShownNumber(f"{(low + high) / 2:.4f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
     return where, str(said["period"]), *stretch, str(said["contact"]["bounces"]), checks, middle
 
 
@@ -183,10 +180,10 @@ COLUMN = "lam", "period", "multiplier of a round, out", "in", "bounces", "checkl
 
 def _table(asked: Asked, changes: int, pairs: list[tuple[Document, Document]]) -> Block:
     if not changes:
-        return Words("The diagram shows no contraction at which a chaotic attractor gains or loses much at once.")
+        return Paragraph("The diagram shows no contraction at which a chaotic attractor gains or loses much at once.")
     if not pairs:
         where = "one contraction" if changes == 1 else f"{changes} contractions"
-        return Words(
+        return Paragraph(
             f"At {where} of the diagram a chaotic attractor gains or loses much at once; no tangency of the manifolds "
             f"of a cycle up to period {asked.period} was found near by."
         )

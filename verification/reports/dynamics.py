@@ -1,4 +1,4 @@
-"""What particles do: the slap map, phase portraits, the bifurcation diagram with exponents, and the attractors."""
+"""Sections on sampled orbits: slap map, phase portraits, bifurcation diagram with exponents, attractors."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,36 +11,38 @@ from sympy import S
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
 from numeric.dynamics.recognition import wilson
+from numeric.sweeps.endings import CHAOTIC, CYCLE, NEUTRAL, Endings, endings
 from numeric.sweeps.fields import basins, bifurcation
+from numeric.sweeps.questions import name_of
 from numeric.sweeps.run import run
 from numeric.sweeps.space import parameter_space
-from numeric.sweeps.sweep import text_of
+from numeric.sweeps.sweep import at_value, map_of, text_of
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal, working
 from verification.named.attractors import Member, certificate, exponents, joined
-from verification.named.questions import PeriodicOrbit
 from verification.reports import pictures
 from verification.reports.asked import DRAWN, Asked, Parts
-from verification.reports.blocks import Block, Effort, Known, Listing, Number, Picture, Words, solved
-from verification.reports.lives import said_of
+from verification.reports.blocks import Block, Effort, Known, Listing, Paragraph, Picture, ShownNumber, solved
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
-POINTS = 1200  # of the graph of the slap map
+POINTS = 1200  # on the graph of the slap map
 COLUMNS, ROWS = 240, 160  # cells of a phase portrait
 SHAPES = 40  # values of another parameter than the contraction: each is a table of its own
 CELLS = 240  # of arc length in a bifurcation diagram
-FEW = 0.02  # of them
-LONGEST = 12  # period of an attracting cycle that is followed, whatever was asked for
-ROUNDED = 5e-6  # of an exponent that is shown with five decimals
+FEW = 0.02  # share of cells met below which a portrait is drawn with larger points
+CLOSE = 3, 0.35  # so many events in such a part of the interval get a picture of their own
+APART = 3e-3  # in parts of the table's size: marks of different cycles differ by more
+FLAT = 1e-4  # an exponent this near 0 may be 0
+ROUNDED = 5e-6  # error of an exponent that is shown with five decimals
 EXPONENT, SHOWN, BITS = 5, 8, 128  # digits of a cycle's exponents, in float64 and in balls, and the bits of these
 LISTED = 11  # contractions of a diagram whose exponents are listed
 
 
 def slap(asked: Asked, parts: Parts) -> Found:
-    """The map at contraction 0: where a particle lands that leaves along the normal."""
+    """Graph of the slap map, the limit of contraction 0: where a particle lands that leaves along the normal."""
     if not asked.scene.law.uniform:
-        return [Words("The slap map is the limit of the law phi = -lam*eta; this scene has another law.")], [], {}
+        return [Paragraph("The slap map is the limit of the law phi = -lam*eta; this scene has another law.")], [], {}
     map = PinballMap(asked.scene, lam=0)
     ends = np.array(map.states.ends)
     each = POINTS // len(ends)
@@ -71,7 +73,7 @@ def wrapped(s: Any, half: float) -> Any:
 
 
 def portrait(asked: Asked, parts: Parts, level: int) -> Found:
-    """Where random particles are after a transient, as a density over arc length and the sine of the exit angle."""
+    """Density of random particles after a transient, over arc length and the sine of the exit angle."""
     from numeric.pinball.sampling import interior_starts
 
     orbits, bounces = 100 << level, 400 << level
@@ -82,6 +84,10 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
         starts = interior_starts(map, orbits, asked.seed)
         end = map.exponents(starts.theta, starts.phi, 1, 1000, starts.component)
         alive = end.code == 0
+        counts = np.zeros((ROWS, COLUMNS))
+        if not np.any(alive):
+            clouds.append((text, counts))
+            continue
         orbit = map.orbit(end.theta[alive], end.phi[alive], bounces, end.component[alive])
         s = wrapped(map.arclength.s(orbit.theta, orbit.component), half)
         good = orbit.code == 0
@@ -93,6 +99,8 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
         f"Phase portraits: {bounces} bounces of each of {orbits} random particles after 1000 that are not drawn, the "
         f"darker the more often a cell is met (logarithm of the count). Sampled, seed {asked.seed}."
     )
+    if empty := [text for text, counts in clouds if not np.any(counts)]:
+        caption += f" At lambda = {', '.join(empty)} every particle stops before: at a corner, a join or a cusp."
     alt = "Densities of bounces in phase space at " + ", ".join(f"lambda = {text}" for text in asked.at)
     command = asked.command("attractor", f"--orbits {orbits} --seed {asked.seed}", DRAWN, lam=asked.at[0])
     effort = Effort("phase portraits", f"{orbits} particles, {bounces} bounces", 0.0)
@@ -100,7 +108,7 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def diagram(asked: Asked, parts: Parts, level: int) -> Found:
-    """The attractors against the contraction, and the exponents of the same orbits; kept as arrays to be drawn."""
+    """Arrays of the diagram, kept among the parts: attractors by the contraction, and exponents of the same orbits."""
     low, high = asked.ends
     columns, orbits, points = (150 if asked.parameter == "lam" else SHAPES) * 2**level, 12 + 6 * level, 120
     values = np.linspace(low, high, columns)
@@ -110,16 +118,19 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
     found = run(sweep, scheduler=parts.scheduler)
     half = PinballMap(asked.scene).arclength.perimeter / 2
     counts = density(found.s.values, half)
+    apart = found.nu_plus.values < -2 * found.nu_plus_error.values - FLAT  # on cycles, which are drawn as families
     nu, error = found.nu_plus.values, found.nu_plus_error.values
-    best = np.nanargmax(np.where(np.isfinite(nu), nu, -np.inf), axis=1)
+    finite = np.isfinite(nu)
+    best = np.argmax(np.where(finite, nu, -np.inf), axis=1)  # meaningless where no particle goes on
     rows = np.arange(columns)
     arrays = {
         "values": values,
         "half": np.array(half),
         "counts": counts,
+        "spread": density(np.where(apart[:, :, None], np.nan, found.s.values), half),
         "largest": nu[rows, best],
         "error": np.nan_to_num(error[rows, best]),
-        "least": np.nanmin(np.where(np.isfinite(nu), nu, np.inf), axis=1),
+        "least": np.where(finite.any(axis=1), np.where(finite, nu, np.inf).min(axis=1), np.nan),
         "chaotic": found.chaotic.values.mean(axis=1),
     }
     parts.keep(f"diagram-{level}", arrays)
@@ -129,7 +140,7 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
         over = f"--lams {asked.at[0]} --shape {asked.parameter}={asked.low}:{asked.high}:{columns}"
     command = asked.command("bifurcation", over, options)
     size = f"{columns} values of {asked.parameter}, {orbits} particles, {bounces} bounces"
-    effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.nanmedian(arrays['error'])):.1g} (median of nu_plus)")
+    effort = Effort("bifurcation diagram", size, 0.0, f"{float(np.median(arrays['error'])):.1g} (median of nu_plus)")
     rows_of = exponent_rows(arrays)
     said: dict[str, Any] = {"level": level, "command": command, "size": size, "orbits": orbits, "rows": rows_of}
     keys = asked.parameter, "chaotic_share", "nu_plus", "nu_plus_stderr"
@@ -138,13 +149,13 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def density(s: NDArray[Any], half: float) -> NDArray[np.int32]:
-    """How often each cell of arc length is met, in a column for each value of the parameter."""
+    """Counts of bounces: a row for each cell of arc length, a column for each value of the parameter."""
     rows = wrapped(s, half).reshape(len(s), -1)
     return np.stack([np.histogram(row[np.isfinite(row)], CELLS, (-half, half))[0] for row in rows], 1).astype(np.int32)
 
 
 def plane(asked: Asked, parts: Parts, level: int) -> Found:
-    """The largest exponent of random particles at pairs of the second parameter and the contraction; kept as arrays."""
+    """Arrays of the plane, kept among the parts: the largest exponent by the second parameter and the contraction."""
     assert asked.second is not None
     name, low, high = asked.second
     rows, columns, starts = 16 << level, 32 << level, 6 + 2 * level
@@ -166,62 +177,143 @@ def plane(asked: Asked, parts: Parts, level: int) -> Found:
     return [], [Effort("parameter space", size, 0.0, f"{error:.1g} (median of nu_plus)")], said
 
 
-def plane_blocks(asked: Asked, parts: Parts, said: dict[str, Any], curves: Sequence[dict[str, Any]]) -> list[Block]:
-    """The plane with the curves known so far over it, drawn unless it is there."""
+def regions(asked: Asked, parts: Parts, level: int) -> Found:
+    """Which attractors random starts end on at pairs of the second parameter and the contraction; kept as arrays."""
     assert asked.second is not None
-    letter = asked.second[0]
+    name, low, high = asked.second
+    first, last = (float(exact(name, end)) for end in (low, high))
+    rows, columns, starts = 16 << level, 32 << level, 24
+    of, at = (a + (np.arange(n) + 0.5) / n * (b - a) for n, a, b in ((rows, first, last), (columns, *asked.ends)))
+    text, names = text_of(asked.scene), list[str]()
+    for value in of:
+        here = at_value(text, name, float(value))
+        size = float(map_of(here, 0.5).states.size)
+        names += [_set_of(seen, size) for seen in endings(here, "lam", at, 1.0, starts, asked.seed)]
+    sets, label = np.unique(names, return_inverse=True)
+    parts.keep(f"regions-{level}", {"of": of, "at": at, "sets": sets, "label": label.reshape(rows, columns)})
+    size_of = f"{rows} values of {name} by {columns} contractions, {starts} starts at each"
+    return [], [Effort("regions of coexistence", size_of, 0.0)], {"level": level, "size": size_of, "sets": len(sets)}
+
+
+def _set_of(seen: Endings, size: float) -> str:
+    """The attractors that some starts end on, in words: periods, each as often as cycles differ but for symmetries."""
+    found = list[str]()
+    for n in np.unique(seen.period[seen.kind == CYCLE]):
+        left = seen.marks[(seen.kind == CYCLE) & (seen.period == n)]
+        while left.size:
+            left = left[np.max(np.abs(left - left[0]), axis=1) > APART * size]
+            found.append(str(n))
+    found += [words for kind, words in ((CHAOTIC, "chaos"), (NEUTRAL, "neutral")) if np.any(seen.kind == kind)]
+    return " + ".join(found) or "undecided"
+
+
+def plane_blocks(
+    asked: Asked,
+    parts: Parts,
+    said: dict[str, Any],
+    curves: Sequence[dict[str, Any]],
+    sets: dict[str, Any] | None,
+) -> list[Block]:
+    """The regions of coexistence and the plane with the curves known so far over them, drawn unless they are there."""
+    assert asked.second is not None
+    letter, blocks = asked.second[0], list[Block]()
+    lines = (
+        "The lines are curves of events, numbered as below, in float64; at each dot the event is proved. The grey "
+        f"line is the {letter} of other sections."
+    )
+    drawn = [{key: curve[key] for key in ("kind", "period", "points", "proved")} for curve in curves]
+    if sets:
+        name = f"regions-{sets['level']}-{len(curves)}"
+        if name not in parts.drawn:
+            pictures.regions(parts, name, parts.arrays(f"regions-{sets['level']}"), letter, curves, asked.own)
+        caption = (
+            "Regions of coexistence: the periods of the cycles that random starts end on, each as often as cycles "
+            f"differ by more than a symmetry, and chaos; {sets['size']}. Sampled. {lines}"
+        )
+        blocks.append(Picture(name, caption, f"Attractors that coexist over {letter} and lambda", said["command"]))
     name = f"plane-{said['level']}-{len(curves)}"
-    if not parts.picture(name).exists():
+    if name not in parts.drawn:
         pictures.plane(parts, name, parts.arrays(f"plane-{said['level']}"), letter, curves, asked.own)
     caption = (
-        f"Parameter space: {said['size']} after a transient as long. The largest exponent per bounce, red where it is "
-        f"positive; at {said['chaotic']:.0%} of the pairs some particle's is positive beyond its error. Sampled. The "
-        f"lines are curves of events, numbered as below, in float64; the grey line is the {letter} of other sections."
+        f"Parameter space: {said['size']} after a transient as long. The largest exponent per bounce, red where it "
+        f"is positive; at {said['chaotic']:.0%} of the pairs some particle's is positive beyond its error. Sampled. "
+        f"{lines}"
     )
     alt = f"Largest exponent over {letter} and lambda, with curves of events"
-    drawn = [{key: curve[key] for key in ("kind", "period", "points")} for curve in curves]
-    return [Picture(name, caption, alt, said["command"], {"curves": drawn})]
+    return [*blocks, Picture(name, caption, alt, said["command"], {"curves": drawn})]
 
 
 def exponent_rows(arrays: dict[str, NDArray[Any]]) -> list[list[Any]]:
-    """A few contractions: the share of chaotic orbits, and the largest exponent with its error."""
+    """Rows for a few values of the parameter: value, share of chaotic orbits, largest exponent, its error."""
     at = np.linspace(0, len(arrays["values"]) - 1, LISTED).round().astype(int)
-    return [[float(arrays[name][i]) for name in ("values", "chaotic", "largest", "error")] for i in at]
+    rows = [[float(arrays[name][i]) for name in ("values", "chaotic", "largest", "error")] for i in at]
+    return [[value if np.isfinite(value) else None for value in row] for row in rows]
 
 
-def diagram_blocks(asked: Asked, parts: Parts, said: dict[str, Any], events: list[tuple[float, str]]) -> list[Block]:
-    """The diagram with the events known so far, drawn unless it is there, and the exponents along it."""
-    name = f"diagram-{said['level']}-{len(events)}"
-    if not parts.picture(name).exists():
-        pictures.diagram(parts, name, parts.arrays(f"diagram-{said['level']}"), asked.parameter, events)
+def diagram_blocks(
+    asked: Asked,
+    parts: Parts,
+    said: dict[str, Any],
+    events: list[tuple[float, str, float]],
+    seen: dict[str, Any] | None,
+) -> list[Block]:
+    """The diagram with the families and events known so far, drawn if it does not exist, and exponents along it."""
+    level = -1 if seen is None else seen["level"]
+    name = f"diagram-{said['level']}-{level}-{len(events)}"
+    families = None if seen is None else parts.arrays(f"families-{level}")
+    periods = [] if seen is None else [one["period"] for one in seen["families"]]
+    window = close(asked, [value for value, _, _ in events]) if families is not None else None
+    for each, part in ((name, None), (f"{name}-close", window)):
+        if each not in parts.drawn and (part or each == name):
+            arrays = parts.arrays(f"diagram-{said['level']}")
+            pictures.diagram(parts, each, arrays, asked.parameter, events, families, periods, part)
     caption = (
-        f"Bifurcation diagram: {said['size']} after a transient. Above, arc length of the bounces, the darker the more "
-        "often a cell is met (logarithm of the count), and the located events as lines; below, the largest exponent "
-        "per bounce over the orbits, with its standard error, and the smallest. Sampled: an attractor that no start "
-        "reached is not drawn."
+        "Families of attractors along the parameter. Above, arc length of the bounces: each family of cycles has a "
+        "colour and is drawn where it attracts, its images under the symmetries too, and the density is of particles "
+        "that end on no cycle, the darker the more often a cell is met. Red lines are events. In the middle, the share "
+        "of random starts that end on each family, in the same colours. Below, the largest exponent per bounce over "
+        f"the orbits of the density, with its error, and the smallest. The density: {said['size']}. Sampled."
     )
-    picture = Picture(name, caption, "Bifurcation diagram as a density, above exponents", f"{said['command']} {DRAWN}")
+    command = f"{said['command']} {DRAWN}"
+    blocks: list[Block] = [Picture(name, caption, "Families of attractors, shares and exponents", command)]
+    if window:
+        caption = f"The same from {window[0]:.4g} to {window[1]:.4g}, where the events are."
+        blocks.append(Picture(f"{name}-close", caption, "Part of the picture before", command))
     rows = tuple(
         (
             f"{value:.6g}",
-            _share(share, said["orbits"]),
-            Number(f"{nu:.5f}", f"{error:.1g}", Known.SAMPLED),
+            counted(round(share * said["orbits"]), said["orbits"]),
+            "every particle stops" if nu is None else ShownNumber(f"{nu:.5f}", f"{error:.1g}", Known.SAMPLED),
         )
         for value, share, nu, error in said["rows"]
     )
-    caption = "Along the diagram: the share of orbits with an exponent positive beyond its error, and the largest one."
+    caption = "Along the diagram: the orbits with an exponent positive beyond its error, and the largest one."
     columns = asked.parameter, "chaotic orbits", "largest nu_plus"
-    return [picture, Listing(caption, columns, rows, f"{said['command']} --json FILE.json")]
+    return [*blocks, Listing(caption, columns, rows, f"{said['command']} --json FILE.json")]
 
 
-def _share(share: float, of: int) -> Number:
-    """A share of particles with half its 95 % interval."""
-    interval = wilson(round(share * of), of)
-    return Number(f"{share:.0%}", f"{max(share - interval.low, interval.high - share):.0%}", Known.SAMPLED)
+def close(asked: Asked, values: Sequence[float]) -> tuple[float, float] | None:
+    """The part of the interval in which the events lie, if it is small; else None."""
+    (low, high), span = asked.ends, max(values, default=0.0) - min(values, default=0.0)
+    if len(values) < CLOSE[0] or span > CLOSE[1] * (high - low):
+        return None
+    return max(low, min(values) - 0.1 * span), min(high, max(values) + 0.1 * span)
+
+
+def counted(count: int, of: int) -> str:
+    """A count of starts, with bounds for the share behind it at 95 %.
+
+    >>> counted(200, 200)
+    '200 of 200, at least 98.1%'
+    """
+    share = wilson(count, of)
+    if count in (0, of):
+        return f"{count} of {of}, " + (f"at least {share.low:.1%}" if count else f"at most {share.high:.1%}")
+    return f"{count} of {of}, {share.low:.1%} to {share.high:.1%}"
 
 
 def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
-    """The attractors that random starts reach at one contraction, and which start reaches which."""
+    """The attractors that random starts reach at one contraction, and the basins."""
     text = asked.at[which]
     starts = 200 * 4**level
     scene = asked.scene.at(lam=text)
@@ -238,24 +330,24 @@ def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
         f"than about {missed:.2g} of the starts is likely to be missed."
     )
     columns = ("attractor", "symmetry", "copies", "share of the starts", "nu_plus", "nu_minus", "existence")
-    blocks: list[Block] = [Listing(caption, columns, rows, command)]
+    nothing = f"lambda = {text}: none of {starts} random starts settled, so no attractor is known here."
+    blocks: list[Block] = [Listing(caption, columns, rows, command) if rows else Paragraph(nothing)]
     attracting = [a for a in found if a.kind in (Kind.CYCLE, Kind.CHAOTIC)]
     if len(attracting) > 1:
         blocks.append(_basins(asked, parts, text, attracting, f"basins-{which}-{level}", level))
     wide = max((m.share.high - m.share.low for m in row.members), default=0.0) / 2
     effort = Effort(f"census at lambda = {text}", f"{starts} starts", 0.0, f"{wide:.2g} (half the widest interval)")
-    cycles = [_cycle(scene, m.first) for m in row.members if m.kind is Kind.CYCLE and m.period <= LONGEST]
     told = [_attractor(text, *pair) for pair in zip(row.members, known, strict=True)]
-    return blocks, [effort], {"cycles": cycles, "attractors": told}
+    return blocks, [effort], {"attractors": told}
 
 
-Three = tuple[str | Number, str | Number, Number]
+Three = tuple[str | ShownNumber, str | ShownNumber, ShownNumber]
 
 
 def _attractor(text: str, member: Member, known: Three) -> dict[str, Any]:
-    """An attractor for JSON: what it is, how many images it has, and the share of starts with a 95 % interval."""
+    """An attractor as JSON: its kind, the number of its images, and the share of starts with a 95 % interval."""
     share, numbers = member.share, dict(zip(("nu_plus", "nu_minus"), known[:2], strict=True))
-    errors = {f"{name}_error": nu.error if isinstance(nu, Number) else None for name, nu in numbers.items()}
+    errors = {f"{name}_error": nu.error if isinstance(nu, ShownNumber) else None for name, nu in numbers.items()}
     return {
         "lam": text,
         "kind": member.kind.name.lower(),
@@ -263,51 +355,43 @@ def _attractor(text: str, member: Member, known: Three) -> dict[str, Any]:
         "symmetry": member.symmetry,
         "copies": member.copies,
         "share": [share.low, share.high],
-        **{name: nu.value if isinstance(nu, Number) else None for name, nu in numbers.items()},
+        **{name: nu.value if isinstance(nu, ShownNumber) else None for name, nu in numbers.items()},
         **errors,
     }
 
 
-def _cycle(scene: Scene, attractor: Attractor) -> dict[str, Any]:
-    """An attracting cycle as plain data, for whoever follows it."""
-    points, multipliers = attractor.points, attractor.multipliers or (0j, 0j)
-    component, theta, phi = (tuple(row.tolist()) for row in points)
-    return said_of(PeriodicOrbit(scene, component, theta, phi, multipliers))
-
-
-def _member(member: Member, known: Three) -> tuple[str | Number, ...]:
+def _member(member: Member, known: Three) -> tuple[str | ShownNumber, ...]:
     share = member.share
     name = {Kind.CYCLE: f"cycle of period {member.period}", Kind.CHAOTIC: "chaotic", Kind.NEUTRAL: "neutral"}
-    half = (share.high - share.low) / 2
     return (
         name.get(member.kind, f"stopped: {member.first.status.name.lower()}"),
         member.symmetry,
         str(member.copies),
-        Number(f"{(share.low + share.high) / 2:.3f}", f"{half:.3f}", Known.SAMPLED),
+        counted(share.count, share.of),
         *known,
     )
 
 
 def _known(scene: Scene, member: Member) -> Three:
-    """Both exponents and the existence of an attractor: of a cycle what balls prove, of anything else what was seen."""
+    """Both exponents and the existence of an attractor: proved in balls for a cycle, else as sampled."""
     first = member.first
     if member.kind is not Kind.CYCLE:
         errors = zip((first.nu_plus, first.nu_minus), first.errors, strict=True)
-        sampled = [Number(f"{nu:.5f}", f"{max(error, ROUNDED):.0e}", Known.SAMPLED) for nu, error in errors]
+        sampled = [ShownNumber(f"{nu:.5f}", f"{max(error, ROUNDED):.0e}", Known.SAMPLED) for nu, error in errors]
         plus, minus = (number if np.isfinite(float(number.value)) else "-" for number in sampled)
-        return plus, minus, Number("seen", known=Known.SAMPLED)
+        return plus, minus, ShownNumber("seen", known=Known.SAMPLED)
     plus, minus = (solved(nu, EXPONENT) if np.isfinite(nu) else "-" for nu in (first.nu_plus, first.nu_minus))
     try:
         proof = certificate(scene.table, S(scene.lam), first.points, law=scene.law)
     except (ValueError, ZeroDivisionError):
-        return plus, minus, Number("in float64", known=Known.FLOAT)
+        return plus, minus, ShownNumber("in float64", known=Known.FLOAT)
     open_ = [name for name, value in proof.checks.items() if value is not True]
     if open_:
-        return plus, minus, Number(f"open: {', '.join(open_)}", known=Known.FLOAT)
+        return plus, minus, ShownNumber(f"open: {', '.join(open_)}", known=Known.FLOAT)
     with working(BITS):
         balls = exponents(proof.trace, proof.determinant, len(proof.theta))
-    plus, minus = (Number(*decimal(nu, SHOWN), Known.PROVED) if nu.is_finite() else "-" for nu in balls)
-    return plus, minus, Number("exists and attracts", known=Known.PROVED)
+    plus, minus = (ShownNumber(*decimal(nu, SHOWN), Known.PROVED) if nu.is_finite() else "-" for nu in balls)
+    return plus, minus, ShownNumber("exists and attracts", known=Known.PROVED)
 
 
 def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], name: str, level: int) -> Picture:
@@ -318,11 +402,11 @@ def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], 
     half = PinballMap(scene).arclength.perimeter / 2
     order = sorted(range(len(attractors)), key=lambda i: (attractors[i].family, i))
     colours = [order.index(i) for i in range(len(attractors))]
-    pictures.basins(parts, name, label, colours, half, rf"$\lambda = {text}$")
-    shares = ", ".join(f"{np.mean(label == i):.0%}" for i in order[:8])
+    names = [f"{name_of(one)}, {np.mean(label == i):.0%}" for i, one in enumerate(attractors)]
+    pictures.basins(parts, name, label, colours, names, half, rf"$\lambda = {text}$")
     caption = (
         f"Basins at lambda = {text}: the attractor that each of {columns} x {rows} starts reaches, a colour for "
-        f"each of {len(attractors)}; shares of the cells {shares}. Sampled at the centres of the cells."
+        f"each of {len(attractors)}, with shares of the cells. Sampled at the centres of the cells."
     )
     command = asked.command("basins", f"--columns {columns} --rows {rows} --seed {asked.seed}", DRAWN, lam=text)
     return Picture(name, caption, f"Basins of attraction at lambda = {text}", command)

@@ -23,7 +23,7 @@ COLUMNS, ROWS = 48, 64  # cells of phase space on the page, at most
 
 
 def explorer(found: "xr.Dataset", label: Numbers) -> str:
-    """The page, one file that needs no network; `label` has the class of each box."""
+    """The page as HTML, one file that needs no network; `label` has the class of each box of parameters."""
     settings = json.loads(found.attrs["settings"])
     parameter, sets = settings["parameter"], found.sets.values
     scene = Scene.parse(found.attrs["scene"])
@@ -64,7 +64,7 @@ def explorer(found: "xr.Dataset", label: Numbers) -> str:
 
 
 def _thinned(cells: NDArray[np.int8]) -> NDArray[np.int8]:
-    """Fewer cells of phase space: each shows the set of the last number that its block holds."""
+    """Cells of phase space, coarsened to at most `ROWS` by `COLUMNS`: each has the largest set number in its block."""
     for axis, most in ((-2, ROWS), (-1, COLUMNS)):
         step = -(-cells.shape[axis] // most)
         cells = np.maximum.reduceat(cells, np.arange(0, cells.shape[axis], step), axis=axis)

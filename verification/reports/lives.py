@@ -1,383 +1,423 @@
-"""Every cycle that a search finds, followed from birth to death: its events, certified, and the doublings beyond."""
+"""Families of cycles from birth to death: their table, their events with proofs, and a picture of each large one."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from sympy import S
 
-from symbolic.tables.definition import exact
+from numeric import PinballMap
+from numeric.dynamics.attractors import find
+from numeric.dynamics.phase_points import PhasePoints
+from numeric.dynamics.recognition import Kind, wilson
+from numeric.dynamics.symmetries import moved, symmetries_of
+from numeric.sweeps.endings import CHAOTIC, NEUTRAL, STOPPED
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal
-from verification.cycles.arc import End, LostError, Steps
-from verification.cycles.branch import Branch, Event, spectrum_of
+from verification.cycles.branch import Branch, Event
 from verification.cycles.cascade import FEIGENBAUM
+from verification.cycles.chords import Chords
 from verification.cycles.recurrence import BifurcationKind
-from verification.cycles.switching import switched
-from verification.named.events import EventCurve, Plane, curves_along, proof_of
-from verification.named.files import document
-from verification.named.questions import PeriodicOrbit, Tick, find_cycles, follow
+from verification.named.attractors import joined
+from verification.named.events import proof_of
+from verification.named.families import SETS, SURE, Continuation, FamilyEvent
+from verification.named.questions import PeriodicOrbit, Tick, follow
 from verification.plots.dynamics import plotted
 from verification.plots.sheet import styled
-from verification.proofs.periodic.bifurcation import Proof
 from verification.reports.asked import DRAWN, Asked, Parts
-from verification.reports.blocks import Block, Cell, Certificate, Effort, Known, Listing, Number, Picture, Words, solved
+from verification.reports.blocks import (
+    Block,
+    Cell,
+    Certificate,
+    Effort,
+    Known,
+    Listing,
+    Paragraph,
+    Picture,
+    ShownNumber,
+    solved,
+)
+from verification.reports.dynamics import counted, wrapped
 from verification.reports.pictures import saved
 
 Document = dict[str, Any]
 Made = tuple[list[Block], list[Effort], Document]
 MOST = 250  # points of a branch, each way
-DOUBLED = 60  # of the branch of a doubled cycle
-STEPS = Steps(largest=0.2, most=150)  # of a curve
-LOCATED, PLACED = 9, 6  # digits of an event, and of a point on a curve
+LOCATED = 9  # digits of an event
+FOLLOWED = 32  # bounces, at most, that the independent checker follows all round, which takes digits for each of them
 CERTAIN = {BifurcationKind.BRANCH_POINT: 7}  # where branches cross the equations are singular
-MARK = 5  # decimals of trace and determinant by which cycles are told apart
-LAWS = {True: "vanish", False: "do not vanish", None: "no such law here"}
+VALUES, SHAPES = (50, 200, 400, 800), (10, 40, 80, 160)  # of the contraction, or of another letter, at each level
+DRAWN_ALONE = 6  # families that have a picture of their own
+OTHER = ("chaotic", "neutral", "stopped", "other")  # of the shares, after those of the families
 
 
-def search(asked: Asked, text: str, heard: Tick = lambda said: None) -> Made:
-    """The cycles up to the asked period at one contraction, as far as a search finds them; `heard` after each round."""
-    found = find_cycles(asked.scene.at(lam=text), up_to=asked.period, seed=asked.seed, tick=heard)
-    searched = found.searched
-    assert searched is not None
+def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continuation:
+    """The families known so far in this run, followed further; `TimeoutError` where `heard` raises it."""
+    found: Continuation = parts.memory.get("families") or Continuation(
+        asked.scene, asked.parameter, (asked.low, asked.high), seed=asked.seed
+    )
+    parts.memory["families"], found.tick = found, heard
+    found.run((VALUES if asked.parameter == "lam" else SHAPES)[level])
+    return found
+
+
+def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
+    """The families that attract random starts, the shares of the starts, and a check at values that were not used."""
+    try:
+        found, late = continuation(asked, parts, level, heard), False
+    except TimeoutError:
+        found, late = parts.memory["families"], True
+    numbers = _shares(found)
+    parts.keep(f"families-{level}", numbers | lines(asked, found))
+    checked = found.check()
     data = {
-        "at": text,
-        "rows": [
-            [n, len(found.of(n)), len(found.of(n).stable), LAWS[searched.balanced[n]]]
-            for n in range(2, asked.period + 1)
-        ],
-        "degenerate": searched.catalogue.degenerate,
-        "resolution": searched.catalogue.resolution(asked.period),
-        "cycles": [said_of(orbit) for orbit in found],
+        "level": level,
+        "late": late,
+        "families": [family_said(found, i, numbers) for i in range(len(found.families))],
+        "events": [event_said(found, event) for event in found.events],
+        "ranges": found.document_of_ranges(),
+        "amid_chaos": found.amid_chaos(),
+        "unfollowed": [[one.value, one.period, one.share, one.why] for one in found.unfollowed],
+        "values": len(found.seen),
+        "starts": found.starts,
+        "small": int(numbers["counts"][:, -1].sum()),
+        "total": int(numbers["counts"].sum()),
+        "check": checked.document() | {"words": checked.words},
+        "command": asked.command("follow", asked.varied, f"--all --digits {asked.digits}"),
     }
-    return [], [Effort(f"search at lambda = {text}", f"{searched.rounds} rounds", 0.0)], data
+    size = f"{len(found.seen)} values of {asked.parameter}, {data['total']} starts, {len(found.families)} families"
+    return [], [Effort("families of cycles", size, 0.0)], data
 
 
-def searched_blocks(asked: Asked, searches: Sequence[Document]) -> list[Block]:
-    """What all searches found, in one table, and what they cannot tell."""
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (said["at"], str(n), str(count), str(stable), sums)
-        for said in searches
-        for n, count, stable, sums in said["rows"]
-    )
-    last = searches[-1]
+def _shares(found: Continuation) -> dict[str, Any]:
+    """The number of starts that end on each family, and on each of the `OTHER` kinds, at each value."""
+    n = len(found.families)
+    counts = np.zeros((len(found.seen), n + len(OTHER)), dtype=np.int32)
+    for row, seen, label in zip(counts, found.seen, found.labels, strict=True):
+        row[:n] = np.bincount(label[label >= 0], minlength=n)[:n]
+        row[n:-1] = [np.sum(seen.kind == kind) for kind in (CHAOTIC, NEUTRAL, STOPPED)]
+        row[-1] = seen.starts - row[:-1].sum()
+    return {"shares_at": np.array([seen.value for seen in found.seen]), "counts": counts}
+
+
+def lines(asked: Asked, found: Continuation) -> dict[str, Any]:
+    """Lines for the diagram, nan between: family, parameter, arc length of bounces and images while it attracts."""
+    map = found.map_at(asked.own_value)
+    half, group = map.arclength.perimeter / 2, symmetries_of(map)
+    rows = list[Any]()
+    for number, family in enumerate(found.families):
+        ring = family.branch.system.recurrence
+        assert isinstance(ring, Chords)
+        placed = [ring.placed(point.z[:-1]) for point in family.branch.points]
+        part = np.array([at.components for at, _ in placed])
+        theta = np.array([x for _, x in placed])
+        values = np.where(family.stable, family.branch.values, np.nan)
+        for symmetry in group:
+            image = moved(symmetry, PhasePoints(part.ravel(), theta.ravel(), np.zeros(theta.size)))
+            s = wrapped(map.arclength.s(image.theta, image.component), half).reshape(theta.shape)
+            s[1:][np.abs(np.diff(s, axis=0)) > half] = np.nan  # over the end of the circle
+            for column in s.T:
+                rows.append((np.full(len(values) + 1, number), np.append(values, np.nan), np.append(column, np.nan)))
+    columns = [np.concatenate(each) for each in zip(*rows, strict=True)] if rows else [np.empty(0)] * 3
+    return {**dict(zip(("family", "at", "s"), columns, strict=True)), "half": np.array(half)}
+
+
+def family_said(found: Continuation, number: int, numbers: Mapping[str, Any]) -> Document:
+    """A family as plain data: its JSON, its parent, its largest share of the starts, and a cycle of it."""
+    family = found.families[number]
+    best = int(np.argmax(numbers["counts"][:, number] / numbers["counts"].sum(axis=1)))
+    parent = family.parent if family.birth else next((e.family for e in found.events if e.born == number), None)
+    return {
+        **found.branch_document(family),
+        "parent": None if parent == number else parent,
+        "largest": [float(numbers["shares_at"][best]), int(numbers["counts"][best, number]), found.seen[best].starts],
+        "cycle": said_of(found.cycle(family)),
+        "at": repr(float(family.start[-1])),
+        "ends": [why.removesuffix(" was reached") for _, why in family.branch.ends],
+    }
+
+
+def event_said(found: Continuation, event: FamilyEvent) -> Document:
+    """An event as plain data, before it is proved."""
+    form = event.event.form
+    plain = found.event_document(event, None, LOCATED)
+    return {**plain, "supercritical": form.supercritical if form else None, "key": key_of(plain)}
+
+
+def key_of(event: Mapping[str, Any]) -> str:
+    """A name for an event that is the same at every level."""
+    return f"{event['kind']} {event['period']} {float(event['value']):.8f}"
+
+
+def proofs(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
+    """Proofs of the events, those of the families with most starts first, as far as there is time."""
+    before = parts.read(f"proofs-{level - 1}")
+    data: Document = {"proofs": dict(before["data"]["proofs"]) if before else {}, "late": False}
+    blocks: list[Block] = []
+    try:
+        found = parts.memory.get("families") or continuation(asked, parts, level, heard)
+        said = parts.read(f"families-{level}")
+        shares = [one["largest"][1] for one in said["data"]["families"]] if said else []
+        for event in sorted(found.events, key=lambda one: -shares[one.family] if one.family < len(shares) else 0):
+            key = key_of(found.event_document(event, None, LOCATED))
+            if key in data["proofs"]:
+                continue
+            heard(key)
+            name = f"event-{len(data['proofs'])}"
+            number, checks, certificate = located(asked, event.event, name, found.families[event.family].branch)
+            data["proofs"][key] = {
+                "value": number.value,
+                "error": number.error,
+                "checks": checks,
+                "proved": number.known is Known.PROVED,
+                "file": name if certificate else None,
+            }
+            blocks += [certificate] if certificate else []
+    except TimeoutError:
+        data["late"] = True
+    blocks = ([Certificate(**b) for b in _certificates(before)] if before else []) + blocks
+    return blocks, [Effort("events proved", f"{len(data['proofs'])} events", 0.0)], data
+
+
+def _certificates(found: Mapping[str, Any]) -> Iterator[Document]:
+    """The certificates among the blocks of a step."""
+    for block in found["blocks"]:
+        if block["kind"] == "certificate":
+            yield {key: value for key, value in block.items() if key != "kind"}
+
+
+def life(asked: Asked, parts: Parts, said: Document, number: int) -> Made:
+    """A section with the picture of one family: its bounces along the branch, and its events."""
+    found = parts.memory.get("families")
+    orbit = orbit_of(asked.scene.at(**{asked.parameter: said["at"]}), said["cycle"])
+    branch = found.families[number].branch if found else followed(asked, orbit)
+    with styled():
+        drawn = plotted([branch])
+        drawn.set_size_inches(6.4, 3.2)
+        saved(parts, f"life-{number}", drawn)
     caption = (
-        "Cycles found at each contraction by a search in float64, images under the symmetries counted apart. A search "
-        "proves no completeness; where the index sums vanish no single cycle is missed, but a pair may be: "
-        f"{last['resolution']}."
+        f"Family {number}, period {said['period']}, through theta = {orbit.theta[0]:.6f} at {asked.parameter} = "
+        f"{float(said['at']):.6g}: its bounces along the branch, solid where it attracts and dashed where not, with "
+        "its events. In float64."
     )
-    degenerate = sum(said["degenerate"] for said in searches)
-    if degenerate:
-        caption += f" {degenerate} times a cycle with the multiplier 1 was met, of a family or at a bifurcation."
-    command = asked.command("cycles", f"--period {asked.period} --seed {asked.seed}", lam=last["at"])
-    return [Listing(caption, ("lam", "period", "cycles", "stable", "index sums"), rows, command)]
+    alt = f"Bounces of a cycle of period {orbit.period} against {asked.parameter}"
+    picture = Picture(f"life-{number}", caption, alt, f"{command(asked, orbit, said['at'])} {DRAWN}")
+    return (
+        [picture],
+        [Effort(f"picture of family {number}", f"{len(branch.points)} points", 0.0)],
+        {"mark": said["low"]},
+    )
+
+
+def chaos(asked: Asked, said: Document) -> Made:
+    """The attractors that coexist at some of the values where starts end on chaos, each set with its images."""
+    rows: list[tuple[Cell, ...]] = []
+    for value in said["amid_chaos"]:
+        map = PinballMap(asked.scene.at(**{asked.parameter: repr(value)}))
+        row = joined(find(map, SETS, asked.seed, images=True), SETS, value)
+        for one in row.members:
+            if one.kind is Kind.CHAOTIC:
+                nu = ShownNumber(f"{one.nu_plus:.4f}", f"{max(one.first.errors[0], 5e-5):.0e}", Known.SAMPLED)
+                group = f"{one.symmetry}, {one.copies}"
+                doubt = one.first.doubt or "-"
+                rows.append((f"{value:.6g}", group, counted(one.share.count, SETS), nu, str(row.attractors), doubt))
+    caption = (
+        f"Chaotic attractors that coexist, at some values of {asked.parameter}: told apart by the cells that {SETS} "
+        "random starts meet, with their images under the symmetries. Sampled."
+    )
+    columns = asked.parameter, "symmetry, copies", "share of the starts", "nu_plus", "attractors in all", "doubt"
+    blocks: list[Block] = [Listing(caption, columns, tuple(rows), said["command"])] if rows else []
+    size = f"{len(said['amid_chaos'])} values, {SETS} starts"
+    return blocks, [Effort("chaotic attractors told apart", size, 0.0)] if rows else [], {}
+
+
+def drawn_alone(said: Sequence[Document]) -> list[int]:
+    """The numbers of the `DRAWN_ALONE` families with the largest shares of starts."""
+    order = sorted(range(len(said)), key=lambda i: -said[i]["largest"][1] / said[i]["largest"][2])
+    return sorted(order[:DRAWN_ALONE])
 
 
 def said_of(orbit: PeriodicOrbit) -> Document:
-    """A cycle as plain data."""
+    """A cycle as plain data for JSON."""
     one, two = orbit.multipliers
     return {
         "components": list(orbit.components),
         "theta": list(orbit.theta),
         "phi": list(orbit.phi),
         "multipliers": [[one.real, one.imag], [two.real, two.imag]],
-        "mark": mark(orbit.period, (one + two).real, (one * two).real),
     }
 
 
-def mark(period: int, trace: float, determinant: float) -> list[float]:
-    """What cycles have in common that a symmetry exchanges."""
-    return [period, round(trace, MARK) + 0.0, round(determinant, MARK) + 0.0]
-
-
 def orbit_of(scene: Scene, said: Document) -> PeriodicOrbit:
-    """The cycle that was written down."""
+    """The cycle of plain data from `said_of`."""
     one, two = (complex(*pair) for pair in said["multipliers"])
     return PeriodicOrbit(scene, tuple(said["components"]), tuple(said["theta"]), tuple(said["phi"]), (one, two))
 
 
-def known(said: Document, text: str, lives: list[Document]) -> bool:
-    """Does one of the branches that were followed pass through this cycle, or an image of it, at a contraction?"""
-    return any(_near(said["mark"], each) for life in lives for each in life["passes"].get(text, []))
-
-
-def _near(one: list[float], two: list[float]) -> bool:
-    return one[0] == two[0] and all(abs(a - b) <= 3 * 10**-MARK * (1 + abs(a)) for a, b in zip(one, two, strict=True))
-
-
-def life(asked: Asked, parts: Parts, text: str, said: Document, number: int) -> Made:
-    """A cycle followed both ways to the ends of its branch, with what happens on the way."""
-    orbit = orbit_of(asked.scene.at(lam=text), said)
-    name = f"life-{number}"
-    try:
-        branch = followed(asked, orbit)
-    except (ValueError, LostError, ZeroDivisionError) as why:
-        words = Words(f"A cycle of period {orbit.period} at lambda = {text} could not be followed: {why}.")
-        return [words], [], {"passes": {text: [said["mark"]]}, "events": []}
-    events = [located(asked, event, orbit.period, f"{name}-{i}", branch) for i, event in enumerate(branch.events)]
-    blocks: list[Block] = [_listing(asked, branch, orbit, events, text)]
-    with styled():
-        drawn = plotted([branch])
-        drawn.set_size_inches(6.0, 3.2)
-        saved(parts, name, drawn)
-    caption = (
-        f"The cycle of period {orbit.period} through theta = {orbit.theta[0]:.6f} at lambda = {text}: its bounces "
-        "along the branch, solid where it attracts and dashed where not, with its events. In float64."
-    )
-    alt = f"Bounces of a cycle of period {orbit.period} against {asked.parameter}"
-    blocks.append(Picture(name, caption, alt, f"{command(asked, orbit, text)} {DRAWN}"))
-    blocks += [event.certificate for event in events if event.certificate]
-    certified = sum(event.certificate is not None for event in events)
-    size = f"{len(branch.points)} points, {certified} certificates"
-    data = {
-        "passes": _passing(asked, branch, text, said["mark"]),
-        "events": [[event.value, event.label] for event in events],
-        "located": [event.document(asked.parameter, orbit.period) for event in events],
-        "flips": [i for i, event in enumerate(branch.events) if event.kind is BifurcationKind.FLIP],
-        "cycle": said,
-        "at": text,
-    }
-    return blocks, [Effort(f"cycle {number} of period {orbit.period} followed", size, 0.0)], data
-
-
 def followed(asked: Asked, orbit: PeriodicOrbit) -> Branch:
-    """The branch of a cycle over the interval that was asked for."""
+    """The branch of a cycle over the interval of the report."""
     interval: dict[str, Any] = {asked.parameter: (asked.low, asked.high)}
     return follow(orbit, points=MOST, **interval).branch
 
 
-def _passing(asked: Asked, branch: Branch, text: str, own: list[float]) -> dict[str, list[list[float]]]:
-    """The marks of the cycles where a branch passes the contractions that are looked at, its `own` among them."""
-    system, found = branch.system, {text: [own]}
-    for other in asked.at if asked.parameter == "lam" else ():
-        value = float(exact("--at", other))
-        try:
-            tests = [system.tests(z) for z in branch.at(value)]
-        except LostError:  # between two points where the branch turns
-            continue
-        found.setdefault(other, []).extend(
-            mark(system.recurrence.period, (t["minus_one"] - t["one"]) / 2, t["volume"] + 1) for t in tests
-        )
+def events_of(said: Document, proved: Mapping[str, Document]) -> list[Document]:
+    """The events as JSON, with the digits of the proofs that exist."""
+    found = []
+    for event in said["events"]:
+        proof = proved.get(event["key"])
+        digits = {"value": proof["value"], "radius": proof["error"] or None} if proof else {"radius": None}
+        plain = {key: event[key] for key in ("kind", "period", "parameter", "value", "branch", "born")}
+        found.append({**plain, **digits, "certified": bool(proof and proof["file"])})
     return found
 
 
-@dataclass(frozen=True)
-class Located:
-    """An event of a branch with the words of its label, its number, and its certificate if it has one."""
-
-    event: Event
-    label: str
-    number: Number
-    checks: str = "no certificate for this kind"
-    certificate: Certificate | None = None
-
-    @property
-    def value(self) -> float:
-        """The parameter."""
-        return self.event.value
-
-    @property
-    def row(self) -> tuple[Cell, ...]:
-        """What a table says of it."""
-        form = self.event.form
-        side = {True: "supercritical", False: "subcritical", None: ""}[form.supercritical if form else None]
-        return self.event.kind.value, self.number, side, self.checks
-
-    def document(self, parameter: str, period: int) -> Document:
-        """The event for JSON; its value and radius are decimals as text."""
-        return {
-            "kind": self.event.kind.name.lower(),
-            "period": period,
-            "parameter": parameter,
-            "value": self.number.value,
-            "radius": self.number.error or None,
-            "certified": self.certificate is not None,
-        }
+def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[Block]) -> list[Block]:
+    """The table of events, and where cascades of doublings would end."""
+    rows: list[tuple[Cell, ...]] = []
+    for event in said["events"]:
+        proof = proved.get(event["key"])
+        known = Known.PROVED if proof and proof["proved"] else Known.FLOAT
+        where = ShownNumber(proof["value"], proof["error"], known) if proof else solved(float(event["value"]), LOCATED)
+        side = {True: "supercritical", False: "subcritical", None: ""}[event["supercritical"]]
+        born = "-" if event["born"] is None else f"family {event['born']}"
+        words = BifurcationKind[event["kind"].upper()].value
+        checks = proof["checks"] if proof else "left for more time"
+        rows.append((where, words, side, str(event["period"]), f"family {event['branch']}", born, checks))
+    caption = (
+        "Every event next to which a family attracts, in order of the parameter; located in float64 and then proved in "
+        "balls where its kind has a certificate."
+    )
+    columns = "at", "what happens", "", "period", "on", "born there", "checklist"
+    first: Block = (
+        Listing(caption, columns, tuple(rows), said["command"]) if rows else Paragraph("No family has an event.")
+    )
+    return [first, *_cascades(said), *more]
 
 
-def located(asked: Asked, event: Event, period: int, name: str, branch: Branch) -> Located:
-    """An event of a branch, certified to the asked digits where its kind has certificates."""
-    between = float(np.max(np.abs(np.diff(branch.values)), initial=0.0))  # two points, one of them on either side
-    digits, step = CERTAIN.get(event.kind, LOCATED), 0.0 if event.located else between
-    plain = Located(event, f"{event.kind.value} {period}", solved(event.value, digits, step))
-    try:
-        proof = proof_of(event, asked.digits, asked.parameter, None if asked.parameter == "lam" else S(asked.scene.lam))
-    except (ValueError, ZeroDivisionError) as why:
-        return Located(event, plain.label, plain.number, f"no proof: {why}")
-    return plain if proof is None else _proved(asked, plain, proof, name)
-
-
-def _proved(asked: Asked, plain: Located, proof: Proof, name: str) -> Located:
-    value, radius = decimal(proof.value, asked.digits + 1)
-    open_ = [item for item, holds in proof.checks.items() if holds is not True]
-    checks = f"open: {', '.join(open_)}" if open_ else f"all {len(proof.checks)} items hold"
-    number = Number(value, radius, Known.FLOAT if open_ else Known.PROVED)
-    try:
-        certificate = None if open_ else Certificate(name, document(proof))
-    except ValueError as why:  # what the format does not hold
-        return Located(plain.event, plain.label, number, f"{checks}; no file: {why}", None)
-    return Located(plain.event, plain.label, number, checks, certificate)
-
-
-def plane_of(asked: Asked) -> Plane:
-    """The plane of a report in two parameters."""
-    assert asked.second is not None
-    name, low, high = asked.second
-    return Plane.of(asked.scene, name, (low, high), (asked.low, asked.high))
-
-
-def curves(
-    asked: Asked, said: Document, number: int, known: Sequence[Document], heard: Tick = lambda said: None
-) -> Made:
-    """The events of a life as curves in both parameters, and those that the cycle meets along the other parameter.
-
-    Left out are those that lie on a curve that is `known`.
-    """
-    plane, found = plane_of(asked), list[Document]()
-    for branch, other, options in _lines(asked, said):
-        heard(options)
-        seen = [EventCurve(**each) for each in (*known, *found)]
-        for curve in curves_along(branch, plane, other, seen, STEPS, lambda point: heard("curve")):
-            deeper = f" --switch {curve.depth}" if curve.depth else ""
-            found.append(curve.document() | {"command": asked.command("follow", f"{options}{deeper}")})
-    return [], [Effort(f"curves of cycle {number}", f"{len(found)} curves", 0.0)], {"curves": found}
-
-
-def _lines(asked: Asked, said: Document) -> Iterator[tuple[Branch, float, str]]:
-    """The life in the contraction, and at each contraction that is looked at the same cycle in the other parameter.
-
-    With each comes the number of the parameter that is fixed, and the options that follow it again.
-    """
-    assert asked.second is not None
-    letter, low, high = asked.second
-    here = orbit_of(asked.scene.at(lam=said["at"]), said["cycle"])
-    branch = followed(asked, here)
-    over = f"--lam {asked.low}:{asked.high} --at {said['at']} --curves {letter}={low}:{high}"
-    yield branch, asked.own, f"{over} {start_of(asked, here)}"
-    for text in asked.at:
-        lam = float(exact("--at", text))
-        try:
-            places = branch.at(lam)
-        except LostError:
-            continue
-        for z in places:
-            orbit = replace(here, scene=asked.scene.at(lam=text), theta=tuple(z[:-1].tolist()))
-            over = f"--lam {text} --shape {letter}={low}:{high} --curves lam={asked.low}:{asked.high}"
-            interval: dict[str, Any] = {letter: (low, high)}
-            try:
-                other = follow(orbit, points=MOST, **interval).branch
-            except ValueError:  # a cycle of a family, or at a bifurcation
-                continue
-            yield other, lam, f"{over} {start_of(asked, orbit)}"
-
-
-def curve_blocks(asked: Asked, found: Sequence[Document]) -> list[Block]:
-    """What each curve is, where it runs, and the command that follows it."""
-    assert asked.second is not None
-    letter = asked.second[0]
+def _cascades(said: Document) -> list[Block]:
+    """A sentence for each chain of doublings: the ratios of their distances, and an estimate of the limit."""
+    flips = {e["branch"]: (float(e["value"]), e["born"]) for e in said["events"] if e["kind"] == "flip"}
+    chained = {born for _, born in flips.values()}
     blocks: list[Block] = []
-    for number, curve in enumerate(found, 1):
-        place, ends = "({:.6g}, {:.6g})", (curve["points"][0], curve["points"][-1])
-        rows: list[tuple[Cell, ...]] = [
-            (
-                f"end: {why.removesuffix(' was reached')}",
-                *(solved(x, PLACED) for x in np.round(point[:2], 9) + 0.0),
+    for first in sorted(set(flips) - chained):
+        values, at = list[float](), first
+        while at in flips:
+            values.append(flips[at][0])
+            at = flips[at][1]
+        gaps = np.diff(values)
+        if len(gaps) < 2 or not (np.all(gaps > 0) or np.all(gaps < 0)):
+            continue
+        ratios = ", ".join(f"{a / b:.4f}" for a, b in pairwise(gaps))
+        limits = [b + (b - a) / (FEIGENBAUM - 1) for a, b in pairwise(values)]
+        blocks.append(
+            Paragraph(
+                f"Cascade from family {first} of period {said['families'][first]['period']}: {len(values)} doublings "
+                f"in a row; successive distances have the ratios {ratios}; Feigenbaum's is 4.6692. If further ones "
+                f"shrink by that number the cascade accumulates at {limits[-1]:.8g} ± "
+                f"{abs(limits[-1] - limits[-2]):.1g}: an estimate from the last two distances, not proved."
             )
-            for why, point in zip(curve["ends"], ends, strict=True)
-        ]
-        rows += [(what, *(solved(x, PLACED) for x in np.round(point, 9) + 0.0)) for what, *point in curve["special"]]
-        caption = (
-            f"Curve {number}: {curve['kind']} of period {curve['period']}, through ({letter}, lambda) = "
-            f"{place.format(*curve['near'])}; {len(curve['points'])} points, each solved for in float64."
         )
-        blocks.append(Listing(caption, ("what", letter, "lambda"), tuple(rows), curve["command"]))
-    if not found:
-        blocks.append(Words("No curve: the cycles that were followed met no fold, doubling or pitchfork on their way."))
     return blocks
 
 
-COLUMNS = "what happens", "at", "branch that is born", "checklist"
-
-
-def _listing(asked: Asked, branch: Branch, orbit: PeriodicOrbit, events: list[Located], text: str) -> Listing:
-    """Birth, death and what happens between."""
+def family_blocks(asked: Asked, said: Document) -> list[Block]:
+    """The table of the families, and the ranges without cycles."""
     rows: list[tuple[Cell, ...]] = []
-    for points, (end, why) in zip((branch.points[:2], branch.points[:-3:-1]), branch.ends, strict=True):
-        values = [float(point.z[-1]) for point in points]
-        exact = Number(f"{values[0]:.9g}") if end is End.INTERVAL else None
-        where = exact or solved(values[0], LOCATED, abs(values[-1] - values[0]))
-        rows.append((f"branch ends: {why.removesuffix(' was reached')}", where, "", "-"))
-    rows[1:1] = [event.row for event in events]
-    stable = np.array([spectrum_of(point).stable for point in branch.points])
-    share = f"attracts at {stable.mean():.0%} of the points of its branch" if stable.any() else "attracts nowhere"
+    for number, one in enumerate(said["families"]):
+        where = "; ".join(f"{low:.6g} to {high:.6g}" for low, high in one["attracts"]) or "nowhere"
+        value, count, of = one["largest"]
+        share = f"{count} of {of} at {value:.4g}, at least {wilson(count, of).low:.1%}" if count else "-"
+        origin = "-" if one["parent"] is None else f"family {one['parent']}"
+        exists = f"{one['low']:.6g} to {one['high']:.6g}"
+        group = f"{one['symmetry']}, {one['copies']}"
+        rows.append((str(number), str(one["period"]), group, exists, where, origin, share))
     caption = (
-        f"Cycle of period {orbit.period}, found at lambda = {text}: {share}. Events are located in float64 and then "
-        "proved in balls, where their kind has a certificate."
+        f"Families of cycles, each once, its images under the symmetries counted as copies. {said['total']} random "
+        f"starts at {said['values']} values of {asked.parameter} found them, {said['starts']} at each and fewer at the "
+        "closer values within chaos; each was followed from birth to "
+        "death, and a long one only while it attracts and for a while beyond."
     )
-    return Listing(caption, COLUMNS, tuple(rows), command(asked, orbit, text))
+    columns = "family", "period", "symmetry, copies", "exists", "attracts", "born on", "largest share of the starts"
+    blocks: list[Block] = []
+    if rows:
+        blocks.append(Listing(caption, columns, tuple(rows), said["command"]))
+    if said["ranges"]:
+        ranges = tuple((one["kind"], *(_between(one[end]) for end in ("low", "high"))) for one in said["ranges"])
+        words = (
+            "Where random starts end on no cycle; each end was bisected between two values, and windows divide ranges. "
+            "Chaos counts that lasts while areas shrink by exp(100), and for some thousand bounces at least: beyond a "
+            "crisis it may last so long and still end."
+        )
+        blocks.append(Listing(words, ("what", "from", "to"), ranges, said["command"]))
+    return blocks
+
+
+def _between(ends: Sequence[float]) -> ShownNumber:
+    middle, half = sum(ends) / 2, abs(ends[1] - ends[0]) / 2
+    return ShownNumber(f"{middle:.6g}", f"{half:.1g}", Known.SAMPLED)
+
+
+def missing_blocks(asked: Asked, said: Document) -> list[Block]:
+    """What may be missing: the check at other values, what could not be followed, and the share that starts miss."""
+    check = said["check"]
+    total = len(check["values"]) * check["starts"]
+    blocks: list[Block] = []
+    if check["missing"]:
+        blocks.append(Paragraph(f"SHORTFALL. {check['words']}"))
+    else:
+        blocks.append(Paragraph(check["words"]))
+    blocks.append(
+        Paragraph(
+            f"The check used {total} starts at {asked.parameter} = {', '.join(f'{x:.4g}' for x in check['values'])}. "
+            f"At one value {said['starts']} starts miss what attracts a share of {SURE / said['starts']:.2g} with a "
+            f"chance of 5 %; at k values they miss a share of {SURE / said['starts']:.2g}/k. "
+            f"{said['small']} of {said['total']} starts ended on anything else than a family, a "
+            "range or a corner. A family that lives only between two values that were sampled is not seen."
+        )
+    )
+    rows = tuple((f"{value:.6g}", str(n), f"{share:.1%}", why) for value, n, share, why in said["unfollowed"])
+    if rows:
+        blocks.append(Listing("Cycles that could not be followed.", ("at", "period", "share", "why"), rows))
+    if said["late"]:
+        blocks.append(Paragraph("The time ended before every cycle that was seen had been followed."))
+    return blocks
+
+
+def located(asked: Asked, event: Event, name: str, branch: Branch) -> tuple[ShownNumber, str, Certificate | None]:
+    """The value of an event, its checklist in words, and a certificate; to `digits` digits where its kind has one."""
+    between = float(np.max(np.abs(np.diff(branch.values)), initial=0.0))  # two points, one of them on either side
+    digits, step = CERTAIN.get(event.kind, LOCATED), 0.0 if event.located else between
+    plain = solved(event.value, digits, step)
+    period = event.ring.period
+    more = 2 * period if 6 < period <= FOLLOWED else 0
+    lam = None if asked.parameter == "lam" else S(asked.scene.lam)
+    try:
+        proof = proof_of(event, asked.digits + more, asked.parameter, lam)
+    except (ValueError, ZeroDivisionError) as why:
+        return plain, f"no proof: {why}", None
+    if proof is None:
+        return plain, "no certificate for this kind", None
+    value, radius = decimal(proof.value, asked.digits + 1)
+    if proof.open:
+        return plain, f"open: {', '.join(proof.open)}", None
+    number, checks = ShownNumber(value, radius, Known.PROVED), f"all {len(proof.checks)} items hold"
+    try:
+        return number, checks, Certificate(name, proof.document())
+    except ValueError as why:  # what the format does not hold
+        return number, f"{checks}; no file: {why}", None
 
 
 def command(asked: Asked, orbit: PeriodicOrbit, text: str) -> str:
-    """The command that follows a cycle."""
+    """The `pinball follow` command for a cycle."""
     over = [asked.varied, f"--at {text}"] if asked.parameter == "lam" else [asked.varied]
     return asked.command("follow", *over, start_of(asked, orbit), f"--digits {asked.digits}")
 
 
 def start_of(asked: Asked, orbit: PeriodicOrbit) -> str:
-    """The options that name the bounces of a cycle."""
+    """The options of `pinball follow` that give the bounces of a cycle."""
     names = [part.name for part in asked.scene.table.components]
     start = f"--start={','.join(f'{x:.9f}' for x in orbit.theta)}"
     if len(names) == 1:
         return start
     return f"{start} --components {','.join(names[i] for i in orbit.components)}"
-
-
-def cascade(asked: Asked, said: Document, number: int, longest: int) -> Made:
-    """What follows the first supercritical doubling of a life: each doubled branch with its events, certified."""
-    orbit = orbit_of(asked.scene.at(lam=said["at"]), said["cycle"])
-    branch, period = followed(asked, orbit), orbit.period
-    event = next((e for e in branch.events if e.kind is BifurcationKind.FLIP and e.form and e.form.supercritical), None)
-    flips = [] if event is None else [event.value]
-    found: list[tuple[int, Located]] = []
-    while event is not None and 2 * period <= longest:
-        period *= 2
-        try:
-            (branch,) = switched(branch, event, asked.ends, Steps(most=DOUBLED))
-        except (LostError, ValueError):
-            break
-        found += [
-            (period, located(asked, e, period, f"cascade-{number}-{period}-{i}", branch))
-            for i, e in enumerate(branch.events)
-        ]
-        event = next((e for e in branch.events if e.kind is BifurcationKind.FLIP), None)
-        flips += [] if event is None else [event.value]
-    if not flips:
-        return [], [], {"events": []}
-    rows: tuple[tuple[Cell, ...], ...] = tuple((str(n), *each.row) for n, each in found)
-    words = command(asked, orbit, said["at"])
-    caption = _doublings(orbit, period, flips)
-    listing = Listing(caption, ("period", *COLUMNS), rows, f"{words} --switch 1") if rows else Words(caption)
-    blocks: list[Block] = [listing, *(each.certificate for _, each in found if each.certificate)]
-    data = {
-        "events": [[each.value, each.label] for _, each in found],
-        "located": [each.document(asked.parameter, n) for n, each in found],
-        "doublings": flips,
-    }
-    return blocks, [Effort(f"cascade of cycle {number}", f"up to period {period}", 0.0)], data
-
-
-def _doublings(orbit: PeriodicOrbit, longest: int, flips: list[float]) -> str:
-    """The caption of a cascade, with the ratios of its distances and where it would accumulate."""
-    said = f"Beyond the doubling of the cycle of period {orbit.period}: what happens up to period {longest}."
-    gaps = np.diff(flips)
-    if len(gaps) < 2:
-        return f"{said} No cascade was seen: {len(flips)} successive doubling{'s' if len(flips) > 1 else ''}."
-    ratios = ", ".join(f"{a / b:.4f}" for a, b in pairwise(gaps))
-    limits = [b + (b - a) / (FEIGENBAUM - 1) for a, b in pairwise(flips)]
-    return (
-        f"{said} Successive distances of doublings have the ratios {ratios}; Feigenbaum's is 4.6692. If further ones "
-        f"shrink by that number the cascade accumulates at {limits[-1]:.8g} ± {abs(limits[-1] - limits[-2]):.1g}: an "
-        "estimate from the last two distances, not proved."
-    )

@@ -14,9 +14,9 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 from verification.paper.report.findings import escaped
-from verification.paper.report.mathml import formula, formulas, mathml, remark
+from verification.paper.report.mathml import font_style, formula, formulas, mathml, remark
 from verification.reports.asked import FILE, Parts
-from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Number, Picture, Words
+from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Paragraph, Picture, ShownNumber
 from verification.reports.report import Report
 
 MEANINGS = {
@@ -34,18 +34,21 @@ STEPS = {  # in words
     "plane": "the plane of both parameters",
     "census": "attractors and their basins",
     "derivation": "thresholds in closed form",
-    "search": "the search for cycles",
-    "life": "cycles followed",
+    "families": "families of cycles",
+    "proofs": "proofs of events",
+    "life": "pictures of families",
     "curves": "curves of events",
     "crises": "the search for tangencies",
     "tangency": "proofs of tangencies",
-    "cascade": "doublings",
+    "regions": "regions of coexistence",
+    "chaos": "chaotic attractors told apart",
+    "work": "error against run time",
 }
 FRAME = '<div class="{}" tabindex="0" role="group" aria-label="{}">{}</div>'  # can be scrolled by keyboard
 
 
 def page(report: Report, parts: Parts) -> str:
-    """The whole page. Two runs differ in seconds, and in how far they got."""
+    """The whole page as HTML. Two runs differ in the seconds, and in how far they got."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"remark": remark, "said": said, "further": further}
     environment.filters["block"] = partial(shown, parts=parts)
@@ -53,6 +56,7 @@ def page(report: Report, parts: Parts) -> str:
     asked = report.asked
     return template.render(
         title=asked.title,
+        formulas=font_style(),
         scene=asked.scene.text,
         file=FILE,
         address=address("application/toml", asked.scene_file().encode()),
@@ -65,21 +69,21 @@ def page(report: Report, parts: Parts) -> str:
 
 
 def further(left: Iterable[str]) -> str:
-    """The steps for which there was no time, in words, each kind once.
+    """The kinds of steps for which there was no time, in words, each once.
 
-    >>> further(("search-0", "search-1", "diagram-1"))
-    'the search for cycles, the bifurcation diagram'
+    >>> further(("families-0", "families-1", "diagram-1"))
+    'families of cycles, the bifurcation diagram'
     """
     return ", ".join(dict.fromkeys(STEPS[name.split("-")[0]] for name in left))
 
 
 def said(text: str) -> Markup:
-    """A formula as MathML, anything else in words."""
+    """A formula as MathML, any other text as words."""
     return formula(text) or remark(text)
 
 
 def again(report: Report) -> list[str]:
-    """The options that ask for the same report."""
+    """The options that make the same report again."""
     asked = report.asked
     at = [f"--at {','.join(asked.at)}"] if asked.parameter == "lam" else []
     looked = [*at, f"--period {asked.period}", f"--digits {asked.digits}"]
@@ -88,18 +92,18 @@ def again(report: Report) -> list[str]:
 
 
 def address(kind: str, content: bytes) -> str:
-    """An address that holds the content whole."""
+    """A data URL with the content inside."""
     return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def tag(known: Known) -> Markup:
-    """The mark that says how a number is known."""
+    """The mark beside a number that says how it is known, as HTML."""
     return Markup('<span class="known {}">{}</span>').format(known.name.lower(), known.value.split(",")[0])
 
 
 def shown(block: Block, parts: Parts) -> Markup:
     """A block as HTML."""
-    if isinstance(block, Words):
+    if isinstance(block, Paragraph):
         return Markup("<p>{}</p>").format(remark(block.text))
     if isinstance(block, Formula):
         head = Markup('<p class="name">{} {}</p>').format(remark(block.name), tag(block.known))
@@ -126,7 +130,7 @@ def _table(block: Listing) -> Markup:
     return caption + Markup(FRAME).format("table", block.caption.split(":")[0][:60], table) + _command(block.command)
 
 
-def _cell(cell: str | Number) -> Markup:
+def _cell(cell: str | ShownNumber) -> Markup:
     if isinstance(cell, str):
         return remark(cell)
     shown = said(cell.value) if cell.known is Known.EXACT else remark(cell.words)
@@ -169,7 +173,7 @@ SIGNS = {"plus": "_+", "minus": "_-", None: ""}
 
 
 def latex(report: Report, parts: Parts) -> str:
-    """The whole document."""
+    """The whole report as a LaTeX document."""
     asked = report.asked
     lines = [HEAD, r"\begin{document}", rf"\section*{{What becomes of {tex(asked.title)}}}"]
     lines += [rf"\url{{{_tex_address(asked.scene.text)}}}", ""]
@@ -181,7 +185,7 @@ def latex(report: Report, parts: Parts) -> str:
 
 
 def tex(text: str) -> str:
-    r"""Text with its formulas set, its special signs escaped and the code's letters as the paper's.
+    r"""Text in LaTeX: formulas typeset, special characters escaped, and names of variables as the paper's letters.
 
     >>> print(tex("50 %: nu_plus for lambda = 1/2"))
     50 \%: $\nu_+$ for $\lambda = \frac{1}{2}$
@@ -200,7 +204,7 @@ def _plain(text: str) -> str:
 
 def typeset(given: Block, parts: Parts) -> str:
     """A block in LaTeX."""
-    if isinstance(given, Words):
+    if isinstance(given, Paragraph):
         return tex(given.text)
     if isinstance(given, Formula):
         return rf"\emph{{{tex(given.name)}}} ({given.known.value})" + f"\n\\[ {given.latex} \\]"
@@ -218,7 +222,7 @@ def typeset(given: Block, parts: Parts) -> str:
 
 
 def _shares(given: Listing) -> list[int]:
-    """Of the width of a table what each column takes, in hundredths: as its longest word or all of them ask."""
+    """Widths of a table's columns in hundredths, by their longest words and texts."""
     columns = zip(given.columns, *given.rows, strict=True)
     texts = [[cell if isinstance(cell, str) else f"{cell.words} sampled" for cell in column] for column in columns]
     sizes = [max(max([len(text) / 3, *map(len, text.split())]) for text in column) for column in texts]
@@ -229,7 +233,7 @@ def _tex_certificate(given: Certificate) -> str:
     return rf"\texttt{{{escaped(given.name)}.json}}: {tex(str(given.document['name']))}"
 
 
-def _tex_cell(cell: str | Number) -> str:
+def _tex_cell(cell: str | ShownNumber) -> str:
     if isinstance(cell, str):
         return tex(cell)
     return rf"{tex(cell.words)} \emph{{\footnotesize {cell.known.value.split(',')[0]}}}"
@@ -240,5 +244,5 @@ def _tex_command(text: str) -> str:
 
 
 def _tex_address(text: str) -> str:
-    r"""What `\url` takes: a per cent sign would be read by TeX, and so would a brace without its other."""
+    r"""Text for `\url`, with per cent signs escaped, which TeX would read."""
     return text.replace("%", r"\%")

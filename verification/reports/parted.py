@@ -1,4 +1,4 @@
-"""Where the sampled attractor of a table in pieces changes at once, and how near it comes to a tangency there.
+"""Sudden changes of the sampled attractor on a table in pieces, and how near it comes to a tangency there.
 
 Manifolds that cross a join, a cusp or a corner break there, and are not followed, so no tangency is sought. But at a
 homoclinic tangency an expanded and a contracted direction are parallel: the least angle between both, over a chaotic
@@ -17,7 +17,7 @@ from numeric.dynamics.phase_points import PhasePoints
 from numeric.pinball.sampling import interior_starts
 from numeric.sweeps.sweep import measured
 from verification.reports.asked import Asked
-from verification.reports.blocks import Block, Cell, Known, Listing, Number, Words
+from verification.reports.blocks import Block, Cell, Known, Listing, Paragraph, ShownNumber
 
 PARTICLES, TRANSIENT, BOUNCES, WATCHED = 64, 5_000, 1_000, 400
 NONE = (
@@ -34,7 +34,7 @@ CAPTION = (
 
 
 def least_angle(asked: Asked, lam: float) -> tuple[float, float, int] | None:
-    """The least angle between the expanded and the contracted direction, its error, and over how many points.
+    """The least angle between the expanded and the contracted direction, its error, and the number of points used.
 
     None where fewer than two particles are chaotic, or at contraction 0, where one direction vanishes.
 
@@ -58,7 +58,7 @@ def least_angle(asked: Asked, lam: float) -> tuple[float, float, int] | None:
 
 
 def near_changes(asked: Asked, pairs: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
-    """For each change, between two contractions, the smaller of the least angles on its sides."""
+    """For each change, the two contractions around it and the smaller of the least angles at them."""
     rows = []
     for low, high in pairs:
         sides = [side for lam in (low, high) if (side := least_angle(asked, lam))]
@@ -67,16 +67,16 @@ def near_changes(asked: Asked, pairs: Sequence[tuple[float, float]]) -> list[dic
 
 
 def told_of(asked: Asked, rows: Sequence[Mapping[str, Any]]) -> Block:
-    """What a report says of the changes."""
+    """The table of the changes, or a sentence if there are none."""
     if not rows:
-        return Words(NONE)
+        return Paragraph(NONE)
     cells: list[tuple[Cell, ...]] = []
     for row in rows:
         low, high = row["between"]
-        where = Number(f"{(low + high) / 2:.5f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
+        where = ShownNumber(f"{(low + high) / 2:.5f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
         if row["angle"]:
             angle, error, count = row["angle"]
-            cells.append((where, str(count), Number(f"{angle:.3g}", f"{max(error, 1e-12):.0e}", Known.SAMPLED)))
+            cells.append((where, str(count), ShownNumber(f"{angle:.3g}", f"{max(error, 1e-12):.0e}", Known.SAMPLED)))
         else:
             cells.append((where, "0", "chaos that ends: no attractor"))
     command = asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:150")

@@ -1,15 +1,16 @@
-"""The pictures of a report: SVG for the page and PDF for LaTeX, on no ground so that a page may be dark.
+"""The pictures of a report: SVG for the page and PDF for LaTeX, transparent so that a page may be dark.
 
 Densities are small images of one ink, whose opacity is the logarithm of a count.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.lowering.files import replacing
 from verification.plots.results import outline
 from verification.plots.sheet import AXES, FAINT, INK, OUTLINE, PALETTE, figure, ink, shaded, sides, styled
 from verification.reports.asked import Arrays, Parts
@@ -19,19 +20,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-LABELS = 14  # events with words on a diagram; further ones are lines only
+LABELS = 14  # events with words on a diagram, at most; others are lines only
+COLOURS = tuple(colour for colour in PALETTE if colour != "#7f7f7f")
+REST = "#b0a08a"  # colour of further families
+GROUND = {"chaotic": "#5a6478", "neutral": "#c3cad6", "stopped": "#e3dccb", "anything else": "#f3f3ef"}
 
 
 def saved(parts: Parts, name: str, drawn: "Figure") -> None:
-    """Writes both forms of a picture; the second one whole before the first appears."""
-    drawn.savefig(parts.folder / f"{name}.pdf", transparent=True, metadata={"CreationDate": None})
-    temporary = parts.folder / f".{name}.svg"
-    drawn.savefig(temporary, transparent=True, metadata={"Date": None})
-    temporary.replace(parts.picture(name))
+    """Writes a picture as PDF and then as SVG; the SVG file marks the picture as complete."""
+    with replacing(parts.folder / f"{name}.pdf") as file:
+        drawn.savefig(file, format="pdf", transparent=True, metadata={"CreationDate": None})
+    with replacing(parts.picture(name)) as file:
+        drawn.savefig(file, format="svg", transparent=True, metadata={"Date": None})
+    parts.noted(f"{name}.pdf")
+    parts.noted(f"{name}.svg")
+    parts.drawn.add(name)
 
 
 def table(parts: Parts, name: str, map: PinballMap, start: float) -> None:
-    """The boundary, with a few flights of one particle that starts at this parameter and exit angle."""
+    """Draws the boundary, with a few flights of a particle that starts at this parameter and exit angle."""
     with styled():
         drawn = figure(3.6, 3.2)
         axes = drawn.add_subplot()
@@ -44,7 +51,7 @@ def table(parts: Parts, name: str, map: PinballMap, start: float) -> None:
 
 
 def slap(parts: Parts, name: str, s: Array, image: Array, slope: Array, half: float) -> None:
-    """The slap map and its derivative over arc length."""
+    """Draws the slap map and its derivative over arc length."""
     with styled():
         drawn = figure(7.0, 2.9)
         left, right = drawn.subplots(1, 2)
@@ -64,13 +71,13 @@ def slap(parts: Parts, name: str, s: Array, image: Array, slope: Array, half: fl
 
 
 def _broken(values: Array, half: float) -> Array:
-    """A graph with a gap where it jumps over the end of the circle."""
+    """The values, with nan where the graph jumps over the ends of arc length."""
     jumps = np.abs(np.diff(values, append=values[-1:])) > half
     return np.where(jumps, np.nan, values)
 
 
 def portraits(parts: Parts, name: str, clouds: Sequence[tuple[str, NDArray[Any]]], half: float) -> None:
-    """Phase portraits as densities, one beside the other."""
+    """Draws phase portraits as densities, side by side."""
     with styled():
         drawn = figure(7.0, 2.5 if len(clouds) > 1 else 3.4)
         for axes, (lam, counts) in zip(np.atleast_1d(drawn.subplots(1, len(clouds), sharey=True)), clouds, strict=True):
@@ -85,49 +92,126 @@ def _density(axes: "Axes", counts: NDArray[Any], extent: tuple[float, float, flo
     axes.imshow(ink(counts), origin="lower", extent=extent, aspect="auto", interpolation="nearest")
 
 
-def diagram(parts: Parts, name: str, found: Arrays, parameter: str, events: Iterable[tuple[float, str]]) -> None:
-    """The attractors against the parameter as a density, events as lines, and the largest exponent with error bars."""
+def diagram(
+    parts: Parts,
+    name: str,
+    found: Arrays,
+    parameter: str,
+    events: Sequence[tuple[float, str, float]],
+    families: Arrays | None = None,
+    periods: Sequence[int] = (),
+    window: tuple[float, float] | None = None,
+) -> None:
+    """Draws families in colour over the density of other orbits, events as lines, shares, and exponents.
+
+    With a `window` only that range of the parameter is drawn.
+    """
+    from matplotlib.collections import LineCollection
+
     values, half = found["values"], float(found["half"])
     low, high = float(values[0]), float(values[-1])
     with styled():
-        drawn = figure(7.0, 5.2)
-        top, bottom = drawn.subplots(2, 1, sharex=True, height_ratios=(2.6, 1))
+        drawn = figure(7.0, 6.6)
+        top, middle, bottom = drawn.subplots(3, 1, sharex=True, height_ratios=(2.6, 0.9, 0.9))
         step = (high - low) / (2 * max(1, len(values) - 1))
-        _density(top, found["counts"], (low - step, high + step, -half, half))
+        counts = found["counts"] if families is None else found["spread"] * _without_cycle(families, values)
+        _density(top, counts, (low - step, high + step, -half, half))
+        if families is not None:
+            paints = _paints(families["counts"])
+            at = np.stack([families["at"], families["s"]], axis=1)
+            gaps = np.nonzero(np.isnan(at).any(axis=1))[0]
+            pieces = zip(np.split(at, gaps), np.split(families["family"], gaps), strict=True)
+            drawn_of = [(piece[~np.isnan(piece).any(axis=1)], own) for piece, own in pieces]
+            kept = [(piece, paints[int(own[-1])]) for piece, own in drawn_of if len(piece) > 1]
+            lines = LineCollection([piece for piece, _ in kept], colors=[paint for _, paint in kept], lw=1.0)
+            lines.set_rasterized(True)
+            top.add_collection(lines)
+            _shares(middle, families, paints, periods)
+            drawn.legend(*_alone(middle), loc="outside right upper", fontsize=6.5)
         top.set_ylabel("$s$")
+        top.set_ylim(-half, half)
+        middle.set_ylabel("share")
+        middle.set_ylim(0, 1)
         bottom.axhline(0, **FAINT)
-        bottom.plot(values, found["least"], color="0.6", lw=0.7, label="smallest of the orbits")
-        bottom.plot(values, found["largest"], color=INK, lw=0.8, label="largest of the orbits")
+        bottom.plot(values, found["least"], color="0.6", lw=0.7, label="smallest")
+        bottom.plot(values, found["largest"], color=INK, lw=0.8, label="largest")
         few = slice(None, None, max(1, len(values) // 60))
         bottom.errorbar(values[few], found["largest"][few], found["error"][few], color=INK, ls="", elinewidth=0.8)
         bottom.set_ylabel(r"$\nu_+$")
         bottom.set_xlabel(AXES.get(parameter, parameter))
-        bottom.set_ylim(max(float(np.nanmin(found["least"])), -2.0) - 0.05, None)
-        drawn.legend(loc="outside lower center", ncols=2)
-        _events(top, bottom, sorted(events), (low, high))
-        top.set_xlim(low, high)
+        left, right = window or (low, high)
+        within = (values >= left - step) & (values <= right + step) & np.isfinite(found["least"])
+        if np.any(within):
+            least, largest = float(np.min(found["least"][within])), float(np.max(found["largest"][within]))
+            bottom.set_ylim(max(least, -2.0) - 0.05, largest + 0.05)
+        bottom.legend(loc="lower left", bbox_to_anchor=(1.01, 0.0), fontsize=6.5)
+        _events((top, middle, bottom), [event for event in events if left <= event[0] <= right], (left, right))
+        top.set_xlim(left, right)
         saved(parts, name, drawn)
 
 
-def _events(top: "Axes", bottom: "Axes", events: Sequence[tuple[float, str]], ends: tuple[float, float]) -> None:
-    """Lines at the events, and their words above them, moved apart where they would lie on each other."""
+def _without_cycle(families: Arrays, values: Array) -> NDArray[np.bool_]:
+    """Whether some start ends on chaos or is neutral, at the value next to each: elsewhere a cloud is on its way."""
+    at, kinds = families["shares_at"], families["counts"][:, -len(GROUND) :]
+    nearest = np.argmin(np.abs(values[:, None] - at), axis=1)
+    return np.asarray((kinds[:, 0] + kinds[:, 1] > 0)[nearest])
+
+
+def _paints(counts: NDArray[Any]) -> list[str]:
+    """A colour for each family, first for those on which most starts end; further families share one."""
+    families = counts.shape[1] - len(GROUND)
+    order = np.argsort(-counts[:, :families].sum(axis=0)).tolist()
+    return [COLOURS[order.index(i)] if order.index(i) < len(COLOURS) else REST for i in range(families)]
+
+
+def _shares(axes: "Axes", families: Arrays, paints: Sequence[str], periods: Sequence[int]) -> None:
+    """Draws the shares of the starts as a stack, those of the families first."""
+    at, counts = families["shares_at"], families["counts"].astype(float)
+    shares = counts / counts.sum(axis=1, keepdims=True)
+    order = sorted(range(len(paints)), key=lambda i: (paints[i] == REST, -shares[:, i].sum()))
+    labels = [f"{i}: period {periods[i]}" if paints[i] != REST else "" for i in order]
+    if any(paint == REST for paint in paints):
+        labels[next(k for k, i in enumerate(order) if paints[i] == REST)] = "other families"
+    colours = [paints[i] for i in order] + [*GROUND.values()]
+    names = labels + [name if shares[:, len(paints) + k].any() else "" for k, name in enumerate(GROUND)]
+    rows = shares[:, [*order, *range(len(paints), shares.shape[1])]].T
+    for band in axes.stackplot(at, rows, colors=colours, labels=names, lw=0):
+        band.set_rasterized(True)  # thousands of values
+
+
+def _alone(axes: "Axes") -> tuple[list[Any], list[str]]:
+    """Handles and labels for a legend, without the empty labels."""
+    pairs = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels(), strict=True) if label]
+    return [handle for handle, _ in pairs], [label for _, label in pairs]
+
+
+def _events(axes: Sequence["Axes"], events: Sequence[tuple[float, str, float]], ends: tuple[float, float]) -> None:
+    """Draws lines at the events, with words above those of most weight, moved apart where they would overlap."""
     near, at = 0.022 * (ends[1] - ends[0]), -np.inf
-    for number, (value, words) in enumerate(events):
-        for axes in (top, bottom):
-            axes.axvline(value, color="#b3261e", lw=0.5, alpha=0.7)
-        if number < LABELS:
-            at = max(value, at + near)
-            top.annotate(
-                words,
-                (value, 1.0),
-                (at, 1.02),
-                xycoords=("data", "axes fraction"),
-                textcoords=("data", "axes fraction"),
-                rotation=60,
-                fontsize=6.5,
-                color="#b3261e",
-                annotation_clip=False,
-            )
+    worded = sorted(sorted(events, key=lambda event: -event[2])[:LABELS])
+    for value, _, _ in events:
+        for each in axes:
+            each.axvline(value, color="#b3261e", lw=0.4, alpha=0.4)
+    places = list[float]()
+    for value, _, _ in worded:
+        at = max(value, at + near)
+        places.append(at)
+    for k in range(len(places) - 1, -1, -1):  # back from the right edge
+        most = ends[1] if k == len(places) - 1 else places[k + 1] - near
+        places[k] = min(places[k], most)
+    for (value, words, _), place in zip(worded, places, strict=True):
+        axes[0].annotate(
+            words,
+            (value, 1.0),
+            (place, 1.03),
+            xycoords=("data", "axes fraction"),
+            textcoords=("data", "axes fraction"),
+            rotation=60,
+            fontsize=6.5,
+            color="#b3261e",
+            annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": "#b3261e", "lw": 0.3, "shrinkA": 0, "shrinkB": 0},
+        )
 
 
 SHORT = {"period doubling": "doubling"}
@@ -135,28 +219,60 @@ DASHES = {"fold": "-", "period doubling": (0, (5, 1.5)), "pitchfork": (0, (1.2, 
 
 
 def plane(parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[Mapping[str, Any]], own: float) -> None:
-    """The largest exponent over a parameter and the contraction, and the curves of events with their words."""
-    lams, values = found["lams"], found["values"]
-    taken, size = list[Array](), np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
+    """Draws the largest exponent over a parameter and the contraction, and the curves of events with their words."""
     with styled():
         drawn = figure(7.0, 4.6)
-        axes = shaded(drawn, lams, values, found["nu"], np.asarray(found["chaotic"] > 0, dtype=float), letter)
-        axes.axhline(own, color="0.45", lw=0.8)
-        for number, curve in enumerate(curves):
-            points = np.array(curve["points"])[:, 1::-1]
-            axes.plot(*points.T, color="black", lw=1.1, ls=DASHES.get(curve["kind"], "-"))
-            words = f"{number + 1} {SHORT.get(curve['kind'], curve['kind'])} {curve['period']}"
-            ground = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8}
-            if number < LABELS:
-                taken.append(_apart(points / size, taken))
-                axes.annotate(words, tuple(taken[-1] * size), ha="center", va="center", fontsize=6.5, bbox=ground)
-        axes.set_xlim(*sides(lams))
-        axes.set_ylim(*sides(values))
+        lams, values, chaotic = found["lams"], found["values"], np.asarray(found["chaotic"] > 0, dtype=float)
+        _curves(shaded(drawn, lams, values, found["nu"], chaotic, letter), lams, values, curves, own)
         saved(parts, name, drawn)
 
 
+def regions(
+    parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[Mapping[str, Any]], own: float
+) -> None:
+    """Which attractors coexist over both parameters: a colour for each set, and the curves of events."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import Patch
+
+    sets, label = found["sets"], found["label"]
+    order = np.argsort(-np.bincount(label.ravel(), minlength=len(sets))).tolist()
+    paint = np.array(
+        [to_rgba(COLOURS[order.index(i)] if order.index(i) < len(COLOURS) else REST) for i in range(len(sets))]
+    )
+    with styled():
+        drawn = figure(7.0, 4.6)
+        axes = drawn.add_subplot()
+        lams, values = found["at"], found["of"]
+        extent = (*sides(lams), *sides(values))
+        axes.imshow(paint[label], origin="lower", extent=extent, aspect="auto", interpolation="nearest", alpha=0.75)
+        axes.set_xlabel(AXES["lam"])
+        axes.set_ylabel(AXES.get(letter, letter))
+        _curves(axes, lams, values, curves, own)
+        handles = [Patch(color=paint[i], label=sets[i]) for i in order[: len(COLOURS)]]
+        handles += [Patch(color=REST, label="other sets")] if len(sets) > len(COLOURS) else []
+        drawn.legend(handles=handles, loc="outside right upper", fontsize=6.5)
+        saved(parts, name, drawn)
+
+
+def _curves(axes: "Axes", lams: Array, values: Array, curves: Sequence[Mapping[str, Any]], own: float) -> None:
+    """The curves of events with their words, dots where they are proved, and the value of the other sections."""
+    taken, size = list[Array](), np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
+    axes.axhline(own, color="0.45", lw=0.8)
+    for number, curve in enumerate(curves):
+        points = np.array(curve["points"])[:, 1::-1]
+        axes.plot(*points.T, color="black", lw=1.1, ls=DASHES.get(curve["kind"], "-"))
+        axes.plot(*[[float(row[k]) for row in curve["proved"]] for k in (1, 0)], "o", color="black", ms=2.5)
+        words = f"{number + 1} {SHORT.get(curve['kind'], curve['kind'])} {curve['period']}"
+        ground = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8}
+        if number < LABELS:
+            taken.append(_apart(points / size, taken))
+            axes.annotate(words, tuple(taken[-1] * size), ha="center", va="center", fontsize=6.5, bbox=ground)
+    axes.set_xlim(*sides(lams))
+    axes.set_ylim(*sides(values))
+
+
 def _apart(points: Array, taken: Sequence[Array]) -> Array:
-    """The place on a curve, away from its ends, that is farthest from those that have words; its middle at first."""
+    """The place on a curve, away from its ends, farthest from the places `taken` by words; at first its middle."""
     length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
     places = np.stack([np.interp(np.linspace(0.12, 0.88, 39) * length[-1], length, x) for x in points.T], axis=1)
     if not taken:
@@ -165,9 +281,12 @@ def _apart(points: Array, taken: Sequence[Array]) -> Array:
     return np.asarray(places[int(np.argmax(gaps))])
 
 
-def basins(parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int], half: float, title: str) -> None:
-    """Which attractor each start reaches: a colour for each; empty where none of those found."""
+def basins(
+    parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int], names: Sequence[str], half: float, title: str
+) -> None:
+    """Draws the attractor that each start reaches: a colour for each, with a legend; empty for none."""
     from matplotlib.colors import to_rgba
+    from matplotlib.patches import Patch
 
     paint = np.array([to_rgba(PALETTE[i % len(PALETTE)]) for i in colours] + [(0.0, 0.0, 0.0, 0.0)])
     with styled():
@@ -177,4 +296,7 @@ def basins(parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int],
         axes.set_title(title, loc="left")
         axes.set_xlabel("$s$")
         axes.set_ylabel(AXES["sin_phi"])
+        order = sorted(range(len(colours)), key=lambda i: colours[i])[: len(PALETTE)]
+        handles = [Patch(color=paint[i], label=names[i]) for i in order]
+        drawn.legend(handles=handles, loc="outside right upper", fontsize=6.5)
         saved(parts, name, drawn)

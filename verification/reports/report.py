@@ -1,7 +1,7 @@
 """The report of a scene, made in steps: a useful page first, refined as long as there is time, kept on the way.
 
-Each step leaves one file among the parts. The page is written anew after each, so that a report that is stopped is a
-report, and one that is asked again goes on.
+Each step leaves one file in the folder of parts, and the page is written anew after it. So a run that is stopped leaves
+a report, and the next run goes on from its files.
 """
 
 import json
@@ -12,45 +12,51 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from numeric import PinballMap
+from numeric.lowering.files import write_whole
 from numeric.sweeps.run import connected
 from symbolic.tables.definition import exact
-from symbolic.tables.scene import Scene
+from symbolic.tables.law import Law
+from symbolic.tables.scene import Scene, as_scene
 from verification.reports import crises as tangencies
-from verification.reports import lives
+from verification.reports import lives, planes
 from verification.reports import scene as exactly
 from verification.reports.asked import DRAWN, Asked, Parts
-from verification.reports.blocks import Block, Effort, Picture, Section, costs
+from verification.reports.blocks import Block, Effort, Paragraph, Picture, Section, costs
 
 Clock = Callable[[], float]
 Tick = Callable[[str], None]
 Made = tuple[list[Block], list[Effort], dict[str, Any]]
 TITLES = {
+    "diagram": "Families of attractors",
+    "events": "Events",
+    "families": "Families, one by one",
+    "census": "Attractors and their basins",
+    "missing": "What was not found",
+    "plane": "Parameter space and curves of events",
     "scene": "The scene",
     "derivation": "Derivative and closed thresholds",
     "slap": "The slap map",
     "portrait": "Phase portraits",
-    "diagram": "Bifurcation diagram and exponents",
-    "plane": "Parameter space and curves of events",
-    "census": "Attractors and their basins",
-    "cycles": "Cycles from birth to death",
     "cost": "Error against run time",
 }
-FIRST = {  # seconds, not measured yet
+FIRST = {  # expected seconds of steps that have not run yet
     "plane": 5.0,
     "census": 3.0,
     "derivation": 3.0,
-    "search": 4.0,
     "life": 1.5,
     "curves": 5.0,
-    "cascade": 4.0,
     "crises": 10.0,
     "tangency": 6.0,
+    "work": 3.0,
+    "chaos": 10.0,
 }
-GROWTH = 3.5  # of the seconds of a question from one level to the next
+GROWTH = 3.5  # factor on the seconds of a question from one level to the next
 LEVELS = 4
-LEVELLED = "portrait", "diagram", "plane", "census", "cascade"  # questions that are asked again, more finely
+LEVELLED = "portrait", "diagram", "families", "proofs", "plane", "regions", "census"  # asked again, more finely
+SHARE = 0.5  # of the time that is left, for a step that could take all of it
 SCHEMA = 1  # of the JSON
-DEEPEST = 2  # further doublings of a cascade at each level
+UNANSWERED: dict[str, Any] = {"unanswered": True}  # data of a step that ended in an error, which its section tells
 
 
 @dataclass(frozen=True)
@@ -63,12 +69,12 @@ class Step:
     work: Callable[[], Made] = field(repr=False)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Report:
-    """The sections of a report, its findings in a few numbers each, and what more time would do.
+    """The sections of a report, its findings in a few numbers each, and the steps for which there was no time.
 
-    `pending` are the titles of sections of which nothing is known yet. A report is `unfinished` while it is worked on:
-    that is what a page says which was left behind by a run that was killed.
+    `pending` are the titles of sections of which nothing is known yet. A report is `unfinished` while it is worked on,
+    which a page left behind by a run that was killed says.
     """
 
     asked: Asked
@@ -77,13 +83,19 @@ class Report:
     seconds: float
     left: tuple[str, ...]
     events: tuple[dict[str, Any], ...] = ()
+    branches: tuple[dict[str, Any], ...] = ()
     attractors: tuple[dict[str, Any], ...] = ()
     exponents: tuple[dict[str, Any], ...] = ()
+    accounted: dict[str, Any] | None = None
     pending: tuple[str, ...] = ()
     unfinished: bool = False
 
+    def __repr__(self) -> str:
+        found = f"{len(self.branches)} families, {len(self.events)} events, {len(self.attractors)} attractors"
+        return f"Report({self.asked.title}: {found}, {self.seconds:.0f} s)"
+
     def document(self) -> dict[str, Any]:
-        """The report as JSON has it: what the page shows, without its pictures."""
+        """The report as JSON: what the page shows, without its pictures."""
         asked = self.asked
         return {
             "schema": SCHEMA,
@@ -105,6 +117,8 @@ class Report:
             "seconds": round(self.seconds, 2),
             "left_for_more_time": list(self.left),
             "events": list(self.events),
+            "branches": list(self.branches),
+            "accounted": self.accounted,
             "attractors": list(self.attractors),
             "exponents": list(self.exponents),
             "sections": [section.document() for section in self.sections],
@@ -112,8 +126,8 @@ class Report:
 
 
 def report(
-    scene: Scene,
-    out: str | Path,
+    table: Any,
+    out: str | Path = "report.html",
     *,
     minutes: float = 2.0,
     lam: tuple[Any, Any] | Any = ("0", "1"),
@@ -126,17 +140,22 @@ def report(
     scheduler: str | None = None,
     clock: Clock = time.monotonic,
     tick: Tick = lambda said: None,
+    law: Law | str | None = None,
+    **shape: Any,
 ) -> Report:
-    """What becomes of a scene as the contraction varies, as one page of HTML; parts are kept in `out` with `.parts`.
+    """The report on a scene as the contraction varies, as one page of HTML; parts are kept in `out` with `.parts`.
+
+    A scene, a table, a map or the name of a table is taken, with `law` and the exact numbers of its shape as keywords.
 
     With `vary=("b", low, high)` a parameter of the table or of the law varies too, and the page has the plane of both
     with the curves of events in it; its other sections are at the scene's own `b`, or in the middle where that lies at
     an end. With one contraction for `lam` it is that parameter alone which varies.
 
-    The page is useful after its first steps and refined until the `minutes` are over. Asked again, it goes on.
-    Diagrams, planes and basins are grids: the workers of the Dask cluster at `scheduler` do them, or else all cores.
+    The page is useful after its first steps and refined until the `minutes` are over. Called again, it goes on.
+    Diagrams, planes and basins are grids: the workers of the Dask cluster at `scheduler` compute them, or all cores.
     """
     second = None if vary is None else (vary[0], str(vary[1]), str(vary[2]))
+    scene = as_scene(table, lam=at[len(at) // 2] if isinstance(lam, tuple) else None, law=law, **shape)
     if vary is not None:
         scene = _placed(scene, *vary)
     if isinstance(lam, tuple):
@@ -146,9 +165,10 @@ def report(
     else:
         (parameter, low, high), second, at = vary, None, (str(lam),)
     here = scene.at(lam=at[len(at) // 2])
+    PinballMap(here)  # which refuses what is not proved to be a table
     asked = Asked(here, parameter, str(low), str(high), tuple(at), period, digits, seed, second)
     if asked.second:
-        lives.plane_of(asked)  # a law that is none somewhere in the plane is refused before any work
+        planes.plane_of(asked)  # a law that is none somewhere in the plane is refused before any work
     if scheduler is not None:
         connected(scheduler).close()
     if not minutes > 0:
@@ -162,7 +182,7 @@ def report(
 def _placed(scene: Scene, parameter: str, low: Any, high: Any) -> Scene:
     """The scene with an interval for one of its parameters, over which it is proved to be a table.
 
-    Its own number for the parameter is kept inside of the interval; at an end, or beyond, the middle takes its place.
+    The parameter keeps its value where that is inside the interval; else it gets the middle of the interval.
     """
     ends = [exact(parameter, end) for end in (low, high)]
     if parameter not in (*scene.shape, *dict(scene.law.numbers)):
@@ -186,14 +206,20 @@ def worked(
     tick: Tick,
     latex: str | Path | None = None,
 ) -> Report:
-    """Does the steps that fit until a time, each of them once, and writes the report after each."""
+    """Runs the steps that fit in the time, each of them once; writes the report after each and returns the last."""
     left: list[str] = []
 
-    def heard(_: str) -> None:
-        if clock() > until:
-            raise TimeoutError
+    def within(share: float) -> Tick:
+        """A function that raises `TimeoutError` when this share of the time that is left is over."""
+        end = until - (1 - share) * max(0.0, until - clock())
 
-    for step in plan(asked, parts, heard):
+        def heard(_: str) -> None:
+            if clock() > end:
+                raise TimeoutError
+
+        return heard
+
+    for step in plan(asked, parts, within):
         if parts.read(step.name) is not None:
             continue
         begun = clock()
@@ -201,11 +227,14 @@ def worked(
             left.append(step.name)
             continue
         tick(step.name)
+        parts.files.clear()
         try:
             blocks, efforts, data = step.work()
         except TimeoutError:  # it will have to begin again
             left.append(step.name)
             continue
+        except (ValueError, ArithmeticError) as why:  # the page says so, and has the rest
+            blocks, efforts, data = [Paragraph(f"No answer to this question: {why}.")], [], UNANSWERED
         spent = clock() - begun
         efforts = [replace(effort, seconds=round(spent / len(efforts), 2)) for effort in efforts]
         section = Section(step.section, TITLES[step.section], tuple(blocks), tuple(efforts))
@@ -217,26 +246,29 @@ def worked(
 
 
 def written(done: Report, parts: Parts, page: Path, latex: str | Path | None = None) -> None:
-    """Writes the page, and the article where it is asked for."""
+    """Writes the page, and the LaTeX article if `latex` is a path."""
     from verification.reports.page import latex as article
     from verification.reports.page import page as html
 
-    temporary = page.with_name(f".{page.name}")
-    temporary.write_text(html(done, parts), encoding="utf-8")
-    temporary.replace(page)
+    write_whole(page, html(done, parts))
     if latex is not None:
-        Path(latex).write_text(article(done, parts), encoding="utf-8")
+        write_whole(latex, article(done, parts))
 
 
-def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterator[Step]:
-    """The steps in the order of their use; later ones are planned from what earlier ones found.
+def plan(
+    asked: Asked, parts: Parts, within: Callable[[float], Tick] = lambda share: lambda said: None
+) -> Iterator[Step]:
+    """The steps, the most useful first; later ones are planned from what earlier ones found.
 
-    `heard` is called from within a long search, and may end it with a `TimeoutError`.
+    `within(share)` is a function for a share of the time: it is called during a long search, and may end it with a
+    `TimeoutError`.
     """
     from verification.reports import dynamics
 
+    heard = within(1.0)
+
     def seconds(name: str, kind: str) -> float:
-        """What a step of this kind is expected to take, from the one of the level before."""
+        """The expected time of a step of this kind, from its previous level."""
         found = parts.read(name)
         return FIRST.get(kind, 1.0) if found is None else GROWTH * float(found["seconds"])
 
@@ -244,35 +276,45 @@ def plan(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Iterato
     yield Step("slap", "slap", 0.0, partial(dynamics.slap, asked, parts))
     yield Step("portrait-0", "portrait", 0.0, partial(dynamics.portrait, asked, parts, 0))
     yield Step("diagram-0", "diagram", 0.0, partial(dynamics.diagram, asked, parts, 0))
+    yield from _families(asked, parts, 0, within)
     if asked.second:
         yield Step("plane-0", "plane", FIRST["plane"], partial(dynamics.plane, asked, parts, 0))
+        yield Step("regions-0", "plane", FIRST["plane"], partial(dynamics.regions, asked, parts, 0))
     for i in range(len(asked.at)):
         yield Step(f"census-{i}-0", "census", FIRST["census"], partial(dynamics.census, asked, parts, i, 0))
     yield Step("derivation", "derivation", FIRST["derivation"], lambda: (exactly.derivation(asked), [], {}))
-    for i, text in enumerate(asked.at):
-        yield Step(f"search-{i}", "cycles", FIRST["search"], partial(lives.search, asked, text, heard))
+    yield from _families(asked, parts, 1, within)
     yield from _lives(asked, parts)
+    if (seen := _best(parts, "families")).get("amid_chaos"):
+        yield Step("chaos", "families", FIRST["chaos"], partial(lives.chaos, asked, seen))
+    yield Step("work", "cost", FIRST["work"], partial(_work, asked, parts))
     if asked.second:
         yield from _curves(asked, parts, heard)
-    if asked.parameter == "lam":
-        yield Step("crises", "cycles", FIRST["crises"], partial(tangencies.crises, asked, parts, heard))
+    if asked.parameter == "lam" and _answered(parts, "diagram-0"):
+        yield Step("crises", "events", FIRST["crises"], partial(tangencies.crises, asked, parts, heard))
         yield from _tangencies(asked, parts)
-    yield from _cascades(asked, parts, 0)
     for level in range(1, LEVELS):
         finer: list[tuple[str, Callable[..., Made], tuple[int, ...]]] = [("diagram", dynamics.diagram, ())]
-        finer += [("plane", dynamics.plane, ())] if asked.second else []
+        finer += [("plane", dynamics.plane, ()), ("regions", dynamics.regions, ())] if asked.second else []
         finer += [("census", dynamics.census, (i,)) for i in range(len(asked.at))]
         finer += [("portrait", dynamics.portrait, ())] if level == 1 else []
         for kind, work, which in finer:
             name = "-".join([kind, *map(str, which)])
             expected = seconds(f"{name}-{level - 1}", kind)
-            yield Step(f"{name}-{level}", kind, expected, partial(work, asked, parts, *which, level))
-        yield from _cascades(asked, parts, level)
+            section = "plane" if kind == "regions" else kind
+            yield Step(f"{name}-{level}", section, expected, partial(work, asked, parts, *which, level))
+        if level > 1:
+            yield from _families(asked, parts, level, within)
+
+
+def _answered(parts: Parts, name: str) -> bool:
+    """Has the step of this name been done without an error?"""
+    found = parts.read(name)
+    return found is not None and found["data"] != UNANSWERED
 
 
 def _scene(asked: Asked, parts: Parts) -> Made:
-    """The first section."""
-    from numeric import PinballMap
+    """The section on the table: its picture, its formulas, and what is proved."""
     from verification.reports import pictures
 
     start = 0.3
@@ -283,103 +325,150 @@ def _scene(asked: Asked, parts: Parts) -> Made:
     return [shown, *exactly.definition(asked), *exactly.facts(asked)], [], {}
 
 
+def _work(asked: Asked, parts: Parts) -> Made:
+    """Error against run time for orbits of this scene, in every arithmetic."""
+    from verification.measure.work.scenes import work_precision
+    from verification.plots.sheet import styled
+    from verification.reports import pictures
+
+    found = work_precision(asked.scene, "orbit", seed=asked.seed)
+    with styled():
+        pictures.saved(parts, "work", found.plot())
+    caption = (
+        f"{found.question.title} in this scene, at lambda = {asked.scene.lam}: the error against the seconds of "
+        "one core, in float64, in mpmath and in balls to 16, 30 and 100 digits. Errors are distances from "
+        "a ball that is proved; full marks are best: nothing else is both quicker and more exact."
+    )
+    command = asked.command("work orbit", f"--seed {asked.seed}", DRAWN, lam=str(asked.scene.lam))
+    return [Picture("work", caption, "Error against run time, a line for each arithmetic", command)], [], {}
+
+
+def _families(asked: Asked, parts: Parts, level: int, within: Callable[[float], Tick]) -> Iterator[Step]:
+    """Steps that find the families, at as many values as the level has, and prove their events."""
+
+    def work(name: str, section: str, made: Callable[..., Made]) -> Step:
+        before = parts.read(f"{name}-{level - 1}")
+        expected = float(before["seconds"]) if before else 0.0
+        return Step(f"{name}-{level}", section, expected, lambda: made(asked, parts, level, within(SHARE)))
+
+    yield work("families", "families", lives.families)
+    if _answered(parts, f"families-{level}"):
+        yield work("proofs", "events", lives.proofs)
+
+
+def _best(parts: Parts, name: str) -> dict[str, Any]:
+    """The last answer to a question that is answered at several levels; empty without one."""
+    found = [parts.read(f"{name}-{level}") for level in range(LEVELS)]
+    return next((one["data"] for one in reversed(found) if one and one["data"] != UNANSWERED), {})
+
+
 def _lives(asked: Asked, parts: Parts) -> Iterator[Step]:
-    """A step for each cycle that was found and lies on no branch known by then; those that attract come first."""
-    number, known = 0, list[dict[str, Any]]()
-    for i, text in enumerate(asked.at):
-        kept = [parts.read(f"search-{i}"), parts.read(f"census-{i}-0")]
-        for said in [cycle for found in kept if found for cycle in found["data"]["cycles"]]:
-            if lives.known(said, text, known):
-                continue
-            name = f"life-{number}"
-            yield Step(name, "cycles", FIRST["life"], partial(lives.life, asked, parts, text, said, number))
-            made = parts.read(name)
-            known.append(made["data"] if made else {"passes": {text: [said["mark"]]}})
-            number += 1
+    """Steps that draw the families on which most starts end, one by one."""
+    said = _best(parts, "families").get("families", [])
+    for i in lives.drawn_alone(said):
+        yield Step(f"life-{i}", "families", FIRST["life"], partial(lives.life, asked, parts, said[i], i))
 
 
 def _curves(asked: Asked, parts: Parts, heard: Tick) -> Iterator[Step]:
-    """A step for each life that was followed: its events, as curves in both parameters that are not there yet."""
-    number, known = 0, list[dict[str, Any]]()
-    while (found := parts.read(f"life-{number}")) is not None:
-        name = f"curves-{number}"
-        if "cycle" in found["data"]:
-            work = partial(lives.curves, asked, found["data"], number, tuple(known), heard)
-            yield Step(name, "plane", FIRST["curves"], work)
+    """Steps that follow the events of those families as two-parameter curves, without curves that are known."""
+    said, known = _best(parts, "families").get("families", []), list[dict[str, Any]]()
+    for i in lives.drawn_alone(said):
+        name = f"curves-{i}"
+        yield Step(name, "plane", FIRST["curves"], partial(planes.curves, asked, said[i], i, tuple(known), heard))
         made = parts.read(name)
-        known += made["data"]["curves"] if made else []
-        number += 1
+        known += made["data"].get("curves", []) if made else []
 
 
 def _tangencies(asked: Asked, parts: Parts) -> Iterator[Step]:
-    """A step for each tangency that was found: its proof."""
+    """Steps that prove the tangencies that were found, one by one."""
     found = parts.read("crises")
     for i, said in enumerate(found["data"].get("touches", []) if found else []):
-        yield Step(f"tangency-{i}", "cycles", FIRST["tangency"], partial(tangencies.proved, asked, said, i))
-
-
-def _cascades(asked: Asked, parts: Parts, level: int) -> Iterator[Step]:
-    """A step for each life with a flip: its doublings, two more at each level."""
-    number = 0
-    while (found := parts.read(f"life-{number}")) is not None:
-        said = found["data"]
-        if said.get("flips"):
-            longest = len(said["cycle"]["theta"]) * 2 ** (DEEPEST * (level + 1))
-            name = f"cascade-{number}-{level}"
-            before = parts.read(f"cascade-{number}-{level - 1}")
-            expected = GROWTH * float(before["seconds"]) if before else FIRST["cascade"]
-            if level == 0 or (before and before["data"]["events"]):
-                yield Step(name, "cycles", expected, partial(lives.cascade, asked, said, number, longest))
-        number += 1
+        yield Step(f"tangency-{i}", "events", FIRST["tangency"], partial(tangencies.proved, asked, said, i))
 
 
 def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
-    """The report from the parts that are there, the finest of each question."""
+    """The report from the parts that exist, with the finest answer to each question."""
     from numeric.sweeps.sweep import versions
     from verification.reports import dynamics
 
     made = {name: found for name in _names(parts) if (found := parts.read(name)) is not None}
     best = _finest(made)
     touching = tangencies.told(asked, best) if "crises" in best else tangencies.NOTHING
-    pairs = [pair for found in best.values() for pair in found["data"].get("events", [])] + touching.lines
-    events = sorted({(round(value, 9), label) for value, label in pairs})
-    searches = [found["data"] for name, found in best.items() if name.startswith("search")]
+    seen, proved = _best(parts, "families"), _best(parts, "proofs").get("proofs", {})
     blocks: dict[str, list[Block]] = {name: [] for name in TITLES}
-    blocks["cycles"] += lives.searched_blocks(asked, searches) if searches else []
     curves = [curve for found in best.values() for curve in found["data"].get("curves", [])]
-    for found in best.values():
-        if found["name"] == "diagram":
-            blocks["diagram"] += dynamics.diagram_blocks(asked, parts, found["data"], events)
-        elif found["name"] == "plane" and "level" in found["data"]:
-            blocks["plane"] += dynamics.plane_blocks(asked, parts, found["data"], curves)
-        else:
+    marks = [(float(value), words, 1.0) for value, words in touching.lines]
+    for event in seen.get("events", []):
+        share = seen["families"][event["branch"]]["largest"]
+        marks.append(
+            (float(event["value"]), f"{event['kind'].replace('_', ' ')} {event['period']}", share[1] / share[2])
+        )
+    if seen:
+        blocks["events"] += lives.event_blocks(seen, proved, touching.blocks)
+        blocks["families"] += lives.family_blocks(asked, seen)
+        blocks["missing"] += lives.missing_blocks(asked, seen)
+    for name, found in best.items():
+        if found["data"] == UNANSWERED:
             blocks[found["name"]] += Section.read(found).blocks
-    blocks["cycles"] += touching.blocks
+        elif found["name"] == "diagram":
+            blocks["diagram"] += dynamics.diagram_blocks(asked, parts, found["data"], marks, seen or None)
+        elif name == "plane":
+            blocks["plane"] += dynamics.plane_blocks(asked, parts, found["data"], curves, _best(parts, "regions"))
+        elif not name.startswith("life") or _still(found, name, seen):
+            blocks[found["name"]] += Section.read(found).blocks
+    if not seen:
+        blocks["events"] += touching.blocks
     if asked.second and any(name.startswith("curves") for name in best):
-        blocks["plane"] += lives.curve_blocks(asked, curves)
+        blocks["plane"] += planes.curve_blocks(asked, curves)
     efforts = tuple(effort for found in made.values() for effort in Section.read(found).efforts)
     sections = [Section(name, TITLES[name], tuple(blocks[name])) for name in TITLES if blocks[name]]
     if efforts:
-        sections.append(Section("cost", TITLES["cost"], (costs(efforts),), efforts))
+        sections = [each for each in sections if each.name != "cost"]
+        sections.append(Section("cost", TITLES["cost"], (*blocks["cost"], costs(efforts)), efforts))
     seconds = sum(float(found["seconds"]) for found in made.values())
     located, attractors, exponents = (
         _once([row for found in best.values() for row in found["data"].get(name, [])] + more)
-        for name, more in (("located", touching.events), ("attractors", []), ("exponents", []))
+        for name, more in (
+            ("located", [*(lives.events_of(seen, proved) if seen else []), *touching.events]),
+            ("attractors", []),
+            ("exponents", []),
+        )
     )
-    told = {found["name"] for found in best.values()} | {"cost", *(() if asked.second else ("plane",))}
+    told = {name for name in TITLES if blocks[name]} | {"cost", *(() if asked.second else ("plane",))}
+    keys = "period", "symmetry", "copies", "low", "high", "attracts"
+    branches = tuple({key: one[key] for key in keys} for one in seen.get("families", []))
     pending = tuple(title for name, title in TITLES.items() if name not in told)
-    return Report(asked, tuple(sections), versions(), seconds, left, located, attractors, exponents, pending)
+    return Report(
+        asked,
+        tuple(sections),
+        versions(),
+        seconds,
+        left,
+        located,
+        branches,
+        attractors,
+        exponents,
+        seen.get("check"),
+        pending,
+    )
+
+
+def _still(found: dict[str, Any], name: str, seen: dict[str, Any]) -> bool:
+    """Is the family of a picture still in the table, with the same first value of the parameter?"""
+    number = int(name.split("-")[1])
+    families = seen.get("families", [])
+    return number < len(families) and families[number]["low"] == found["data"].get("mark")
 
 
 def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
-    """Each row once, in order: what images of one cycle do under the symmetries is one event."""
+    """Each row once, in order: the same event on images of one cycle counts once."""
     return tuple({json.dumps(row): row for row in rows}.values())
 
 
 def _names(parts: Parts) -> list[str]:
-    """The steps whose files are there, in the order in which they are told."""
-    order = ["scene", "derivation", "slap", "portrait", "diagram", "plane", "census", "search", "life", "cascade"]
-    order += ["crises", "tangency", "curves"]
+    """The steps whose files exist, in the order of the page."""
+    order = ["diagram", "families", "proofs", "chaos", "life", "census", "plane", "scene", "derivation", "slap"]
+    order += ["portrait", "crises", "tangency", "curves", "work"]
     found = [path.stem for path in parts.folder.glob("*.json")]
 
     def place(name: str) -> tuple[int, list[int]]:
@@ -390,10 +479,11 @@ def _names(parts: Parts) -> list[str]:
 
 
 def _finest(made: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Of each question that was answered at several levels, the last answer."""
+    """The last answer to each question, of those that were answered at several levels."""
     best: dict[str, dict[str, Any]] = {}
     for name, found in made.items():
         kind = name.split("-")[0]
         question = name.rpartition("-")[0] if kind in LEVELLED else name
-        best[question] = found
+        if question not in best or found["data"] != UNANSWERED:
+            best[question] = found
     return best

@@ -1,4 +1,4 @@
-"""The first sections of a report: what the table is, what is proved of it, and where its double normals bifurcate."""
+"""The first sections of a report: the table, what is proved about it, and thresholds of its double normals."""
 
 from collections.abc import Iterator
 
@@ -18,11 +18,12 @@ from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table, eta, theta
 from symbolic.tables.validity import enclosed_area, radius_sign, simple
 from verification.arithmetic.balls import ARRAYS, FLOAT64, decimal
+from verification.arithmetic.iteration import bracketed
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.enclosed import perimeter as enclosed_perimeter
 from verification.maps.first_hit import convex, turns_once
 from verification.reports.asked import Asked
-from verification.reports.blocks import Block, Cell, Formula, Known, Listing, Number, Words
+from verification.reports.blocks import Block, Cell, Formula, Known, Listing, Paragraph, ShownNumber
 
 SHOWN = 4  # components whose formulas are shown
 DIGITS = 15
@@ -31,7 +32,7 @@ WIDE = 400  # letters of a formula in LaTeX that is still shown
 
 
 def definition(asked: Asked) -> list[Block]:
-    """The table, its law and its curvature as formulas."""
+    """The section's formulas of the table, its law and its curvature."""
     table, law = asked.scene.table, asked.scene.law
     shown = [part for part in table.components[:SHOWN] if size(part.point[0]) + size(part.point[1]) <= LONG]
     blocks: list[Block] = []
@@ -42,44 +43,41 @@ def definition(asked: Asked) -> list[Block]:
         if len(bent) <= WIDE:
             blocks.append(Formula(name.replace("boundary", "curvature"), rf"\kappa\left(\theta\right) = {bent}"))
         if number + 1 == SHOWN < len(table.components):
-            blocks.append(Words(f"{len(table.components) - SHOWN} more pieces are in the scene's file."))
+            blocks.append(Paragraph(f"{len(table.components) - SHOWN} more pieces are in the scene's file."))
     if not shown:
         blocks.append(
-            Words(f"The boundary has {len(table.components)} pieces; their formulas are in the scene's file.")
+            Paragraph(f"The boundary has {len(table.components)} pieces; their formulas are in the scene's file.")
         )
     blocks.append(Formula("reflection law", rf"\varphi = {latex(law.phi)}"))
     return blocks
 
 
 def facts(asked: Asked) -> list[Block]:
-    """Arc length, area, symmetry, and which of the properties of a table are proved."""
+    """A table of arc length, area and symmetry, and of the properties that are proved."""
     table = asked.scene.table
     rows: list[tuple[Cell, ...]] = [("perimeter", length(asked.scene))]
     area = enclosed_area(table)
     if area is not None and area.is_number:
-        rows.append(("area", Number(str(area))))
+        rows.append(("area", ShownNumber(str(area))))
     symmetries = group(table)
     mirrors = sum(symmetry.sign < 0 for symmetry in symmetries)  # a dihedral group has as many turns
-    rows.append(("symmetries", Number(f"D{mirrors}" if mirrors else f"C{len(symmetries)}", known=Known.PROVED)))
-    rows += [(what, Number(said, known=known)) for what, said, known in properties(table)]
+    rows.append(("symmetries", ShownNumber(f"D{mirrors}" if mirrors else f"C{len(symmetries)}", known=Known.PROVED)))
+    rows += [(what, ShownNumber(said, known=known)) for what, said, known in properties(table)]
     caption = "What is known of the table. A closed formula is exact; what is proved is proved for the exact boundary."
     return [Listing(caption, ("property", "value"), tuple(rows))]
 
 
-def length(scene: Scene) -> Number:
+def length(scene: Scene) -> ShownNumber:
     """The perimeter: in closed form where there is one, else enclosed by integration in balls."""
     table = scene.table
-    if (
-        not any(arc_length(part).has(Integral) for part in table.components[: SHOWN + 1])
-        and len(table.components) <= SHOWN + 1
-    ):
-        return Number(str(perimeter(table)))
+    if len(table.components) <= SHOWN + 1 and not any(arc_length(part).has(Integral) for part in table.components):
+        return ShownNumber(str(perimeter(table)))
     value, radius = decimal(enclosed_perimeter(EnclosedMap(PinballMap(scene), scene.lam, 100), DIGITS), DIGITS)
-    return Number(value, radius, Known.PROVED)
+    return ShownNumber(value, radius, Known.PROVED)
 
 
 def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
-    """Closed, simple, convex: what is said of each, and how it is known."""
+    """The properties closed, simple and convex, with the answer to each and how it is known."""
     yield "closed", "yes", Known.PROVED
     rho = table.components[0].radius if len(table.components) == 1 else None
     if rho is not None and radius_sign(rho) is Outcome.PROVED:
@@ -88,8 +86,6 @@ def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
         yield "simple", "yes: it bends inwards everywhere, and its tangent turns once", Known.PROVED
     elif simple(table):
         yield "simple", "yes: no two parts of the boundary meet", Known.PROVED
-    else:
-        yield "simple", "no crossing was found on a polygon along the boundary", Known.SAMPLED
     if convex(table) or turns_once(table):
         yield "convex", "yes", Known.PROVED
         return
@@ -103,14 +99,13 @@ def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
 
 
 def inflections(table: Table) -> list[str]:
-    """Where the curvature of the first pieces changes sign, to six digits: found on a grid, so a pair may be missed.
+    """Parameters where the curvature of the first pieces changes sign, to six digits; a grid may miss a close pair.
 
     >>> from symbolic.tables import cuspless
     >>> inflections(cuspless)
     []
     """
     import numpy as np
-    from scipy.optimize import brentq
 
     found = []
     for part in table.components[:SHOWN]:
@@ -122,12 +117,13 @@ def inflections(table: Table) -> list[str]:
         at = np.linspace(float(part.start), float(part.end), GRID)
         values = np.broadcast_to(many(at)[0], at.shape)
         for i in np.flatnonzero(values[:-1] * values[1:] < 0):
-            found.append(f"{brentq(lambda x, f=one: f(x)[0], at[i], at[i + 1]):.6f}")
+            zero = bracketed(lambda x, f=one: f(x)[0], float(at[i]), float(at[i + 1]), 1e-12, 1e-15)  # type: ignore[misc]
+            found.append(f"{zero:.6f}")
     return found
 
 
 def derivation(asked: Asked) -> list[Block]:
-    """The derivative of the map, and the double normals on the axes of symmetry with their thresholds."""
+    """Section on the derivative of the map, and on the double normals on axes of symmetry with their thresholds."""
     law = asked.scene.law
     matrix = derivative_matrix() if law.uniform else derivative_matrix(lam=Symbol("f'", real=True))
     name = "derivative in (s, phi), one flight and one reflection"
@@ -135,13 +131,13 @@ def derivation(asked: Asked) -> list[Block]:
     if not law.uniform:
         blocks.append(Formula("slope of the law", rf"f'\left(\eta\right) = {latex(law.phi.diff(eta) * -1)}"))
         blocks.append(
-            Words("Closed thresholds of period 2 are known for the law phi = -lam*eta; this scene has another.")
+            Paragraph("Closed thresholds of period 2 are known for the law phi = -lam*eta; this scene has another.")
         )
         return blocks
     cycles = list(double_normals(asked.scene.table))
     if not cycles:
         blocks.append(
-            Words(
+            Paragraph(
                 "No axis of symmetry meets the table in two smooth points: no cycle of period 2 has a closed form here."
             )
         )
@@ -151,9 +147,9 @@ def derivation(asked: Asked) -> list[Block]:
 
 
 def double_normals(table: Table) -> Iterator[Cycle]:
-    """The chords along axes of symmetry whose ends are smooth: cycles of period 2 for every contraction.
+    """The chords along axes of symmetry with smooth ends: cycles of period 2 for every contraction.
 
-    Those that a symmetry exchanges count once.
+    Chords that a symmetry exchanges count once.
 
     >>> from symbolic.tables import ellipse
     >>> [cycle.bounces for cycle in double_normals(ellipse.at(a=2))]
@@ -173,7 +169,7 @@ def double_normals(table: Table) -> Iterator[Cycle]:
 
 
 def _on_axis(table: Table, mirror: Symmetry) -> list[tuple[int, Expr]]:
-    """The boundary points that a reflection keeps, ends of pieces left out."""
+    """The boundary points that a reflection fixes, without the ends of pieces."""
     fixed = [(i, mirror.shift[i] / 2) for i, onto in enumerate(mirror.onto) if onto == i]
     if len(table.components) == 1:
         return [*fixed, *((i, at + pi) for i, at in fixed)]
@@ -189,31 +185,33 @@ def _look(table: Table, ends: list[tuple[int, Expr]]) -> tuple[float, ...]:
 
 
 def _marked(table: Table, index: int, at: Expr) -> bool:
-    """Is the map undefined there?"""
+    """Is the map undefined at this boundary point?"""
     return any(mark.component == index and cos(mark.theta - at) == 1 for mark in table.undefined)
 
 
 def thresholds(cycle: Cycle) -> list[Block]:
-    """The stability number of a double normal, and the contraction at which it doubles its period or is a focus."""
+    """Formulas of the stability number of a double normal, and of the contraction of its doubling or focus."""
     number = stability_number(cycle)
     value = number.evalf(20)
     blocks: list[Block] = [Formula(f"{cycle.name}: stability number P = (1 + t*K0)*(1 + t*K1)", f"P = {latex(number)}")]
     decimals = f"P = {number if number.is_Integer else value.evalf(12)}"
     if number < -1 or number > 1:
-        blocks.append(Words(f"{decimals}: unstable for every contraction."))
+        blocks.append(Paragraph(f"{decimals}: unstable for every contraction."))
     elif number < 0:
         exact = simplify(flip_contraction(number))
         blocks.append(Formula(f"{cycle.name}: period doubling", rf"\lambda = {approximated(exact)}"))
-        blocks.append(Words(f"{decimals}: stable below this contraction, unstable above it."))
+        blocks.append(Paragraph(f"{decimals}: stable below this contraction, unstable above it."))
     elif number == 1:
-        blocks.append(Words("P = 1: one of a family of parallel chords, with a multiplier 1 for every contraction."))
+        blocks.append(
+            Paragraph("P = 1: one of a family of parallel chords, with a multiplier 1 for every contraction.")
+        )
     else:
         exact = simplify(focus_contraction(number))
         blocks.append(Formula(f"{cycle.name}: complex multipliers", rf"\lambda > {approximated(exact)}"))
-        blocks.append(Words(f"{decimals}: stable for every lam < 1, a focus above this contraction."))
+        blocks.append(Paragraph(f"{decimals}: stable for every lam < 1, a focus above this contraction."))
     return blocks
 
 
 def approximated(exact: Expr) -> str:
-    """An exact number and its decimals, in LaTeX."""
+    """An exact number and its decimal approximation, in LaTeX."""
     return rf"{latex(exact)} \approx {exact.evalf(DIGITS)}"

@@ -1,6 +1,6 @@
-"""Tables by name, one a file: a function of the file's name whose arguments are lengths, each with a number of its own.
+"""Tables by name: each file holds a function of the file's name, whose arguments are lengths with default values.
 
-Nothing else has to hear of a new file: commands, scene files, `PinballMap` and reports take its name from the folder.
+Commands, scene files, `PinballMap` and reports find a new file by themselves: they take the names from the folder.
 """
 
 import os

@@ -9,7 +9,7 @@ from symbolic.tables.table import Table, theta
 def elliptical_stadium(straight: Length = 2, a: Length = "21/20") -> Table:
     """Two half ellipses of half axes `a` and 1 joined by sides of length `straight`; the stadium where `a` is 1.
 
-    An exponent of the elastic billiard is positive where `1 < a < sqrt(4 - 2*sqrt(2))` and the sides are longer than
+    A Lyapunov exponent of the elastic billiard is positive if `1 < a < sqrt(4 - 2*sqrt(2))` and the sides exceed
     `4*a*a*sqrt(a*a - 1)` [MarkarianOliffsonKamphorstPintodeCarvalho1996].
 
     >>> elliptical_stadium().components[0].at(0)

@@ -6,9 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from numeric.backends.doubled import OTHERS, UNIT, WORDS, Double, Doubles, Sum, short_of
+from numeric.backends.doubled import UNIT, Double, Doubles, Sum
 from numeric.backends.scalars import ArrayBackend
-from numeric.lowering.program import VOCABULARY
 
 MP = mpmath.MPContext()
 MP.dps = 60
@@ -33,7 +32,7 @@ def doubled(x):
 
 
 def off(word, x, *args):
-    """The errors of a word, and the moduli of the exact values and of what went in."""
+    """The errors of a function, and the moduli of the exact values and of the arguments."""
     given = doubled(x)
     with np.errstate(over="ignore"):  # of what is not selected
         found = getattr(Doubles(OPS), word)(given, *args)
@@ -55,11 +54,6 @@ def test_a_root_has_twice_the_digits(n):
         assert error <= MP.mpf(2) ** -100 * value
 
 
-def test_every_word_of_programs_has_its_cost():
-    assert WORDS.keys() | OTHERS.keys() == VOCABULARY
-    assert OTHERS.keys() == POINTS.keys()
-
-
 @pytest.mark.parametrize("size", [2.0**-20, 1.0, 2.0**20])
 def test_a_sum_above_a_large_number_is_right_to_its_small_share_of_the_size(size):
     """Numbers and products that cancel to a millionth, as in the residual of a landing."""
@@ -75,12 +69,3 @@ def test_a_sum_above_a_large_number_is_right_to_its_small_share_of_the_size(size
         a, b, c, d, e = map(Fraction, terms)
 
         assert abs(Fraction(high) + Fraction(low) - (a * b + c + d + e)) <= Fraction(size) / 2**85
-
-
-def test_what_a_unit_vector_lacks_of_its_length_is_known_to_its_last_bits():
-    angle = np.linspace(-3, 3, 101)
-    u = np.cos(angle), np.sin(angle)
-    for lack, x, y in zip(short_of(OPS, u), *u, strict=True):
-        truth = (1 - Fraction(x) ** 2 - Fraction(y) ** 2) / 2
-
-        assert abs(Fraction(lack) - truth) <= Fraction(1, 2**85)

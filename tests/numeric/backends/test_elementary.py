@@ -1,4 +1,4 @@
-"""Elementary functions of arrays: against 50 digits, at their ends, and to the bit on other instruction sets."""
+"""Elementary functions of arrays: 50 digits, ends of ranges, and equal bits on other instruction sets."""
 
 import os
 import subprocess
@@ -83,8 +83,9 @@ print(*(hashlib.sha256(np.ascontiguousarray(part).tobytes()).hexdigest() for par
 """
 
 
+@pytest.mark.slow
 def test_starts_and_chaotic_orbits_are_the_same_to_the_bit_without_wide_registers(fewer):
-    """With what the processor has, without AVX-512, and without AVX2, in NumPy and OpenBLAS."""
+    """With all instructions, without AVX-512, and without AVX2, in NumPy and OpenBLAS."""
     said = [
         subprocess.run(
             [sys.executable, "-c", BITS], env=os.environ | less, capture_output=True, text=True, check=True

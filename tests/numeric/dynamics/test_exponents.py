@@ -1,25 +1,25 @@
-"""Lyapunov exponents: exact cases, a second method, and error bars that hold what they promise."""
+"""Lyapunov exponents: exact cases, a second method, and error bars that hold their confidence."""
 
 import numpy as np
 import pytest
-from flint import arb
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.dynamics.account import account, checked, volume
-from numeric.dynamics.exponents import CHANGED, Count, surveyed
+from numeric.dynamics.account import account, checked
+from numeric.dynamics.estimator import Count
+from numeric.dynamics.exponents import CHANGED, surveyed
 from numeric.dynamics.phase_points import PhasePoints, phase_points
 from numeric.dynamics.recognition import Kind
 from numeric.dynamics.statistics import autocorrelation_time, estimate
 from numeric.pinball.sampling import Growth, Starts, interior_starts, phase_starts
 from symbolic import tables
-from verification.named.attractors import certified_exponents, exponents
+from verification.named.attractors import certified_exponents
 
 SCENES = {"circle": {}, "ellipse": {"a": 1.5}, "cardioid": {}, "cuspless": {}, "egg": {"alpha": "0.08"}}
 
 
 def remembering(rng, memory, blocks, orbits):
-    """A stationary series whose neighbours are correlated by `memory`; its mean is 0."""
+    """A stationary series of mean 0 with correlation `memory` between neighbours."""
     noise = rng.normal(size=(blocks, orbits))
     series = np.empty_like(noise)
     series[0] = noise[0] / np.sqrt(1 - memory**2)
@@ -28,12 +28,13 @@ def remembering(rng, memory, blocks, orbits):
     return series
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("memory", "orbits"), [(0.0, 1), (0.9, 1), (0.9, 4), (-0.5, 3), (-0.95, 3), (0.97, 40)])
 def test_an_error_bar_of_a_series_with_memory_is_that_of_its_mean(memory, orbits):
     rng = np.random.default_rng(3)
     found = [estimate(remembering(rng, memory, 1024, orbits)) for _ in range(60)]
     exact = 1 / (1 - memory) / np.sqrt(1024 * orbits)
-    held = np.mean([abs(x.mean) < x.interval for x in found])
+    held = np.mean([x.interval[0] < 0 < x.interval[1] for x in found])
 
     assert np.mean([x.error for x in found]) == pytest.approx(exact, rel=0.1)
     assert held > 0.88  # 95 per cent of 60, and 2.5 of its standard deviations below
@@ -51,18 +52,7 @@ def test_a_run_shorter_than_its_memory_is_not_trusted():
     assert not found.trusted
 
 
-@pytest.mark.parametrize("bounces", [7, 8, 100, 1000])
-def test_a_run_of_known_length_begins_with_the_blocks_that_single_bounces_would_come_to(bounces):
-    map = PinballMap("cardioid", lam="0.5")
-    start = interior_starts(map, 5, seed=3)
-    counts = [Count(Growth(map, start.theta, start.phi, start.component), 8, long=n) for n in (0, bounces)]
-    steps = [len(list(count.until(bounces))) for count in counts]
-
-    assert counts[0].length == counts[1].length
-    assert steps[1] == counts[1].blocks == counts[0].blocks
-    assert np.max(np.abs(counts[0].up - counts[1].up)) < 1e-13
-
-
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "lam"), [("cardioid", "0"), ("cuspless", "0.5"), ("cardioid", "0.5")])
 def test_intervals_of_exponents_hold_a_long_runs_result(name, lam):
     map = PinballMap(name, lam=lam)
@@ -75,7 +65,7 @@ def test_intervals_of_exponents_hold_a_long_runs_result(name, lam):
         pass
     truth = np.mean(count.up)  # of 300 repeats, so 17 times as sharp as one
     found = [estimate(part) for part in np.split(count.up, 300, axis=1)]
-    held = np.mean([abs(x.mean - truth) < x.interval for x in found])
+    held = np.mean([x.interval[0] < truth < x.interval[1] for x in found])
 
     assert 0.9 < held < 0.995
     assert np.mean([x.error for x in found]) == pytest.approx(np.std([x.mean for x in found]), rel=0.15)
@@ -95,6 +85,7 @@ def test_the_slap_exponent_of_the_cardioid_is_the_mean_over_ulams_invariant_dens
     assert abs(found.mean - ulam) < 4 * found.error + 2e-3  # the second is Ulam's own error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("lam", ["0", "0.3", "0.9", "1"])
 def test_kernel_and_angles_agree_on_the_determinant_along_an_orbit(name, lam):
@@ -136,7 +127,7 @@ def test_the_diameters_of_the_circle_have_exponents_0_and_log_lam():
 @pytest.mark.parametrize("scene", [{"table": "circle"}, {"table": "ellipse", "a": 2}], ids=["circle", "ellipse"])
 @pytest.mark.parametrize("bounces", [64, 256, 1024])
 def test_where_vectors_grow_like_a_power_of_the_time_the_error_holds_the_exponent_0(scene, bounces):
-    """The elastic circle and ellipse: what is left after `n` bounces is `log(n)/n`, whatever orbits scatter by."""
+    """The elastic circle and ellipse: the estimate after `n` bounces is `log(n)/n`, whatever the scatter of orbits."""
     map = PinballMap(**scene, lam=1)
     for seed in range(5):
         found = account(map, surveyed(map, interior_starts(map, 4, seed=seed), bounces, 500))
@@ -161,8 +152,9 @@ def test_two_attractors_are_never_averaged():
     assert {np.sign(group["nu_plus"]) for group in document["groups"]} == {1, -1}
 
 
+@pytest.mark.slow
 def test_particles_that_leave_for_a_cycle_while_counted_are_set_apart():
-    """Just above the boundary crisis chaos is a long transient, which some particles end while they are counted."""
+    """Just above the boundary crisis chaos is a long transient, which ends for some particles during the count."""
     map = PinballMap("egg", lam="0.663", alpha="0.08")
     found = surveyed(map, interior_starts(map, 60, seed=1), 6000, 100)
     described = {group["kind"]: group for group in account(map, found)["groups"]}
@@ -182,33 +174,6 @@ def test_particles_that_all_stop_are_an_answer():
     assert [group["kind"] for group in document["groups"]] == ["stopped: the map is undefined there"]
 
 
-def test_merged_blocks_keep_the_growth_that_was_counted():
-    map = PinballMap("cardioid", lam="0.4")
-    start = interior_starts(map, 5, seed=1)
-    growth = Growth(map, start.theta, start.phi, start.component)
-    count = Count(growth, most=16)
-    counted = list(count.until(1000))
-
-    assert counted == sorted(counted)
-    assert count.bounces == counted[-1] == int(growth.bounces[0])
-    assert 8 <= count.blocks < 16
-    assert count.length == 64
-    assert np.allclose(np.mean(count.up, axis=0) * count.bounces, growth.stretch, rtol=1e-13)
-    assert np.allclose(np.mean(count.volume, axis=0) * count.bounces, growth.volume, rtol=1e-12, atol=1e-12)
-
-
-def test_a_count_goes_on_until_the_error_is_small_enough_or_the_budget_spent():
-    map = PinballMap("cardioid", lam="0.5")
-    start = interior_starts(map, 20, seed=1)
-    reached = surveyed(map, start, 100, 100, until=1e-3, budget=10**7)
-    spent = surveyed(map, start, 100, 100, until=1e-9, budget=20 * 1000)
-
-    assert reached.ended == "error"
-    assert reached.error <= 1e-3
-    assert spent.ended == "budget"
-    assert spent.count.bounces <= 1000
-
-
 def test_an_interrupted_count_keeps_what_it_has():
     map = PinballMap("cardioid", lam="0.5")
 
@@ -223,25 +188,6 @@ def test_an_interrupted_count_keeps_what_it_has():
     assert 0.3 < found.groups[0].measured.upper.mean < 0.8
 
 
-def test_a_trace_ends_at_the_estimate_and_its_errors_shrink():
-    map = PinballMap("cardioid", lam="0.5")
-    group = account(map, surveyed(map, interior_starts(map, 40, seed=1), 2048, 500))["groups"][0]
-    trace = group["trace"]
-
-    assert trace[-1]["nu_plus"] == group["nu_plus"]
-    assert [row["collisions"] for row in trace] == sorted(row["collisions"] for row in trace)
-    assert trace[-1]["nu_plus_stderr"] < trace[3]["nu_plus_stderr"] / 3
-
-
-def test_multipliers_on_either_side_of_the_discriminant_give_exponents():
-    near = exponents(arb(2, 1e-9), arb(1), 3)  # double multiplier 1, or a pair near it
-
-    assert [float(x.mid()) for x in exponents(arb(1), arb(4), 2)] == pytest.approx([np.log(2) / 2] * 2)
-    assert [float(x.mid()) for x in exponents(arb(-3), arb(2), 1)] == pytest.approx([np.log(2), 0])
-    assert all(x.contains(0) for x in near)
-    assert near[0].rad() < 1e-4
-
-
 def test_certified_exponents_of_the_eggs_triangles_are_their_closed_form():
     found = certified_exponents(
         tables.egg(3).at(alpha="0.08"), Rational(9, 20), phase_points([-2.8335, -0.739, 1.355], 0.0)
@@ -251,12 +197,6 @@ def test_certified_exponents_of_the_eggs_triangles_are_their_closed_form():
     assert float(found["nu_plus"]) == pytest.approx(np.log(0.45 * np.cos(0.45 * eta) / np.cos(eta)) / 2, abs=1e-14)
     assert found["nu_plus"] == found["nu_minus"]
     assert float(found["radius"]) < 1e-28
-
-
-def test_a_ball_that_stops_has_no_sum():
-    stopped = volume(PinballMap("cardioid", lam="0.5"), phase_points([0.0], [0.0]), 5)
-
-    assert not np.isfinite(stopped[0])
 
 
 @pytest.mark.parametrize("lam", ["0", "0.4", "0.9", "0.99"])
@@ -272,19 +212,3 @@ def test_beams_in_the_cardioid_widen_at_every_bounce_by_no_less_than_the_proof_s
 
     assert np.min(gain) >= 1 + np.tan((1 - float(lam)) * np.pi / 8) ** 2 / 2
     assert np.min(growth.nu_plus) > np.mean(np.log(gain)) / 2 > 0
-
-
-@pytest.mark.parametrize("lam", ["0.2", "0.7"])
-def test_a_short_curve_in_the_cardioid_is_torn_at_the_cusp_before_it_measures_3_pi(lam):
-    """Its length in `|K|*ds = 3/2*d(theta)` grows while neighbours land side by side."""
-    map, points = PinballMap("cardioid", lam=lam), 20_000
-    orbit = map.orbit(np.linspace(0.7, 0.7 + 1e-3, points), 0.2, 60)
-    steps = 1.5 * np.abs(np.diff(orbit.theta, axis=1))
-    torn = int(np.argmax(np.any(steps > 0.3, axis=1)))
-    lengths = steps[:torn].sum(axis=1)
-    nearest = np.min(np.hypot(orbit.x[torn], orbit.y[torn]))
-
-    assert 2 < torn < 40
-    assert np.all(np.diff(lengths) > 0)
-    assert lengths[-1] < 3 * np.pi
-    assert nearest < 0.05

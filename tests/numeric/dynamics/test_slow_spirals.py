@@ -1,4 +1,4 @@
-"""Where a cycle is about to lose its stability particles spiral slowly: they are unsettled, none is called chaotic."""
+"""Particles that spiral slowly to a weakly attracting cycle are undecided, and none is called chaotic."""
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ PARTICLES = 32
 CLOSE = 0.03, 0.003  # in theta and phi of the horizontal orbit of the cuspless cardioid
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("below", [1e-5])  # the nearer, the slower the spiral
 def test_no_ball_on_its_way_to_a_weakly_attracting_cycle_is_called_chaotic(below):
     """Paper, section 5.1: the cycle attracts below `lambda_c`; here its multiplier is within 2e-4 of -1."""

@@ -1,4 +1,4 @@
-"""Between straight sides the angle changes by an affine law and the place is stretched: the map against both."""
+"""Between straight sides the angle changes by an affine law and the place is stretched: the map agrees."""
 
 from functools import cache
 
@@ -9,8 +9,7 @@ from sympy import Rational, S, cos, lambdify, pi, simplify
 from numeric import PinballMap
 from symbolic import tables
 from symbolic.cycles.polygons import exit_angles, next_exit_angle, straight_multipliers
-from symbolic.motion.collision import derivative_matrix
-from symbolic.tables.table import cos_eta1, cos_phi0, lam, t, theta
+from symbolic.tables.table import lam, theta
 
 EPS = 2.0**-52
 LAM = Rational(3, 10)
@@ -60,13 +59,6 @@ def test_one_exponent_is_the_logarithm_of_the_contraction_and_the_other_is_not_n
     assert np.min(found.nu_plus[going]) > -10 / bounces
 
 
-def test_between_straight_sides_the_derivative_matrix_is_triangular():
-    matrix = derivative_matrix(S.Zero, S.Zero, t, cos_phi0, cos_eta1)
-    assert matrix[1, 0] == 0
-    assert matrix[1, 1] == -lam
-    assert simplify(matrix[0, 0] + cos_phi0 / cos_eta1) == 0
-
-
 def test_the_word_of_three_sides_gives_the_cycle_of_the_triangle_and_what_it_repels():
     """From one side to the next the particle lands at the share of the side from which it left."""
     angles = exit_angles([2 * pi / 3] * 3)
@@ -102,7 +94,7 @@ def test_no_cycle_of_two_bounces_attracts_and_only_between_parallel_sides_is_one
 
 
 def test_particles_in_the_square_settle_on_parallel_sides_or_go_on_for_ever():
-    """The two attractors of the square that were published: one parabolic, one chaotic."""
+    """The two published attractors of the square: one parabolic, one chaotic."""
     map = PinballMap(tables.square(), lam="0.8")
     where, at, phi = starts(map, 300)
     orbit = map.orbit(at, phi, 400, where)

@@ -1,11 +1,10 @@
-"""The circle's bounce in closed form: half a turn less twice the exit angle."""
+"""The circle's bounce in closed form: half a turn minus twice the exit angle."""
 
 import mpmath
 import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.flights.circle import Circle
 
 EPS = 2.0**-52
 MP = mpmath.MPContext()
@@ -24,12 +23,3 @@ def test_landings_are_exact_up_to_one_rounding_of_the_angle(lam, kernels):
         rounded = EPS * abs(turned) if phi[i] else 0  # the difference is, the half turn is not
         assert abs(float(step.theta[i]) - truth) <= EPS * abs(truth) + rounded
     assert step.phi.tolist() == (lam * phi).tolist()
-
-
-def test_no_landing_stops_a_ball_and_none_of_its_rows_is_for_that():
-    assert not Circle.stops
-    assert not PinballMap("circle", lam=1).step(0.0, 1.5707963).code
-
-
-def test_a_bounce_takes_the_operations_of_the_page(as_on_the_page):
-    as_on_the_page("circle")

@@ -1,9 +1,8 @@
-"""What kernels promise whatever they compute: the same bits, however they are run."""
+"""Promises of all kernels: the same bits, however they are run."""
 
 import numpy as np
 import pytest
 
-from numeric import PinballMap
 from numeric.flights.family import SLAP
 from numeric.kernels.engine import Engine
 from numeric.kernels.machine import KernelSpec, starting
@@ -43,6 +42,7 @@ def test_the_number_of_lanes_does_not_change_a_bit(table, lam):
     assert np.array_equal(record(map).record, record(map, engine=narrow).record)
 
 
+@pytest.mark.slow
 def test_neighbours_do_not_change_a_bit(table):
     map = table.map(0.7)
     where, theta, phi = map_starts(map, 70, 5)
@@ -82,6 +82,7 @@ def test_the_text_of_a_kernel_is_always_the_same(table):
     assert "contract" not in text
 
 
+@pytest.mark.slow
 def test_one_contraction_for_each_ball_is_as_good_as_one_for_all(table):
     lam = np.linspace(0.1, 0.9, 40)
     where, theta, phi = map_starts(table.map(0.5), 40, 2)
@@ -90,6 +91,7 @@ def test_one_contraction_for_each_ball_is_as_good_as_one_for_all(table):
         assert table.map(lam[i]).step(theta[i], phi[i], where[i]).phi == together.phi[i]
 
 
+@pytest.mark.slow
 def test_steps_make_orbits(table):
     map = table.map(0.6)
     where, theta, phi = map_starts(map, 30, 3)
@@ -100,11 +102,3 @@ def test_steps_make_orbits(table):
     assert np.array_equal(orbit.theta[0], theta)
     assert np.all(np.isnan(orbit.eta[0]))
     assert np.nanmax(np.abs(orbit.phi[1:] + 0.6 * orbit.eta[1:])) <= 8 * 2.0**-52
-
-
-def test_long_orbits_are_recorded_in_parts_without_a_seam(monkeypatch):
-    map = PinballMap("egg", lam=0.9, alpha="0.08")
-    whole = map.orbit([0.1, 0.2], 0.3, 500)
-    monkeypatch.setattr("numeric.kernels.engine.PART", 4 * 32 * 7)
-
-    assert np.array_equal(map.orbit([0.1, 0.2], 0.3, 500).theta, whole.theta)

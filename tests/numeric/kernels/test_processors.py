@@ -1,5 +1,6 @@
-"""The same bits on processors with fewer instructions, and code for other processors, as far as a compiler can tell."""
+"""Kernels on processors with fewer or other instructions, and results near the smallest normal number."""
 
+import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
@@ -8,37 +9,14 @@ from numeric.kernels import machine
 from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text
 
+llvm.initialize_native_target()
+llvm.initialize_native_asmprinter()
 SCENES = {"circle": {}, "ellipse": {"a": "3/2"}, "cardioid": {}, "cuspless": {}, "egg": {"alpha": "0.08"}}
 
 
-def orbit(name):
-    """Some bounces of some particles."""
-    map = PinballMap(name, lam=0.7, **SCENES[name])
-    low, high = map.states.ends[0]
-    theta = low + (high - low) * (np.arange(16) + 0.5) / 16
-    return map.orbit(theta, np.linspace(-1.2, 1.2, 16), 12)
-
-
-@pytest.mark.parametrize("processor", ["haswell", "nehalem"])
-def test_processors_with_fewer_instructions_find_the_same_bits(processor, tmp_path, monkeypatch):
-    """Nehalem has no fused multiply-add: LLVM calls the library's, and such an object file is no image."""
-    llvm = machine._llvm()
-    if not llvm.get_process_triple().startswith("x86_64"):
-        return
-    expected = {name: orbit(name) for name in ("cardioid", "egg")}
-    target = llvm.Target.from_default_triple()
-    monkeypatch.setenv("PINBALL_CACHE", str(tmp_path))
-    monkeypatch.setattr(machine, "_loaded", {})
-    monkeypatch.setattr(machine, "_target", lambda: target.create_target_machine(cpu=processor, features="", opt=3))
-    for name, known in expected.items():
-        found = orbit(name)
-        for field, values in zip(found._fields, found, strict=True):
-            assert np.array_equal(values, getattr(known, field), equal_nan=values.dtype.kind == "f"), (name, field)
-
-
+@pytest.mark.slow
 @pytest.mark.parametrize("features", ["-avx512f,-avx512vl", "-avx2,-fma,-avx512f"])
 def test_wide_registers_that_are_switched_off_are_not_used(features):
-    llvm = machine._llvm()
     if not llvm.get_process_triple().startswith("x86_64"):
         return
     map = PinballMap("egg", lam=0.7, alpha="0.08")
@@ -51,10 +29,10 @@ def test_wide_registers_that_are_switched_off_are_not_used(features):
     assert ("vfmadd" in text) == ("-fma" not in features)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_kernels_compile_for_aarch64(name):
-    """On vector registers and without a call to any library; `benchmarks/torture.py aarch64` runs them."""
-    llvm = machine._llvm()
+    """They use vector registers and call no library; `benchmarks/torture.py aarch64` runs them."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     map = PinballMap(name, lam=0.7, **SCENES[name])
@@ -75,7 +53,7 @@ SMALLEST = 2.0**-1022  # normal number
 
 
 def at_rest(name, lam=0.7):
-    """Particles that are all but at rest on a cycle: subnormal distances from it, in each field."""
+    """Particles almost at rest on a cycle, at subnormal distances from it in each field."""
     map = PinballMap(name, lam=lam, **SCENES[name])
     own = map.states.enter(np.zeros(40, dtype=int), np.zeros(40), np.zeros(40), map.law)
     tiny = np.linspace(1, 900, 40) * 1e-310
@@ -83,7 +61,7 @@ def at_rest(name, lam=0.7):
 
 
 def run(map, own, bounces, exponents=False, threads=None):
-    """The rows after some bounces."""
+    """The rows of the fields after some bounces."""
     one = np.ones(40)
     tangent = starting(one, 0.5 * one, one) if exponents else ()
     spec = KernelSpec(map.law, exponents=exponents)
@@ -104,7 +82,7 @@ def test_no_state_holds_a_subnormal_number_and_the_caller_keeps_its_own(name, th
 
 
 def test_a_ball_that_converges_to_a_cycle_arrives_within_the_smallest_normal_numbers():
-    """And costs no more there: rounding to the nearest subnormal number would keep it among these for ever."""
+    """And at no extra cost: rounding to the nearest subnormal number would keep the ball off the cycle for ever."""
     map, own = at_rest("ellipse", lam=0.9)
     rest = run(map, [own[0] + 0.1, *own[1:]], 20_000)
     for x, y in ((rest["ux"], rest["uy"]), (rest["vx"], rest["vy"])):
@@ -115,7 +93,7 @@ def test_a_ball_that_converges_to_a_cycle_arrives_within_the_smallest_normal_num
 
 @pytest.mark.parametrize("eta", [1e-7, 1e-9, 1e-12])
 def test_exit_angles_below_the_smallest_normal_number_are_zero_and_no_further_off(eta):
-    """`lam = 1e-300`: the exit angle is `-lam*eta`, to rounding above `2**-1022` and to within that below."""
+    """With `lam = 1e-300`: the exit angle is `-lam*eta` to rounding above `2**-1022`, within that number below."""
     map = PinballMap("circle", lam=1e-300)
     phi = float(map.step(0.0, eta).phi)
 

@@ -1,16 +1,15 @@
-"""The curve of a long formula, harmonic by harmonic or by the chain rule, is the curve that was typed."""
-
-import time
+"""The curve of a long formula is the one that was typed; a formula that would take minutes is refused."""
 
 import mpmath
 import numpy as np
 import pytest
+from sympy import Add, cos, pi, sin
 
 from numeric import PinballMap
-from numeric.lowering import lower
+from numeric.lowering.program import table_ir
 from symbolic import tables
 from symbolic.tables.formula import parse
-from symbolic.tables.table import theta
+from symbolic.tables.table import Component, Table, theta
 
 HARMONICS = "1+" + "+".join(f"cos({k}*theta)/{1000 * k * k}" for k in range(1, 41))
 FACTORS = "1+" + "*".join(f"(1+cos({k}*theta)/50)" for k in range(1, 31)) + "/100"
@@ -18,14 +17,13 @@ LEVELS = "1+" + "cos(" * 30 + "theta" + ")" * 30 + "/40"
 QUOTIENTS = "1/(3+" * 12 + "cos(theta)" + ")" * 12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text", [HARMONICS, FACTORS, LEVELS, QUOTIENTS], ids=["harmonics", "factors", "levels", "quotients"]
 )
 def test_point_velocity_and_acceleration_are_those_of_the_formula(text):
     rho = parse(text)
-    table, started = tables.polar(rho, "own"), time.process_time()
-    map = PinballMap(table, lam="1/2", kernels=False)
-    assert time.process_time() - started < 60
+    map = PinballMap(tables.polar(rho, "own"), lam="1/2", kernels=False)
 
     context = mpmath.MPContext()
     context.dps = 40
@@ -43,19 +41,28 @@ def test_point_velocity_and_acceleration_are_those_of_the_formula(text):
 
 
 def _value(context, rho, t):
-    """The formula with mpmath's functions."""
+    """The value of the formula with mpmath's functions."""
     from sympy import lambdify
 
     return lambdify(theta, rho, modules=[context])(t)
 
 
-@pytest.mark.parametrize("text", ["1+cos(5*theta)/40", "sqrt(4+cos(theta))/(3+sin(2*theta)/9)"])
-def test_the_chain_rule_says_what_differentiation_says(text, monkeypatch):
-    table = tables.polar(text, "own")
-    plain = PinballMap(table, lam="1/2", kernels=False).family.boundary
-    monkeypatch.setattr(lower, "LONG", 0)
-    chained = PinballMap(table, lam="1/2", kernels=False).family.boundary
-    at = np.linspace(-3, 3, 50)
-    rows = [boundary.curve(np.zeros(50, dtype=np.int64), at) for boundary in (plain, chained)]
+def test_a_formula_that_would_take_minutes_is_refused():
+    radius = Add(1, *(cos(k * theta) / k**4 for k in range(1, 801)))
+    many = Table("many", (Component("round", (radius * cos(theta), radius * sin(theta)), -pi, pi),))
 
-    assert np.max(np.abs(rows[0] - rows[1])) < 2e-15
+    with pytest.raises(
+        ValueError, match=r"many: a coordinate of round has .* numbers and operations; at most 4000 are"
+    ):
+        PinballMap(many)
+
+
+def test_a_fast_wave_is_few_operations():
+    """`cos(10**6*theta)` takes forty products, and no polynomial of that degree is expanded."""
+    lobed = Table("lobed", (Component("round", polar_point(1 + cos(10**6 * theta) / 10**13), -pi, pi),))
+
+    assert len(table_ir(lobed).parts[0].curve.lines) < 250
+
+
+def polar_point(radius):
+    return radius * cos(theta), radius * sin(theta)

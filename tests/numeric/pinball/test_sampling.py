@@ -1,12 +1,11 @@
-"""Where orbits start: the law of the starts is tested against the law written down, and against traced rays."""
+"""The distribution of random starts, compared with its formula and with traced rays."""
 
 import numpy as np
 import pytest
 from scipy.stats import chi2, chi2_contingency, kstest
-from sympy import cos, sin
+from sympy import cos
 
 from numeric import PinballMap
-from numeric.pinball import sampling
 from numeric.pinball.sampling import interior_starts, longest, phase_grid, phase_starts
 from symbolic import tables
 from symbolic.tables.table import theta
@@ -23,7 +22,7 @@ UNLIKELY = 1e-4  # a seed is fixed, so this is no rate of failures
 
 
 def area_before(name, angle):
-    """The share of the area at polar angles below `angle`, by the integral of rho^2/2."""
+    """The share of the area at polar angles below `angle`, from the integral of rho^2/2."""
     if name == "cardioid":
         return 0.5 + (1.5 * angle + 2 * np.sin(angle) + np.sin(2 * angle) / 4) / (3 * np.pi)
     a = {"egg": 0.08, "waisted": 0.25}[name]
@@ -32,7 +31,7 @@ def area_before(name, angle):
 
 
 def directions(map, starts):
-    """Directions of the flights from the interior points to the landings."""
+    """The directions of the flights from the interior points to their landings."""
     x, y = map.states.point(starts.component, starts.theta)
     return np.arctan2(y - starts.y, x - starts.x)
 
@@ -118,50 +117,3 @@ def test_a_grid_covers_the_boundary_in_arc_length(name):
     assert np.max(np.abs(turns - np.round(turns))) < 1e-12
     assert np.allclose(np.sin(starts.phi).reshape(6, 40), grid.sin_phi[:, None], rtol=0, atol=1e-15)
     assert np.allclose(np.diff(grid.s), map.arclength.perimeter / 40, rtol=0, atol=1e-12)
-
-
-def test_impossible_counts_are_named():
-    map = PinballMap("circle")
-    with pytest.raises(ValueError, match="count = 0 is not possible"):
-        interior_starts(map, 0, seed=1)
-    with pytest.raises(ValueError, match=r"rows = 1\.5 is not possible"):
-        phase_grid(map, 3, 1.5)
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 40, 41])
-def test_as_many_starts_come_as_were_asked_for_in_however_many_batches(count, monkeypatch):
-    monkeypatch.setattr(sampling, "BATCH", 5)
-    starts = interior_starts(PinballMap("cardioid", lam=1), count, seed=9)
-
-    assert [field.shape for field in starts] == [(count,)] * 5
-
-
-def test_the_bound_does_not_depend_on_where_the_table_lies():
-    here, there = (
-        PinballMap(tables.parametric(dx + 2 * cos(theta), dy + sin(theta), name="moved"))
-        for dx, dy in ((0, 0), (7, -5))
-    )
-
-    assert longest(there) == pytest.approx(longest(here), rel=1e-12)
-    assert longest(here) == pytest.approx(4 + here.arclength.perimeter / 512, abs=1e-3)
-
-
-class Extreme:
-    """Draws the ends of every range."""
-
-    def choice(self, given, size, p):
-        return np.arange(size) % given.size
-
-    def uniform(self, low, high, size):
-        return np.where(np.arange(size) < size // 2, low, high)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_no_start_lies_at_the_end_of_a_component_or_along_it(name):
-    map = PinballMap(name, lam=1, **SCENES[name])
-    starts = sampling._uniform(map, 8, Extreme())
-    low, high = np.array(map.states.ends)[starts.component].T
-
-    assert np.all((low < starts.theta) & (starts.theta < high))
-    assert np.all(np.abs(starts.phi) < np.pi / 2)
-    assert np.all(np.abs(starts.phi) > np.pi / 2 - 1e-5)

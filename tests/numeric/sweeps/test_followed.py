@@ -1,4 +1,4 @@
-"""Laws of particles left where they are once they are on an attracting cycle: their fate is that of a long run."""
+"""Particles set aside once on an attracting cycle have the fate that a long run gives them."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from numeric.sweeps.space import attracting, followed, periods
 
 
 def beside(theta, distance, n):
-    """Particles along the normal, so far beside a place."""
+    """Particles displaced along the normal by small distances from a point of the boundary."""
     return Starts(np.zeros(n, dtype=np.int64), theta + distance * np.arange(1, n + 1), *np.zeros((3, n)))
 
 
@@ -23,7 +23,7 @@ def test_who_is_left_on_a_cycle_early_is_on_one_of_that_period_in_the_end():
 
 
 def test_a_particle_that_passes_by_a_saddle_is_back_and_goes_on():
-    """The long axis of the ellipse returns, and repels; the short one attracts."""
+    """The long axis of the ellipse is a repelling cycle, which particles pass, and the short axis attracts them."""
     map = PinballMap("ellipse", a=2, lam="0.5")
     long, short = beside(0.0, 1e-13, 3), beside(np.pi / 2, 1e-13, 3)
 

@@ -1,13 +1,10 @@
-"""Whatever fails while a sweep is written, the store is whole, nothing is lost or done twice, and the end is the same.
+"""After any write error in a sweep the store is whole, nothing is lost or done twice, and the result is the same.
 
 `benchmarks/torture.py restarts` draws such faults for minutes.
 """
 
 import errno
-import json
 import os
-import threading
-import time
 import warnings
 from pathlib import Path
 
@@ -37,7 +34,7 @@ def files(store):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The files of a sweep that nothing disturbed."""
+    """The files of a sweep that ran undisturbed."""
     store = tmp_path_factory.mktemp("whole") / "store"
     run(table(), store)
     return files(store)
@@ -46,7 +43,7 @@ def whole(tmp_path_factory):
 @pytest.mark.parametrize("moment", range(0, 20, 3))
 @pytest.mark.parametrize("where", ["before", "between"])
 def test_a_fault_at_any_write_leaves_a_store_that_goes_on(whole, where, moment, tmp_path):
-    """`before`: the disk is full. `between`: the process is gone after the write and before the rename."""
+    """`before`: the disk is full. `between`: the process ends after the write and before the rename."""
     store = tmp_path / "store"
     hit = interrupted(lambda: run(table(), store, workers=1), where, moment)
     run(table(), store)
@@ -78,7 +75,7 @@ def test_a_damaged_chunk_is_found_named_and_computed_again(whole, damage, tmp_pa
         run(table(), tmp_path)
 
 
-@pytest.mark.parametrize("number", ["EROFS", "EACCES", "EIO"])
+@pytest.mark.parametrize("number", ["EROFS", "EACCES", "EIO", "ENOSPC"])
 def test_a_store_that_cannot_be_written_is_one_sentence(number, tmp_path, monkeypatch):
     with opened(table(), tmp_path / "store"):
         pass
@@ -89,6 +86,7 @@ def test_a_store_that_cannot_be_written_is_one_sentence(number, tmp_path, monkey
     monkeypatch.setattr("os.fsync", refused)
     with pytest.raises(UnfinishedError, match=r"^the (store|disk) [a-z -]*; 0 of 4 parts are in "):
         run(table(), tmp_path / "store")
+    assert list((tmp_path / "store").rglob("*.partial")) == []
 
 
 def test_a_whole_store_is_read_where_nothing_can_be_written(tmp_path, monkeypatch):
@@ -103,35 +101,6 @@ def test_a_whole_store_is_read_where_nothing_can_be_written(tmp_path, monkeypatc
     assert run(table(), tmp_path / "store").identical(kept)
 
 
-def test_without_locks_two_drivers_write_the_same_bits(whole, tmp_path, monkeypatch):
-    def missing(*_, **__):
-        raise NotImplementedError
-
-    def slowly(part):
-        time.sleep(0.01)
-        return squares(part)
-
-    monkeypatch.setattr("filelock.FileLock.acquire", missing)
-    store, failed = tmp_path / "store", []
-
-    def drive():
-        try:
-            run(table(slowly), store, workers=1)
-        except BaseException as error:
-            failed.append(error)
-
-    with opened(table(), store):
-        pass
-    drivers = [threading.Thread(target=drive) for _ in range(2)]
-    for driver in drivers:
-        driver.start()
-    for driver in drivers:
-        driver.join()
-
-    assert failed == []
-    assert files(store) == whole
-
-
 @pytest.mark.parametrize("address", ["memory://sweep", "s3://bucket/sweep"])
 def test_an_object_store_is_refused_in_one_sentence(address, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -139,23 +108,6 @@ def test_an_object_store_is_refused_in_one_sentence(address, tmp_path, monkeypat
         run(table(), Path(address))
 
     assert list(tmp_path.iterdir()) == []
-
-
-def test_another_version_is_refused_and_says_what_to_install(tmp_path, monkeypatch):
-    run(table(), tmp_path)
-    before = files(tmp_path)
-    newer = {"pinball-billiards": "9.0", "numpy": "9.1"}
-    monkeypatch.setattr("numeric.sweeps.sweep.versions", lambda: newer)
-    with pytest.raises(ValueError, match=r"was begun with .*numpy .*, and here are numpy 9.1, pinball-billiards 9.0"):
-        run(table(), tmp_path)
-    assert files(tmp_path) == before
-    monkeypatch.undo()
-    metadata = tmp_path / "zarr.json"
-    known = json.loads(metadata.read_text())
-    known["attributes"]["versions"] = "no list"
-    metadata.write_text(json.dumps(known))
-    with pytest.raises(ValueError, match="was begun with versions that it does not say"):
-        run(table(), tmp_path)
 
 
 def test_a_clock_that_is_set_back_changes_nothing(whole, tmp_path, monkeypatch):
@@ -168,7 +120,7 @@ def test_a_clock_that_is_set_back_changes_nothing(whole, tmp_path, monkeypatch):
 
 
 def test_what_was_written_late_beside_a_store_that_could_not_be_made_goes_with_the_next(whole, tmp_path):
-    """Zarr writes on when it has said that the disk is full: such a draft is there again after it was taken away."""
+    """Zarr writes on after it reported a full disk, so a draft may reappear after it was removed."""
     store = tmp_path / "store"
     assert interrupted(lambda: run(table(), store, workers=1), "before", 1)
     for late in (tmp_path / f".store.{os.getpid()}.{k}" for k in (0, 10**6)):
@@ -186,7 +138,7 @@ OWN = ("x/c/0", "x/zarr.json", "noise/zarr.json", "square/zarr.json")  # of a st
 @pytest.mark.parametrize("name", OWN)
 @pytest.mark.parametrize("damage", ["cut", "flipped", "gone"])
 def test_a_damaged_axis_or_description_is_found_said_and_written_again(whole, name, damage, tmp_path):
-    """An axis has no checksum: a bit of it would move every label, and nothing else would tell."""
+    """An axis has no checksum of Zarr's: a flipped bit would shift every label unnoticed."""
     store = tmp_path / "store"
     run(table(), store)
     text = bytearray((store / name).read_bytes())
@@ -199,16 +151,3 @@ def test_a_damaged_axis_or_description_is_found_said_and_written_again(whole, na
 
     assert found["x"].values.tolist() == list(range(8))
     assert files(store) == whole
-
-
-def test_a_damaged_axis_that_cannot_be_mended_is_one_sentence(tmp_path, monkeypatch):
-    store = tmp_path / "store"
-    run(table(), store)
-    (store / "x" / "c" / "0").write_bytes(b"")
-
-    def refused(handle):
-        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
-
-    monkeypatch.setattr(os, "fsync", refused)
-    with pytest.raises(ValueError, match=r"c/0 is damaged and cannot be mended: Read-only file system$"):
-        run(table(), store)

@@ -1,4 +1,4 @@
-"""The determinant of a bounce of a polygon is `lam` times the ratio of the cosines at the angles it has."""
+"""The determinant of a polygon's bounce, `lam` times a ratio of cosines, at the polygon's own angles."""
 
 import pytest
 from sympy import Rational, S, Symbol, cos, diff, pi, simplify, tan

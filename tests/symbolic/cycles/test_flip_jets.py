@@ -1,4 +1,4 @@
-"""Laws of the flip of a bent wall: its linear part is the package's, its sign that of orbits followed directly."""
+"""The flip of a cycle on a bent wall: its linear part is the package's, and its sign that of simulated orbits."""
 
 import math
 
@@ -23,7 +23,7 @@ def test_a_bend_of_the_wall_beyond_the_least_makes_the_flip_supercritical():
 
 
 def bounce(y, phi, contraction, bend):
-    """From the wall `x = -1/4 + bend*y^4` to the cardioid's arc and back, by bisection: the next `(y, phi)`."""
+    """The next `(y, phi)` after a flight from the wall `x = -1/4 + bend*y^4` to the arc and back, by bisection."""
     x, slope = -0.25 + bend * y**4, 4 * bend * y**3
     direction = phi - math.atan(slope)
     across = root(lambda h: aside((arc(h)[0] - x, arc(h)[1] - y), direction), -0.9, 0.9)
@@ -58,7 +58,7 @@ def root(function, low, high):
 
 @pytest.mark.parametrize(("bend", "factor"), [(0.0, 1.0), (0.2, 1.0), (0.2, 0.5)])
 def test_orbits_beside_the_flip_approach_a_period_4_orbit_only_when_it_is_supercritical(bend, factor):
-    """At `lam = 0.0944`, by 0.001 beyond the flip, `xi = sqrt((|mu| - 1)/c)` is the orbit's height."""
+    """At `lam = 0.0944`, 0.001 beyond the flip, the orbit's height is `xi = sqrt((|mu| - 1)/c)`."""
     contraction = 0.0944
     free, bent = (float(part) for part in coefficient())
     c = free + bent * bend

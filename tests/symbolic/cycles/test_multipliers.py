@@ -3,12 +3,11 @@
 from fractions import Fraction
 
 import mpmath
-import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Interval, Rational, S, Symbol
 
-from symbolic.cycles.cycle import complex_pair, inside_unit_circle, real_and_distinct, saddle
+from symbolic.cycles.cycle import inside_unit_circle, saddle
 from symbolic.expressions.signs import Outcome
 
 mp = mpmath.MPContext()
@@ -36,26 +35,12 @@ def roots(trace: Fraction, det: Fraction) -> tuple:
 def test_each_verdict_is_that_of_the_roots(trace, det):
     plus, minus = roots(trace, det)
     t, d = exact(trace), exact(det)
-    apart = abs(plus - minus) > NOTHING
     verdicts = {
         inside_unit_circle: max(abs(plus), abs(minus)) < 1 - NOTHING,
-        complex_pair: abs(mp.im(plus)) > NOTHING,
-        real_and_distinct: apart and abs(mp.im(plus)) < NOTHING,
         saddle: abs(mp.im(plus)) < NOTHING and 0 + NOTHING < mp.re(minus) < 1 - NOTHING and mp.re(plus) > 1 + NOTHING,
     }
     for judge, expected in verdicts.items():
         assert judge(t, d, {}).outcome is (Outcome.PROVED if expected else Outcome.REFUTED)
-
-
-@pytest.mark.parametrize(
-    ("judge", "trace", "det"),
-    [
-        (inside_unit_circle, S(0), S(1)), (inside_unit_circle, S(2), S(1)), (inside_unit_circle, S(0), S(-1)),
-        (saddle, S(2), S(1)), (saddle, S(3), S(0)), (real_and_distinct, S(2), S(1)), (complex_pair, S(-2), S(1)),
-    ],
-)  # fmt: skip
-def test_coinciding_and_neutral_multipliers_belong_to_no_open_region(judge, trace, det):
-    assert judge(trace, det, {}).outcome is Outcome.REFUTED
 
 
 def test_a_whole_range_is_judged_with_its_ends():

@@ -1,4 +1,4 @@
-"""Laws on the normal form of the egg's triangle: exact, area-preserving, and the same as in balls."""
+"""The normal form of the egg's triangle: exact, area-preserving, and the same as computed in balls."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from sympy import QQ, Poly, Rational, fraction
 
 from numeric import PinballMap
 from symbolic.cycles.polygons import elastic_trace
-from symbolic.cycles.resonance import Pair, at_shape, flat_triangle
+from symbolic.cycles.resonance import at_shape, flat_triangle
 from symbolic.tables import egg
 from symbolic.tables.table import alpha
 from verification.arithmetic.balls import working
@@ -27,7 +27,7 @@ def test_area_is_kept_so_that_half_of_the_cubic_coefficient_is_exactly_0():
 
 @pytest.mark.parametrize("shape", ["0.02", "0.05", "0.08", "1/37", "1/19"])
 def test_the_exact_twist_is_that_of_the_ball_computation_for_three_flights(shape: str):
-    """Lengths are counted in units of sqrt(3) there: three flights twist 3/sqrt(3) times as much as one."""
+    """The exact twist is of one flight, in units of sqrt(3): three flights twist 3/sqrt(3) times as much."""
     with working(120):
         places = [arb.pi() * k for k in (arb(1) / 3, arb(1), arb(-1) / 3)]
         balls = twist(egg(3).at(alpha=Rational(shape)), (0, 0, 0), places, 120)
@@ -51,7 +51,7 @@ def test_three_flights_at_a_thirteenth_are_the_identity_with_a_quadratic_part():
 
 
 def test_four_flights_at_a_nineteenth_twist_more_than_the_resonance_pulls():
-    """Of `mu*z*(1 + i*a*|z|**2) + c*conj(z)**3` the quartic Hamiltonian is definite when `|a| > |c|`."""
+    """The quartic Hamiltonian of the map `mu*z*(1 + i*a*|z|**2) + c*conj(z)**3` is definite when `|a| > |c|`."""
     found = at_shape(FOURTH)
     size = found.fourth.a**2 - found.fourth.b**2 * found.fourth.square
 
@@ -62,7 +62,7 @@ def test_four_flights_at_a_nineteenth_twist_more_than_the_resonance_pulls():
 
 
 def distance(shape: float, offset: float, bounces: int) -> np.ndarray:
-    """How far orbits that start around the flat point get from the triangle, in `(theta, phi)`."""
+    """The largest distances in `(theta, phi)` from the triangle of orbits that start in a circle about it."""
     map = PinballMap("egg", lam=1, alpha=shape)
     turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
     orbit = map.orbit(np.pi / 3 + offset * np.cos(turn), np.pi / 6 + offset * np.sin(turn), bounces)
@@ -71,18 +71,9 @@ def distance(shape: float, offset: float, bounces: int) -> np.ndarray:
 
 
 def test_orbits_leave_the_triangle_at_a_thirteenth_and_stay_at_other_shapes():
-    """A second method: float64 orbits. Where it is stable an orbit stays within a multiple of where it started."""
+    """A second method, float64 orbits: at a stable triangle they stay within a multiple of their first distance."""
     away = distance(1 / 13, 0.004, 4000)
 
     assert np.median(away) > 10 * 0.004
     for stable in (1 / 37, 1 / 19, 0.05, 0.08):
         assert np.max(distance(stable, 0.001, 4000)) < 5 * 0.001
-
-
-def test_pairs_obey_the_rules_of_complex_numbers():
-    one = Pair(QQ(1), QQ(0), QQ(-1))
-    i = Pair(QQ(0), QQ(1), QQ(-1))
-
-    assert i * i + 1 == one * 0
-    assert (2 + 3 * i) / (1 + i) * (1 + i) == 2 * one + 3 * i
-    assert not one - 1

@@ -1,15 +1,17 @@
-"""Enclosures in integers hold the value, against SymPy with 50 digits, and their verdicts are true."""
+"""Enclosures in integer arithmetic: correct to the last bit, against SymPy with 60 digits."""
 
 import random
+from itertools import product
 
 import pytest
-from sympy import Abs, Float, Rational, S, atan, cos, cosh, exp, log, pi, sin, sinh, sqrt, tan, tanh
+from sympy import Abs, Rational, S, atan, cos, cosh, exp, log, pi, sin, sinh, sqrt, tan, tanh
 
 from symbolic.expressions import enclosures
-from symbolic.expressions.enclosures import BITS, sign_on
+from symbolic.expressions.enclosures import sign_on
 from symbolic.expressions.signs import Outcome
 from symbolic.tables.table import theta
 
+HAIR = Rational(1, 10**40)
 WORDS = {
     "cos": (cos(theta), -40, 40),
     "sin": (sin(theta), -40, 40),
@@ -33,33 +35,47 @@ WORDS = {
 }
 
 
+def places(name):
+    """Random binary fractions in the range of a word."""
+    _, low, high = WORDS[name]
+    chance = random.Random(name)
+    return [low + (high - low) * Rational(chance.randrange(1, 2**20), 2**20) for _ in range(12)]
+
+
 def exactly(expression, x):
-    """The value with 50 digits, in units of `2**-BITS`."""
-    return expression.subs(theta, x).evalf(60) * Float(2, 60) ** BITS
+    """The value at `x` with 75 digits, as a fraction."""
+    return Rational(str(expression.subs(theta, x).evalf(75)))
 
 
 @pytest.mark.parametrize("name", WORDS)
-def test_the_enclosure_over_an_interval_holds_every_value_in_it(name):
-    expression, low, high = WORDS[name]
-    steps, chance = enclosures._steps(expression, theta), random.Random(name)
-    for _ in range(40):
-        ends = sorted(low + (high - low) * Rational(chance.randrange(10**6 + 1), 10**6) for _ in range(2))
-        if chance.random() < 0.6:  # narrow ones, where rounding is all there is
-            ends[1] = ends[0] + (ends[1] - ends[0]) / 10 ** chance.choice((3, 9, 20, 40))
-        x = ends[0] + (ends[1] - ends[0]) * Rational(chance.randrange(1001), 1000)
-        box = enclosures._rational(ends[0])[0], enclosures._rational(ends[1])[1]
-        found, value = enclosures._value(steps, box), exactly(expression, x)
+def test_what_is_positive_by_a_hair_at_the_end_of_an_interval_is_not_refuted_there(name):
+    """Enclosures are multiples of `2**-96`: a bound rounded inwards would refute a tiny positive value."""
+    expression = WORDS[name][0]
+    for x in places(name):
+        value = exactly(expression, x)
+        for positive in (expression - value + HAIR, value - expression + HAIR):
+            assert (theta, x) not in sign_on(positive, theta, x, x + Rational(1, 8), 100).at, x
 
-        assert found[0] <= value <= found[1], (name, ends, x)
+
+@pytest.mark.parametrize("name", WORDS)
+def test_a_bound_that_one_value_in_the_interval_breaks_is_never_proved(name):
+    """The word of `x + theta**2` or `x - theta**2` has its extremum at 0, while the bound holds at both ends."""
+    expression = WORDS[name][0]
+    for x in places(name)[:3]:
+        value = exactly(expression, x)
+        for width, way in product((Rational(1, 16), Rational(1, 2**20)), (1, -1)):
+            word = expression.subs(theta, x + way * theta**2)
+            for negative in (word - value - HAIR, value - word - HAIR):
+                assert sign_on(negative, theta, -width, 2 * width, 500).outcome is not Outcome.PROVED, (x, width)
 
 
 @pytest.mark.parametrize("name", [name for name in WORDS if name not in ("sin far away", "exp", "sinh", "cosh")])
-def test_at_a_point_all_but_a_few_bits_are_known(name):
+def test_a_bound_with_a_little_room_is_proved_in_a_short_interval(name):
     expression, low, high = WORDS[name]
     x = low + (high - low) * Rational(7, 10)
-    found = enclosures._value(enclosures._steps(expression, theta), enclosures._rational(x))
+    below = exactly(expression, x) - Rational(1, 10**9)
 
-    assert found[1] - found[0] < 1 << 20
+    assert sign_on(expression - below, theta, x, x + Rational(1, 10**12), 2000).outcome is Outcome.PROVED
 
 
 @pytest.mark.parametrize(

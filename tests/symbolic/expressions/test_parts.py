@@ -1,4 +1,4 @@
-"""What a generated function's parts give is what the whole gives, bit for bit."""
+"""The parts of a generated function give the same bits as the whole function."""
 
 import random
 

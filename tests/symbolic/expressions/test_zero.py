@@ -1,9 +1,9 @@
-"""Identities are recognised, and nothing else is ever called one."""
+"""Identities are recognised, and no other expression is ever called one."""
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import I, Rational, S, Symbol, cos, expand, nan, pi, sin, sqrt, tan
+from sympy import I, Rational, S, Symbol, cos, expand, nan, sin, sqrt, tan
 
 from symbolic.expressions.identities import is_zero_in_ring, over_one_root, reduced_numerator
 from symbolic.expressions.signs import vanishes
@@ -35,6 +35,7 @@ def test_a_product_of_trigonometric_sums_equals_its_linear_form(p, q):
     assert vanishes(p * q - trigonometric(p * q))
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(radical_sums(), radical_sums())
 def test_radical_identities_are_recognised(p, q):
@@ -53,11 +54,6 @@ def test_the_ring_of_polynomials_decides_what_reduction_proves(p, wrong):
 
     assert is_zero_in_ring(difference) is (wrong == 0)
     assert (reduced_numerator(difference) == 0) is (wrong == 0)
-
-
-@pytest.mark.parametrize("other", [sqrt(a) - sqrt(a + 1), nan, sin(theta + pi / 3), sin(theta**2), I * theta], ids=str)
-def test_the_ring_of_polynomials_decides_nothing_beyond_it(other):
-    assert is_zero_in_ring(other) is None
 
 
 z = Symbol("z")
@@ -82,11 +78,12 @@ def test_a_root_is_a_generator_whose_square_is_known(identity):
 
 @pytest.mark.parametrize("false", [sqrt(z**2) - z, sqrt(z - 1) - I * sqrt(1 - z), sqrt(z) + sqrt(z + 1)], ids=str)
 def test_a_root_is_the_principal_one_and_no_other(false):
-    """The first two vanish for some values of `z` alone, the last one for none."""
+    """The first two expressions vanish for some values of `z` only, and the last for none."""
     assert is_zero_in_ring(false) is None
     assert not vanishes(false)
 
 
+@pytest.mark.slow
 @settings(max_examples=10)
 @given(trigonometric_sums(), trigonometric_sums(), SHIFTS)
 @example(cos(theta), sin(theta), Rational(1, 10**6))
@@ -142,27 +139,6 @@ def test_statements_that_fail_on_a_branch_do_not_vanish(expression):
     assert not vanishes(expression)
 
 
-@pytest.mark.parametrize(
-    ("nested", "plain"),
-    [
-        (sqrt(5 + 2 * sqrt(6)), sqrt(2) + sqrt(3)),
-        ((7 + 5 * sqrt(2)) ** Rational(1, 3), 1 + sqrt(2)),
-        (sqrt(6 + sqrt(11)), sqrt(22) / 2 + S.One / sqrt(2)),
-    ],
-)
-def test_a_nested_root_is_recognised_where_only_the_angles_cancel(nested, plain):
-    turn = sin(theta) ** 2 + cos(theta) ** 2
-
-    assert vanishes(nested * turn - plain)
-    assert not vanishes(nested * turn - plain + Rational(1, 10**9))
-
-
-def test_the_reduced_numerator_holds_no_squared_sine():
-    reduced = reduced_numerator(sin(theta) ** 4 + sin(theta) ** 3 / 2)
-
-    assert expand(reduced - 2 * (1 - cos(theta) ** 2) ** 2 - sin(theta) * (1 - cos(theta) ** 2)) == 0
-
-
 @settings(max_examples=15)
 @given(st.sampled_from([S(3), 1 - x**2, x]), st.lists(SMALL, min_size=8, max_size=8))
 @example(1 - x**2, [0, 0, 1, 0, 1, 0, 0, 1])
@@ -177,20 +153,3 @@ def test_a_quotient_with_one_square_root_is_a_rational_part_and_a_rational_multi
     assert vanishes(found - quotient)
     assert parts.is_rational_function()
     assert parts.diff(share, 2) == 0
-
-
-def test_two_square_roots_or_other_words_are_left_to_others():
-    assert over_one_root(sqrt(x) + sqrt(y)) is None
-    assert over_one_root(cos(x) * sqrt(y)) is None
-    assert over_one_root(1 / (x - sqrt(x**2))) is None
-    assert over_one_root(x + 1) is None
-
-
-@settings(max_examples=15)
-@given(trigonometric_sums(), trigonometric_sums(), SMALL)
-@example(cos(theta) ** 3, sin(theta) ** 3, 2)
-def test_letters_among_the_coefficients_are_kept_as_they_are(p, q, k):
-    whole = (p + a * q) ** 2 + k * a
-    found = trigonometric(whole)
-    assert found == expand(trigonometric(p**2) + a * trigonometric(2 * p * q + k) + a**2 * trigonometric(q**2))
-    assert vanishes(found - whole)

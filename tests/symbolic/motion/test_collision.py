@@ -1,15 +1,15 @@
-"""The collision derivative: the paper's matrix, its determinant, and the explicit maps differentiated numerically."""
+"""The collision derivative: the paper's matrix, its determinant, and numerical derivatives of explicit maps."""
 
 from fractions import Fraction
 
 import mpmath
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Expr, Function, Matrix, Rational, S, Symbol, cos, diff, pi, simplify
+from sympy import Expr, Float, Function, Matrix, Rational, S, Symbol, cos, diff, pi, simplify
 
 from symbolic.motion import flight as circle
 from symbolic.motion.collision import (
-    UNIFORM,
     birkhoff_matrix,
     derivative_matrix,
     determinant,
@@ -37,14 +37,6 @@ def test_the_derivative_is_the_matrix_the_paper_prints():
 def test_area_contracts_by_lambda_times_the_ratio_of_cosines():
     assert simplify(derivative_matrix().det() - lam * cos_phi0 / cos_eta1) == 0
     assert simplify(determinant() - lam * cos_phi0 / cos_eta1) == 0
-
-
-def test_birkhoff_coordinates_scale_the_second_row_and_the_second_column():
-    plain = Matrix([[2, 3], [5, 7]])
-
-    assert birkhoff_matrix(plain, cos_phi0, cos_phi1) == Matrix(
-        [[2, 3 / cos_phi0], [5 * cos_phi1, 7 * cos_phi1 / cos_phi0]]
-    )
 
 
 def test_birkhoff_area_contracts_by_lambda_times_the_cosines_of_the_same_bounce():
@@ -76,19 +68,9 @@ def test_any_reflection_law_enters_through_its_slope_alone():
     assert simplify(slope + diff(exit_angle(f(eta)), eta)) == 0
 
 
-def test_the_default_law_is_the_uniform_contraction():
-    assert exit_angle(UNIFORM) == -lam * eta
-    assert exit_angle(S.Zero) == -eta
-    assert exit_slope() == lam
-
-
 def test_the_slap_derivative_is_the_one_the_paper_prints():
     assert simplify(slap_derivative() + (t * K0 + 1) / cos_eta1) == 0
     assert derivative_matrix(lam=S.Zero).row(1) == Matrix([[0, 0]])
-
-
-def test_curvature_where_the_ball_lands_does_not_move_the_landing():
-    assert K1 not in derivative_matrix().row(0).free_symbols
 
 
 def test_exactly_on_the_circle():
@@ -106,7 +88,7 @@ def test_the_limit_position_on_the_circle_is_an_invariant_up_to_half_turns():
 
 
 def bounce(axis, start, out, contraction):
-    """One flight and reflection in the ellipse, from the quadratic's other root; the angle unreduced."""
+    """One flight and reflection in the ellipse, by the second root of a quadratic; the angle is not reduced."""
     x, y = axis * mp.cos(start), mp.sin(start)
     heading = mp.atan2(mp.cos(start), -axis * mp.sin(start)) + mp.pi / 2 - out
     vx, vy = mp.cos(heading), mp.sin(heading)
@@ -125,13 +107,14 @@ def number(value: Fraction):
 def exactly(expression: Expr, axis: Fraction, at) -> object:
     x = Symbol("x")
     value = expression.subs({a: Rational(axis.numerator, axis.denominator), theta: x})
-    return mp.mpf(value.evalf(80, subs={x: mp.nstr(at, 85)}))
+    return mp.mpf(value.evalf(80, subs={x: Float(mp.nstr(at, 85), 85)}))
 
 
 def wrapped(angle):
     return angle - 2 * mp.pi * mp.nint(angle / (2 * mp.pi))
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(
     axis=st.fractions(1, 4, max_denominator=9),
@@ -159,6 +142,6 @@ def test_the_map_of_the_ellipse_has_the_derivative_matrix(axis, start, out, cont
     A = (numeric["t"] * numeric["K0"] + numeric["cos_phi0"]) / numeric["cos_eta1"]
     for i in (0, 1):
         for j in (0, 1):
-            entry = mp.mpf(D[i, j].evalf(80, subs={symbol: mp.nstr(v, 85) for symbol, v in values.items()}))
+            entry = mp.mpf(D[i, j].evalf(80, subs={symbol: Float(mp.nstr(v, 85), 85) for symbol, v in values.items()}))
 
             assert abs(entry - by_length[i][j]) < mp.mpf(10) ** -35 * (1 + abs(A)) / numeric["cos_eta1"] ** 4

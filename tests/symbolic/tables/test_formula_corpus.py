@@ -1,4 +1,4 @@
-"""Texts that a coverage-guided fuzzer found (`benchmarks/fuzz.py`): each is a formula or one sentence."""
+"""Texts found by a coverage-guided fuzzer (`benchmarks/fuzz.py`): each parses or is refused in one sentence."""
 
 import json
 from pathlib import Path
@@ -12,13 +12,14 @@ TEXTS = json.loads((Path(__file__).parent.parent / "corpus.json").read_text())
 
 
 def answered(reader, text):
-    """The formula, or the sentence that refuses it."""
+    """The formula that `reader` makes of the text, or the sentence that refuses the text."""
     try:
         return reader(text)
     except ValueError as error:
         return str(error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", TEXTS, ids=range(len(TEXTS)))
 @pytest.mark.parametrize("reader", [parse, lambda text: number(text, "--alpha")], ids=["formula", "number"])
 def test_what_was_found_by_fuzzing_is_a_formula_or_refused_in_one_line(text, reader):

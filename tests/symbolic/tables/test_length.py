@@ -2,12 +2,12 @@
 
 import mpmath
 import pytest
-from sympy import Integral, Rational, S, Symbol, cos, elliptic_e, pi, simplify, sin, sqrt
+from sympy import Rational, S, cos, elliptic_e, pi, simplify, sin, sqrt
 
-from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, parametric, piecewise, polar
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, piecewise
 from symbolic.tables.curves import trigonometric
 from symbolic.tables.geometry import arc_length, perimeter, positions, speed
-from symbolic.tables.table import Component, Table, a, alpha, theta
+from symbolic.tables.table import Table, a, alpha, theta
 
 mp = mpmath.MPContext()
 mp.dps = 30
@@ -60,15 +60,6 @@ def test_the_cuspless_table_counts_from_the_wall_and_its_upper_join_is_negative(
     assert on_arc.subs(theta, 0) == 9 * sqrt(3) / 4  # the paper's C
 
 
-@pytest.mark.parametrize("table", TABLES, ids=identity)
-def test_positions_are_zero_at_the_origin_and_grow_with_the_boundary(table):
-    component, value = table.origin
-    s = positions(table)
-
-    assert s[component].subs(theta, value).doit() == 0
-    assert all(simplify(p.diff(theta).subs(theta, 0)).is_positive for p in s)
-
-
 def test_positions_go_once_around_without_a_gap():
     start = (2, S.Zero)
     table = piecewise(
@@ -88,13 +79,6 @@ def test_positions_go_once_around_without_a_gap():
     assert simplify(ends[1][1] - ends[2][0] - perimeter(table)) == 0
 
 
-def test_an_origin_in_the_middle_of_a_component_is_where_the_length_is_zero():
-    shifted = Table("shifted", cardioid.components, origin=(0, pi / 3))
-
-    assert positions(shifted)[0].subs(theta, pi / 3) == 0
-    assert positions(shifted)[0].subs(theta, pi) == 2
-
-
 def test_perimeters_are_those_of_a_hand_calculation():
     assert perimeter(circle) == 2 * pi
     assert perimeter(cardioid) == 8
@@ -106,31 +90,3 @@ def test_the_perimeter_of_an_ellipse_is_the_complete_elliptic_integral():
     expected = 4 * 2 * elliptic_e(1 - Rational(1, 4))  # 4*a*E(1 - 1/a**2)
 
     assert abs((perimeter(ellipse.at(a=2)) - expected).evalf(30)) < Rational(1, 10**25)
-
-
-def test_a_length_without_closed_form_stays_an_exact_integral():
-    assert isinstance(arc_length(egg(3).components[0]), Integral)
-
-
-@pytest.mark.parametrize("table", [circle, cuspless, ellipse.at(a=2)], ids=identity)
-def test_scaling_a_table_scales_its_length(table):
-    c = Symbol("c", positive=True)
-    for component in table.components:
-        x, y = component.point
-        wider = Component("wider", (c * x, c * y), component.start, component.end)
-
-        assert simplify(arc_length(wider) - c * arc_length(component)) == 0
-
-
-def test_the_order_of_the_axes_does_not_change_a_perimeter():
-    upright = parametric(cos(theta), 2 * sin(theta))
-
-    assert abs((perimeter(upright) - perimeter(ellipse.at(a=2))).evalf(30)) < Rational(1, 10**25)
-
-
-def test_the_length_of_a_curve_whose_speed_is_no_finite_sum_stays_an_integral():
-    pear = polar(1 / (9 + cos(theta))).components[0]
-    found = arc_length(pear)
-
-    assert isinstance(found, Integral)
-    assert simplify(found.diff(theta) - speed(pear)) == 0

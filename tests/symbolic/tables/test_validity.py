@@ -1,20 +1,17 @@
-"""Bad input is refused in one clear sentence; a table of one's own works."""
+"""Bad input is refused in one clear sentence; a user's own table is accepted."""
 
 from decimal import Decimal
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sympy import Dummy, Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin, sqrt, tan
+from sympy import Float, I, Interval, Rational, S, Symbol, cos, exp, nan, pi, simplify, sin, sqrt, tan
 
-from symbolic.expressions.signs import Outcome
-from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, named, parametric, piecewise, polar
-from symbolic.tables.curves import chord_of_length_zero
-from symbolic.tables.geometry import boundary_coefficients, perimeter
-from symbolic.tables.table import Component, Shape, Table, a, theta
-from symbolic.tables.validity import enclosed_area, radius_sign, validated
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, named, parametric, piecewise, polar, polygon
+from symbolic.tables.geometry import perimeter
+from symbolic.tables.table import Shape, Table, a, theta
+from symbolic.tables.validity import enclosed_area, validated
 
 b = Symbol("b")
 
@@ -49,12 +46,12 @@ BAD = {
     "a figure eight": (lambda: parametric(sin(theta), sin(2 * theta)), "area 0; it crosses itself"),
     "a bow tie": (bow_tie, "area 0; it crosses itself"),
     "a wall there and back": (lambda: parametric(cos(theta), 0), "runs back along itself"),
-    "an uneven eight": (lambda: parametric(cos(theta), sin(2 * theta) + sin(theta) / 2), "meets itself, or stops"),
+    "an uneven eight": (lambda: parametric(cos(theta), sin(2 * theta) + sin(theta) / 2), "meets itself, or may"),
     "a limacon": (lambda: polar(1 + 2 * cos(theta)), "is not positive for every theta"),
-    "a limacon by coordinates": (lambda: parametric(*limacon(2)), "itself, or stops, near theta = -12[01] and 12[01]"),
-    "a limacon with a cusp": (lambda: polar(1 + 2 * cos(theta), undefined=cardioid.undefined), "crosses itself, near"),
+    "a limacon by coordinates": (lambda: parametric(*limacon(2)), "near .* theta = -2.094.* and .* theta = 2.094"),
+    "a limacon with a cusp": (lambda: polar(1 + 2 * cos(theta), undefined=cardioid.undefined), "itself, or may, near"),
     "a cusp not named": (lambda: polar(1 + cos(theta)), "or its cusp named"),
-    "a point": (lambda: polar(0), "is not positive"),
+    "a point": (lambda: polar(0), "polar is the single point .0, 0., of length 0"),
     "a circle run twice": (lambda: parametric(cos(2 * theta), sin(2 * theta)), "meets itself"),
     "a clockwise circle": (lambda: parametric(cos(theta), -sin(theta)), "runs clockwise; exchange theta for -theta"),
     "a clockwise stadium": (lambda: stadium(-1), "runs clockwise"),
@@ -95,6 +92,7 @@ BAD = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", BAD)
 def test_bad_input_is_refused_in_one_sentence(what):
     build, sentence = BAD[what]
@@ -120,20 +118,6 @@ def test_a_stadium_of_ones_own_has_the_right_perimeter_and_area():
     assert enclosed_area(stadium()) == 4 + pi
 
 
-def test_a_family_of_ones_own_keeps_its_range():
-    width = Symbol("width", positive=True)
-    shape = Shape(width, Interval(1, 3), "is too wide for the box")
-    table = parametric(width * cos(theta), 2 * sin(theta), "oval", [shape])
-
-    assert table.at(width=2).components[0].at(S.Zero) == (2, 0)
-    with pytest.raises(ValueError, match=r"^oval: width = 4 is too wide for the box; width must lie in \[1, 3\]$"):
-        table.at(width=4)
-
-
-def test_a_plain_letter_theta_becomes_the_boundary_parameter():
-    assert polar(1 + cos(3 * Symbol("theta")) / 20) == polar(1 + cos(3 * theta) / 20)
-
-
 def test_the_paper_s_tables_which_are_written_down_unproved_pass_and_are_not_changed():
     for table in (circle, ellipse, cardioid, cuspless, egg(3)):
         assert validated(table) == table
@@ -153,28 +137,16 @@ def test_a_limacon_is_a_table_exactly_when_its_radius_stays_positive(swing):
             polar(1 + swing * cos(theta))
 
 
+@pytest.mark.slow
 @settings(max_examples=8)
 @given(st.fractions(Rational(-2), Rational(2), max_denominator=8).filter(lambda f: abs(abs(f) - 1) > 0.05))
 def test_self_crossings_are_found_by_coordinates_alone(swing):
     swing = Rational(swing.numerator, swing.denominator)
-    c = boundary_coefficients(Component("limacon", limacon(swing), -pi, pi))
-
-    assert (chord_of_length_zero(c) is None) == (abs(swing) < 1)
-
-
-def test_an_area_too_hard_to_integrate_is_not_judged():
-    x, y = (coordinate / (2 + cos(theta)) for coordinate in (cos(theta), sin(theta)))
-
-    assert enclosed_area(Table("hard", (Component("hard", (x, y), -pi, pi),))) is None
-    assert parametric(x, y).components[0].at(Dummy("p") * 0) == (Rational(1, 3), 0)
-
-
-def polygon(*corners: tuple[int, int]) -> Table:
-    ring = [*corners, corners[0]]
-    sides = [(p, q) for p, q in pairwise(ring)]
-    return piecewise(
-        *(arc(f"{p} to {q}", p[0] + (q[0] - p[0]) * theta, p[1] + (q[1] - p[1]) * theta, 0, 1) for p, q in sides)
-    )
+    if abs(swing) < 1:
+        assert parametric(*limacon(swing)).name == "parametric"
+    else:
+        with pytest.raises(ValueError, match="meets itself, or may"):
+            parametric(*limacon(swing))
 
 
 CROSSED = {
@@ -189,36 +161,11 @@ CROSSED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("made", CROSSED.values(), ids=CROSSED.keys())
-def test_a_crossing_is_found_where_no_proof_reaches(made):
-    with pytest.raises(ValueError, match=r"crosses itself|meets itself|encloses area 0"):
+def test_a_crossing_is_found_in_whatever_way_it_is_written(made):
+    with pytest.raises(ValueError, match=r"meets itself|encloses area 0"):
         made()
-
-
-def test_a_polygon_that_does_not_cross_is_a_table():
-    assert perimeter(polygon((0, 0), (4, 0), (4, 3), (0, 3))) == 14
-
-
-@pytest.mark.parametrize(
-    "direction",
-    [(1, 0), (4, 3), (3, 4), (0, 1), (-3, 4), (-1, 0), (-3, -4), (0, -1), (3, -4), (4, -3)],
-    ids=str,
-)
-def test_the_least_radius_decides_in_whatever_direction_it_lies(direction):
-    size = Rational(1, 5) if all(direction) else S.One
-    dip = (1 - size * (direction[0] * cos(theta) + direction[1] * sin(theta))) ** 2
-
-    assert radius_sign(dip + Rational(1, 50)) is Outcome.PROVED
-    assert radius_sign(dip) is Outcome.REFUTED
-    assert radius_sign(dip - Rational(1, 50)) is Outcome.REFUTED
-
-
-def test_a_sum_along_the_ray_is_no_radius_where_the_point_is_off_the_ray():
-    x, y = cos(theta) + 2 * sin(theta) ** 2, sin(theta) - 2 * sin(theta) * cos(theta)
-
-    assert simplify(x * cos(theta) + y * sin(theta)) == 1  # yet theta = pi/3 and -pi/3 are one point
-    with pytest.raises(ValueError, match="meets itself"):
-        parametric(x, y)
 
 
 POLES = {
@@ -235,27 +182,15 @@ def test_a_pole_is_found_in_either_coordinate_and_wherever_it_lies(point):
         parametric(*point)
 
 
-def test_a_denominator_without_a_zero_is_no_pole_for_one_table_nor_for_a_family():
-    x, y = cos(theta) / (2 + cos(theta)), sin(theta) / (2 + cos(theta))
-
-    assert parametric(x, y).components[0].point == (x, y)
-    assert parametric(a * x, y, shapes=ellipse.shapes).at(a=2).components[0].point == (2 * x, y)
-
-
-def test_the_refusal_of_an_open_boundary_says_where_it_ends_and_where_it_should():
-    where = r"bend ends at \(2, 6\) and bend starts at \(1, 3\)$"
-    with pytest.raises(ValueError, match=where):
-        piecewise(arc("bend", theta, theta**2 + 2, 1, 2))
-
-
 ROOTED = [sqrt(1 + cos(theta) / 3) * wave(theta) for wave in (cos, sin)]  # no finite sum
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("point", [(2 * cos(theta), sin(theta)), (cos(theta), sin(theta)), ROOTED])
 @pytest.mark.parametrize("rate", [S.One, S(2), Rational(1, 2), pi])
 def test_a_closed_curve_may_run_once_through_any_parameter_and_not_twice(point, rate):
     x, y = (coordinate.subs(theta, rate * theta) for coordinate in point)
 
     assert piecewise(arc("once", x, y, -pi / rate, pi / rate)).components[0].point == (x, y)
-    with pytest.raises(ValueError, match=r"meets itself, or stops|turns round 2 times"):
+    with pytest.raises(ValueError, match="meets itself, or may"):
         piecewise(arc("twice", x, y, -pi / rate, 3 * pi / rate))

@@ -1,4 +1,4 @@
-"""The live table without a browser: what is picked, dragged and clicked, and what is said to it."""
+"""The live table without a browser: choices, dragging, clicks and typed input."""
 
 import asyncio
 import re
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from symbolic.tables.definition import PAPER
-from verification.app.choice import OWN, Choice, Particle
+from verification.app.choice import OWN, BoundaryParticle, Choice
 from verification.app.cli import main, refusal
 from verification.app.live import LiveTable
 
@@ -59,20 +59,6 @@ def test_the_dragged_arrow_turns_the_particle(live):
     assert live.choice.phi == pytest.approx(0, abs=1e-6)
 
 
-def test_a_click_in_phase_space_starts_there(live):
-    live._tapped(type("Tap", (), {"x": 1.0, "y": 0.5}))
-
-    assert live.here.data["x"][0] == pytest.approx(1.0)
-    assert live.here.data["y"][0] == pytest.approx(0.5)
-
-
-def test_a_click_outside_phase_space_does_nothing(live):
-    before = live.choice
-    live._tapped(type("Tap", (), {"x": 0.0, "y": 1.5}))
-
-    assert live.choice == before
-
-
 def test_a_bad_shape_is_one_sentence_and_the_old_table_stays(live):
     before = live.choice
     live.shape.value = "0.5"
@@ -81,20 +67,11 @@ def test_a_bad_shape_is_one_sentence_and_the_old_table_stays(live):
     assert live.choice == before
 
 
-def test_a_formula_that_takes_too_long_is_one_sentence_and_the_old_table_stays(live, monkeypatch):
-    monkeypatch.setattr("verification.app.live.PATIENCE", 0.05)
-    live.table.value, before = OWN, live.map
-    live.formula.value = "1 + cos(7*theta)/60"
-
-    assert live.said.object == "this takes more than 0.05 seconds to read, prove and compile"
-    assert live.map is before
-
-
 def test_nobody_waits_while_the_formula_of_another_is_read():
-    """The event loop turns on meanwhile; a call that held it would let it turn once."""
+    """The event loop keeps turning while a formula is read; a blocking call would let it turn once."""
 
     async def turns() -> int:
-        reading = asyncio.create_task(refusal(["orbit", "--polar", "1 + cos(9*theta)/90"], 60))
+        reading = asyncio.create_task(refusal(["orbit", "--polar", "1 + cos(9*theta)/90", "--lam", "1/2"], 60))
         count = 0
         while not reading.done():
             await asyncio.sleep(0.001)
@@ -112,42 +89,20 @@ def test_what_is_typed_is_never_executed(live):
     assert re.search("accepted", live.said.object)
 
 
-def test_the_cycle_near_the_particle_is_the_ellipse_axis(live):
-    live.table.value = "ellipse"
-    live.start(type(live._particle())(0, 1.5, 0.02))
-    live.find_cycle()
-
-    assert "ends on a cycle of period 2, attracting" in live.said.object
-
-
-def test_phase_space_fills_and_rests(live):
-    for _ in range(40):
-        live.fill()
-
-    size = len(live.cloud.data["x"])
-    live.fill()
-    assert len(live.cloud.data["x"]) == size > 1000
-
-
-def test_the_texts_name_the_component_of_a_start_on_the_wall():
-    choice = Choice("cuspless", lam="0.09", component=1, theta=0.1, phi=0.0)
-
-    assert "--component wall" in choice.command()
-    assert "component=1" in choice.python()
-
-
+@pytest.mark.slow
 def test_the_first_page_finds_the_triangle_that_its_orbit_ends_on_and_says_when_an_orbit_ends_on_none(live):
     live.find_cycle()
     assert "The orbit ends on a cycle of period 3, attracting" in live.said.object
 
-    live.start(Particle(0, 0.3, 0.2))  # in the chaotic sea
+    live.start(BoundaryParticle(0, 0.3, 0.2))  # in the chaotic sea
     live.find_cycle()
     assert "the orbit is on no cycle" in live.said.object
     assert "not attracting" in live.said.object
 
 
+@pytest.mark.slow
 def test_the_cycle_that_a_settling_orbit_ends_on_is_found_from_far_away(live):
-    """The triangle of the egg attracts at 0.9; the first bounces of this orbit are nowhere near it."""
+    """The egg's triangle attracts at 0.9, and the first bounces of this orbit are far from it."""
     live.lam.value = 0.9
     live.find_cycle()
 
@@ -169,7 +124,7 @@ def test_the_strip_shows_where_orbits_end_for_all_contractions_and_where_the_sli
 
 
 def test_the_exponents_of_the_orbit_come_with_their_errors(live):
-    live.start(Particle(0, 0.3, 0.2))  # in the chaotic sea
+    live.start(BoundaryParticle(0, 0.3, 0.2))  # in the chaotic sea
 
     assert re.search(r"Exponents per bounce: 0\.\d+ ± \S+ and -\d", live.said.object)
 
@@ -185,6 +140,7 @@ def test_basins_are_coloured_when_they_are_asked_for_and_gone_with_the_next_tabl
     assert live.cells.data["image"] == []
 
 
+@pytest.mark.slow
 def test_a_law_of_ones_own_is_drawn_and_one_that_is_none_is_a_sentence(live, capsys):
     live.law.value = "-lam*sin(eta)"
     assert "'--law=-lam*sin(eta)'" in live.command.value

@@ -1,4 +1,4 @@
-"""The live table answers this machine only, whatever is asked of it, and forgets those who left."""
+"""The live table answers only this machine, whatever the request, and frees the state of visitors who left."""
 
 import socket
 
@@ -7,7 +7,7 @@ from attacks.sessions import answer, left, live_server
 
 
 def websocket(port, origin):
-    """What a page of some origin is told when it asks for the live connection."""
+    """The server's answer to a page of some origin that requests the live connection."""
     return answer(
         port,
         f"GET /ws HTTP/1.1\nHost: 127.0.0.1:{port}\nUpgrade: websocket\nConnection: Upgrade\nOrigin: {origin}\n"
@@ -17,7 +17,7 @@ def websocket(port, origin):
 
 @pytest.fixture(scope="module")
 def served():
-    """A server in a process of its own, started in an environment that would open it to others."""
+    """The port of a server in its own process, with environment variables that would open it to others."""
     with live_server() as found:
         yield found
 
@@ -35,6 +35,7 @@ def test_other_addresses_of_this_machine_get_no_answer(served):
         socket.create_connection(("127.0.0.2", served[0]), timeout=2).close()
 
 
+@pytest.mark.slow
 def test_those_who_left_are_forgotten(served):
-    """`benchmarks/torture.py visitors` opens and leaves a hundred."""
+    """`benchmarks/torture.py visitors` opens and leaves a hundred pages."""
     assert left(served, 8) == (8, 8, 0)

@@ -1,11 +1,10 @@
-"""`pinball lyapunov`: the contract's keys, error bars and how they came about, and every way it can end."""
+"""`pinball lyapunov`: the contract's keys, error bars and their origin, and each way in which the command ends."""
 
 import json
 
-import click
 import pytest
 
-from verification.app.cli import main, pinball
+from verification.app.cli import main
 
 CARDIOID = ("lyapunov", "cardioid", "--lam", "0.5", "--bounces", "200", "--orbits", "20", "--seed", "1")
 
@@ -53,6 +52,7 @@ def test_the_slap_map_has_one_exponent(capsys):
     assert group["certified"]["nu_minus"] is None
 
 
+@pytest.mark.slow
 def test_the_chaotic_slap_map_of_the_cardioid_has_a_proved_exponent_and_the_sampled_one_agrees(capsys):
     scene = ("lyapunov", "cardioid", "--lam", "0", "--certified")
     status, document, text = run(capsys, *scene, "--bounces", "2000", "--orbits", "50", "--seed", "1")
@@ -108,11 +108,3 @@ def test_bad_input_is_one_sentence(capsys, wrong, words):
     assert (status, document) == (2, None)
     assert words in told
     assert told.count("\n") == 1
-
-
-@pytest.mark.parametrize("command", ["lyapunov", "attractor", "orbit"])
-def test_numbers_of_bounces_and_orbits_and_the_seed_need_not_be_said(command):
-    asked = pinball.get_command(click.Context(pinball), command)
-    needed = {option.name for option in asked.params if option.required}
-
-    assert needed.isdisjoint({"bounces", "orbits", "seed"})

@@ -1,4 +1,4 @@
-"""What commands print fits 80 columns, and says events before tables."""
+"""The printed output of commands fits 80 columns, with events before tables."""
 
 import re
 
@@ -39,6 +39,7 @@ SENTENCES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", SENTENCES.values(), ids=SENTENCES)
 def test_sentences_break_at_words_on_a_terminal_and_stand_on_one_line_in_a_file(command, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")

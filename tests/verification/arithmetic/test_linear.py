@@ -1,4 +1,4 @@
-"""Linear systems in balls: every solution of every system in the balls is enclosed, and nothing singular is solved."""
+"""Linear systems in balls: the solution of each exact system in them is enclosed, and singular ones are refused."""
 
 from itertools import chain
 
@@ -8,13 +8,12 @@ from flint import arb, fmpq, fmpq_mat
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verification.arithmetic import linear
 from verification.arithmetic.balls import working
 from verification.arithmetic.linear import approximated, solved
 
 
 def system(seed: int, size: int, wide: int) -> tuple[list[list[arb]], list[list[arb]], list[fmpq_mat]]:
-    """Rows and two right sides in balls, and exact systems at their ends: matrix beside right sides."""
+    """The matrix and two right sides in balls, and exact augmented matrices with entries at the balls' ends."""
     rng = np.random.default_rng(seed)
     middle = rng.integers(-8, 9, (size, size + 2)) * (rng.random((size, size + 2)) < 0.5)
     middle[:, :size] += 12 * np.eye(size, dtype=int)
@@ -73,23 +72,8 @@ def test_what_may_be_singular_is_not_solved():
         solved([[one]], [[arb("nan")]])
 
 
-def test_the_error_of_an_inverse_in_floats_counts(monkeypatch):
-    """With a wrong inverse the balls grow, or none are given; they never miss the solution."""
-    exact = np.linalg.inv
-    rows, right = [[arb(2), arb(1)], [arb(1), arb(3)]], [[arb(5)], [arb(10)]]
-    for part in (0.9, 0.5, 1.5, 3.0):
-        monkeypatch.setattr(np.linalg, "inv", lambda matrix, part=part: part * exact(matrix))
-        try:
-            found = solved(rows, right)
-        except ZeroDivisionError:
-            assert part == 3.0
-        else:
-            assert found[0][0].contains(1)
-            assert found[1][0].contains(3)
-
-
 def test_rounding_of_floats_counts():
-    """A matrix so ill conditioned that float64 knows nothing of its inverse is refused; 1/2 ulp from it nothing is."""
+    """A matrix that float64 cannot tell from a singular one is refused; with a determinant of 2**-30 it is solved."""
     with working(200):
         tiny = arb(2) ** -60
         with pytest.raises(ZeroDivisionError):
@@ -105,37 +89,3 @@ def test_an_approximate_solution_has_the_digits_of_floats():
         assert all(abs(x - y) < 1e-12 for x, y in zip(row, sure, strict=True))
     with pytest.raises(ZeroDivisionError):
         approximated([[arb(0)]], [[arb(1)]])
-
-
-@pytest.mark.parametrize("size", [1, 2, 6])
-def test_each_product_in_floats_may_err_by_four_units_for_each_term_and_for_four_more(monkeypatch, size):
-    """Of the matrix 1 nothing is lost, but that is what is allowed; sums of bounds may err by twice as many units."""
-    asked = []
-    monkeypatch.setattr(linear, "_column", lambda *given: asked.append(given) or [arb(0)] * size)
-    solved([[arb(int(i == j)) for j in range(size)] for i in range(size)], [[arb(1)]] * size)
-    ((sparse, inverse, off, blanket, _),) = asked
-
-    assert sparse == [[(i, arb(1))] for i in range(size)]
-    assert blanket == 1 + 8 * (size + 4) * 2.0**-53
-    assert np.array_equal(inverse, np.eye(size))
-    for (i, j), lost in np.ndenumerate(off):
-        least = 4 * (size + 4) * 2.0**-53 * blanket if i == j else size * linear.TINY
-        assert least <= lost <= least * (1 + 1e-14)
-
-
-def test_an_error_is_above_what_is_left_and_what_it_makes_of_itself():
-    """`e` with `(c + e/4)*3/2 < e`, where `c = 3/2`: not 3, for that gives 27/8; but 5/4 of this gives less."""
-    sparse, inverse, off, unit = [[(0, arb(1))]], np.array([[1.0]]), np.array([[0.25]]), 2.0**-10
-    (found,) = linear._column(sparse, inverse, off, 1.5, [arb(1, unit)])
-    (exact,) = linear._column(sparse, inverse, 0 * off, 1.0, [arb(1)])
-
-    assert found.mid() == 1
-    assert float(found.rad()) == pytest.approx(1.25 * 27 / 8 * unit)
-    twice = float(exact.rad()) / linear.TINY  # what underflow may lose, and a quarter more
-    assert twice == pytest.approx(2.5)
-
-
-def test_a_matrix_with_an_entry_that_is_not_finite_is_named():
-    for entry in ("inf", "nan"):
-        with pytest.raises(ZeroDivisionError, match="a matrix that is not finite"):
-            solved([[arb(1), arb(0)], [arb(0), arb(entry)]], [[arb(1)], [arb(1)]])

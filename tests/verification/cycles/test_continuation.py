@@ -1,7 +1,7 @@
-"""Branches of cycles: against closed forms, certified values, published maps, and laws that must hold on them."""
+"""Branches of cycles: against closed forms, certified values, published maps, and general laws."""
 
 import json
-from itertools import islice, pairwise
+from itertools import islice
 from math import pi
 
 import numpy as np
@@ -11,7 +11,6 @@ from scipy.optimize import fsolve
 from sympy import Rational, cos, sin, sqrt, tan
 from sympy import pi as exact_pi
 
-from symbolic import Scene
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import alpha_tilde, lambda_c
 from symbolic.tables import circle, cuspless, egg, ellipse, polar
@@ -19,19 +18,15 @@ from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam as lam_letter
 from symbolic.tables.table import theta
 from verification.app.commands.follow import command as follow
-from verification.app.commands.follow import varied
-from verification.cycles import cells
 from verification.cycles.arc import End, Steps
-from verification.cycles.branch import branch, dataset, named
+from verification.cycles.branch import branch
 from verification.cycles.cascade import cascade as followed_in_lam
-from verification.cycles.cells import spectrum
 from verification.cycles.chords import Chords
-from verification.cycles.recurrence import BifurcationKind, Closure, cubic, delayed, henon, logistic
+from verification.cycles.recurrence import BifurcationKind, cubic, delayed, henon, logistic
 from verification.cycles.switching import switched
 from verification.cycles.systems import reflected, rotations
 from verification.named.events import proof_of
 from verification.named.locate import locate
-from verification.plots.dynamics import runs
 
 ALPHA = Rational(2, 25)
 TABLE = egg(3).at(alpha=ALPHA)
@@ -42,7 +37,7 @@ HENON = [0.3675, 0.9125, 1.0258554, 1.0511257, 1.0565638]  # [DerridaGervoisPome
 
 
 def cascade(one, interval, count):
-    """Each doubling, switched on to the next branch."""
+    """The period-doubling bifurcations, found by switching from each branch to the next."""
     found = []
     for _ in range(count):
         event = next(e for e in one.events if e.kind is BifurcationKind.FLIP)
@@ -75,9 +70,9 @@ def test_the_events_of_the_cascade_are_the_located_ones():
     assert [event.value for event in doublings] == pytest.approx(members, abs=1e-12)
     assert all(event.form.supercritical for event in doublings)
     assert [e.value for e in mirrored.events] == pytest.approx([e.value for e in two.events], abs=1e-12)
-    assert proof_of(pitchfork, 20).certified
+    assert proof_of(pitchfork, 20).proved
     proof = proof_of(doublings[0], 20)
-    assert proof.certified
+    assert proof.proved
     assert abs(float(proof.value.mid()) - doublings[0].value) < 1e-13
 
 
@@ -98,7 +93,7 @@ def test_the_cascades_of_published_maps_are_found(ring, start, parameter, value,
 
 
 def test_no_pitchfork_is_lost_where_the_whole_ring_is_singular():
-    """There the corrector of the whole ring failed and the event was left out; half of the cycle is regular."""
+    """The corrector of the whole ring is singular there and missed the event; half of the cycle is regular."""
     one = branch(Chords(egg(5).at(alpha="53/2000"), (0, 0)), np.array([0.0, pi]), "lam", 0.0, (0.0, 1.0))
     (four,) = switched(one, one.events[0], (0.0, 1.0))
     (pitchfork,) = four.events
@@ -106,7 +101,7 @@ def test_no_pitchfork_is_lost_where_the_whole_ring_is_singular():
 
     assert pitchfork.kind is BifurcationKind.PITCHFORK
     assert pitchfork.located
-    assert proof.certified
+    assert proof.proved
     assert abs(float(proof.value.mid()) - pitchfork.value) < 1e-12
 
 
@@ -121,7 +116,7 @@ def test_henons_second_doubling_has_a_closed_form():
 
 
 def test_henons_later_doublings_agree_with_single_shooting():
-    """The map iterated with its derivative, `tr + det + 1 = 0` at a fixed point of the iterate: no ring, no chain."""
+    """A second method without rings: `tr + det + 1 = 0` at a fixed point of the iterated map."""
     one = branch(henon(1), np.array([1.2]), "a", 0.1, (-0.1, 1.1), {"b": 0.3})
 
     def equations(unknown, n):
@@ -142,7 +137,7 @@ def test_henons_later_doublings_agree_with_single_shooting():
 
 
 def test_the_window_of_period_three_opens_where_it_is_published():
-    """1 + sqrt(8) [Myrberg1958]."""
+    """At 1 + sqrt(8) [Myrberg1958]."""
     one = branch(logistic(3), np.array([0.1494, 0.4880, 0.9594]), "r", 3.84, (3.5, 3.9))
     fold = next(event for event in one.events if event.kind is BifurcationKind.FOLD)
 
@@ -160,7 +155,7 @@ def test_the_multipliers_of_henons_fixed_point():
 
 
 def test_a_neimark_sacker_bifurcation_is_named_where_there_is_one():
-    """The delayed logistic map's fixed point: r = 2, multipliers exp(+-i*pi/3). [AronsonChoryHallMcGehee1982]."""
+    """The delayed logistic map's fixed point at r = 2: multipliers exp(+-i*pi/3). [AronsonChoryHallMcGehee1982]."""
     one = branch(delayed(1), np.array([0.4]), "r", 1.7, (1.2, 2.2))
     (torus,) = one.events
 
@@ -170,7 +165,7 @@ def test_a_neimark_sacker_bifurcation_is_named_where_there_is_one():
 
 
 def test_a_branch_point_without_a_fold_is_switched_at():
-    """`x -> r*x - x**3`: at r = 1 the branch `x = 0` meets `x = +-sqrt(r - 1)`."""
+    """In `x -> r*x - x**3` at r = 1 the branch `x = 0` meets `x = +-sqrt(r - 1)`."""
     one = branch(cubic(1), np.array([0.0]), "r", 0.5, (0.2, 1.5))
     (crossing,) = one.events
     both = switched(one, crossing, (0.2, 1.5))
@@ -194,24 +189,8 @@ def test_the_determinant_is_the_product_of_the_areas_of_the_bounces_not_a_power_
         assert determinant >= lam**3 - 1e-12
 
 
-def test_the_three_determinants_are_those_of_the_product_of_matrices():
-    rng = np.random.default_rng(5)
-    for n, turn in ((2, 1), (3, 1), (5, 1), (8, 1), (2, -1), (3, -1)):
-        ring, x = Chords(TABLE, (0,) * n, Closure(turn)), rng.uniform(0, 0.3, n) + 2.4 * np.arange(n)
-        terms = ring.terms(x, {"lam": 0.4}, 1)
-        product = np.eye(2)
-        for below, middle, above in zip(*terms.slope, strict=True):
-            product = np.array([[-middle / above, -below / above], [1.0, 0.0]]) @ product
-        product = turn * product  # half a symmetric cycle: what comes round is its mirror image
-        found = spectrum(terms, ring.closure)
-
-        assert found.at_one == pytest.approx(np.linalg.det(product - np.eye(2)), rel=1e-7)
-        assert found.at_minus_one == pytest.approx(np.linalg.det(product + np.eye(2)), rel=1e-7)
-        assert found.determinant == pytest.approx(np.linalg.det(product), rel=1e-7)
-
-
 def test_the_cycle_born_at_the_cuspless_doubling_ends_on_the_corner_orbit():
-    """The doubling is subcritical, so its cycle runs back, to the border collision at `lambda-star`."""
+    """The doubling is subcritical, so its cycle exists below it, down to the border collision at `lambda-star`."""
     one = branch(Chords(cuspless, (1, 0)), np.zeros(2), "lam", 0.2, (0.0, 1.0))
     (doubling,) = one.events
     (two,) = switched(one, doubling, (0.0, 1.0))
@@ -224,41 +203,6 @@ def test_the_cycle_born_at_the_cuspless_doubling_ends_on_the_corner_orbit():
     assert abs(collision.value - float(locate("lambda-star", 15).value)) < 1e-12
     assert sorted(b.system.recurrence.components for b in beyond) == [(0, 0, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0)]
     assert all(b.values.min() > collision.value for b in beyond)  # all four exist on one side only
-
-
-def test_long_cycles_are_followed_with_sparse_matrices_to_the_same_points(monkeypatch):
-    ring = Chords(TABLE, (0,) * 12)
-    start, steps = np.tile(TRIANGLE, 4), Steps(largest=0.1, most=8)  # the triangle run through four times
-    full = branch(ring, start, "lam", 0.99, (0.9, 1.0), steps=steps)
-    monkeypatch.setattr(cells, "DENSE", 4)
-    thin = branch(ring, start, "lam", 0.99, (0.9, 1.0), steps=steps)
-
-    assert len(thin.points) == len(full.points)
-    for a, b in zip(thin.points, full.points, strict=True):
-        assert np.max(np.abs(a.z - b.z)) < 1e-10
-        assert a.tests["one"] == pytest.approx(b.tests["one"], rel=1e-9)
-        assert a.tests["minus_one"] == pytest.approx(b.tests["minus_one"], rel=1e-9)
-
-
-def test_a_dataset_labels_points_and_events_by_the_letter():
-    one = branch(Chords(TABLE, (0, 0, 0)), TRIANGLE, "lam", 1.0, (0.37, 1.0))
-    table = dataset(one)
-
-    assert table.sizes == {"point": len(one.points) + 1, "bounce": 3, "which": 2}
-    assert table["lam"].where(table["event"] == "fold", drop=True).values == pytest.approx(one.events[0].value)
-    steps = [b - a for a, b in pairwise(table["arclength"].values)]
-    assert min(steps) >= 0
-
-
-def test_a_run_that_ends_across_the_circle_keeps_its_stability():
-    """The triangle's third bounce is at pi where `lam = 1`, on the edge of stability: below, it is stable."""
-    ring, x, _ = named("triangle", TABLE)
-    one = branch(ring, x, "lam", 1.0, (0.37, 1.0))
-    for bounce in range(3):
-        span = {True: 0.0, False: 0.0}
-        for values, _, stable in runs(one, bounce):
-            span[stable] += abs(values[-1] - values[0])
-        assert min(span.values()) > 0.6  # either partner, from 0.378 to 1
 
 
 def run(*words):
@@ -317,14 +261,6 @@ def test_a_table_without_a_shape_has_none_to_follow():
     assert "--shape: circle has none; accepted: the ellipse, the egg, and tables" in str(result.exception)
 
 
-def test_of_several_parameters_one_is_named():
-    scene = Scene.of({"polar": "1 + b*cos(3*theta) + c*cos(2*theta)", "shape": {"b": "1/40", "c": "1/50"}})
-
-    assert varied(scene, "c=0:1/20") == ("c", "0:1/20")
-    with pytest.raises(ValueError, match="say which of b, c varies, as in b=0:1/20"):
-        varied(scene, "0:1/20")
-
-
 def test_a_start_in_a_family_of_cycles_is_refused_as_one():
     result = run("circle", "--cycle", "diameter", "--lam", "0:1")
 
@@ -371,6 +307,6 @@ WAVES = polar(1 + cos(6 * theta) / 50 + sin(9 * theta) / 100, "waves")
     ids=lambda value: getattr(value, "name", None),
 )  # fmt: skip
 def test_turns_of_a_table_are_counted_up_to_any_order_and_its_mirror_apart(table, turns, mirror):
-    """A turn by `2*pi/n` keeps `sum c_k exp(i*k*theta)` where `n` divides all differences of the `k`."""
+    """A turn by `2*pi/n` keeps `sum c_k exp(i*k*theta)` if `n` divides all differences of the occurring `k`."""
     assert rotations(table) == turns
     assert reflected(table) is mirror

@@ -1,4 +1,4 @@
-"""Curves in two parameters: against closed forms, against branches, and universal constants at their ends."""
+"""Curves in two parameters: against closed forms, single branches, and universal constants at their ends."""
 
 import json
 from itertools import pairwise
@@ -16,13 +16,13 @@ from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
 from verification.app.commands.follow import command as follow
 from verification.arithmetic.balls import FLOAT64
-from verification.cycles.arc import Point, Steps
+from verification.cycles.arc import CurvePoint, Steps
 from verification.cycles.branch import Event, branch
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Linearised, Problem
 from verification.cycles.recurrence import MIRROR, BifurcationKind, Closure, henon
 from verification.cycles.switching import CodimensionTwo, curve
-from verification.cycles.systems import Critical, coefficients
+from verification.cycles.systems import CriticalCycles, coefficients
 from verification.named.curves import (
     accumulation_curve,
     cascade,
@@ -43,6 +43,7 @@ def curves():
     return list(cascade(3, 32))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("K", "p", "q"), [(3, 1, 3), (4, 1, 4), (5, 2, 5)])
 def test_the_fold_of_a_polygon_is_followed_along_its_closed_form(K, p, q):
     plane = fold(K, p, q).curve.plane
@@ -52,6 +53,7 @@ def test_the_fold_of_a_polygon_is_followed_along_its_closed_form(K, p, q):
     assert plane[-1, 0] == largest_shape(K)
 
 
+@pytest.mark.slow
 def test_the_first_doubling_is_followed_along_alpha_tilde(curves):
     plane = curves[0].curve.plane
     expected = lambdify(lam_letter, alpha_tilde())(plane[:, 1])
@@ -69,6 +71,7 @@ def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(curves):
         assert end.parameters[1] == 1.0
 
 
+@pytest.mark.slow
 def test_the_resonances_pile_up_as_in_area_preserving_maps(curves):
     ends = [c.special[0].parameters[0] for c in curves if c.kind is BifurcationKind.FLIP and c.period > 2]
     gaps = [b - a for a, b in pairwise(ends)]
@@ -84,7 +87,7 @@ def test_the_accumulation_is_that_of_the_certified_cascade(curves):
 
 
 def test_henons_flip_and_fold_meet_nowhere_and_end_in_resonances():
-    """Both are parabolas in closed form; at b = -1 the map keeps areas: 1:2 on the flip, 1:1 on the fold."""
+    """Both are parabolas; at b = -1, where areas are kept, the flip ends in a 1:2 and the fold in a 1:1 resonance."""
     box, long = ((-1.0, 0.9), (-2.0, 4.0)), Steps(largest=2.0)
     flips = curve(henon(1), BifurcationKind.FLIP, np.array([0.95]), ("b", "a"), (0.3, 0.37), box, steps=long)
     folds = curve(henon(1), BifurcationKind.FOLD, np.array([2.8]), ("b", "a"), (0.3, -0.12), box, steps=long)
@@ -96,7 +99,7 @@ def test_henons_flip_and_fold_meet_nowhere_and_end_in_resonances():
 
 
 def test_the_coefficients_are_those_of_the_certified_normal_form():
-    """A second program for the same numbers: root mean square amplitude 1 here, last entry 1 there."""
+    """A second program, whose eigenvectors have last entry 1 instead of root mean square 1."""
     table = egg(3).at(alpha="7/100")
     one = branch(Chords(table, (0, 0)), np.array([0.0, np.pi]), "lam", 0.1, (0.0, 1.0))
     (flip,) = one.events
@@ -110,7 +113,7 @@ def test_the_coefficients_are_those_of_the_certified_normal_form():
 
 
 def test_a_cycle_of_the_egg_expands_areas_although_lam_is_below_one():
-    """So `det = lam**p < 1` is false; what holds is a bound on `lam`."""
+    """So a determinant `det = lam**p < 1` cannot be assumed; `lam` itself is bounded instead."""
     found = expanding_cycle()
 
     assert found.certified
@@ -118,8 +121,9 @@ def test_a_cycle_of_the_egg_expands_areas_although_lam_is_below_one():
     assert [contracting_up_to(Rational(k, 50)) for k in (1, 4)] == [0.765625, 0.328125]
 
 
+@pytest.mark.slow
 def test_a_double_multiplier_one_below_lam_one_is_proved():
-    """Next to it the multipliers are complex of modulus 1: Neimark-Sacker, in a window some 1e-13 wide."""
+    """Next to it lies a Neimark-Sacker window, some 1e-13 wide, with complex multipliers of modulus 1."""
     found = double_one()
 
     assert found.status.name == "UNIQUE"
@@ -131,7 +135,7 @@ def test_a_double_multiplier_one_below_lam_one_is_proved():
 @pytest.mark.parametrize("turn", [1, -1])
 def test_the_matrix_of_a_critical_cycle_is_that_of_the_difference_quotients(kind, turn):
     z = np.array([0.3, 2.9, -0.4, 0.05, 0.3])
-    system = Critical.near(Chords(egg(3), (0, 0, 0), Closure(turn, (1, 31))), kind, ("alpha", "lam"), z)
+    system = CriticalCycles.near(Chords(egg(3), (0, 0, 0), Closure(turn, (1, 31))), kind, ("alpha", "lam"), z)
     _, matrix = system.linear(z)
     h = 1e-6
     steps = [(system.linear(z + h * e)[0] - system.linear(z - h * e)[0]) / (2 * h) for e in np.eye(len(z))]
@@ -148,8 +152,9 @@ def run(*words):
     return CliRunner().invoke(follow, words, standalone_mode=False, catch_exceptions=True)
 
 
+@pytest.mark.slow
 def test_an_event_is_followed_in_any_second_parameter_and_from_either_of_the_two(tmp_path):
-    """Met at b = 1/40 as the contraction varies, or at lam = 1/10 as b does: one curve."""
+    """The same curve, from the event in lam at b = 1/40 and from the event in b at lam = 1/10."""
     start, ends = ("--start", "0,3.14159265"), []
     one = ("--shape", "b=1/40", "--lam", "0:0.3", "--at", "1/10", "--curves", "b=0:1/30")
     other = ("--shape", "b=1/40:0..1/30", "--shape", "b=1/60:1/30", "--lam", "1/10", "--curves", "lam=0:0.3")
@@ -181,10 +186,10 @@ def test_a_second_parameter_that_is_none_is_refused_by_name(words, said):
 
 
 def test_a_symmetry_that_a_table_has_at_one_value_alone_gives_a_pitchfork_no_curve():
-    """The half cycle closes by a mirror; where that is no symmetry of the tables beside, its equations mean nothing."""
+    """The half cycle's equations use a mirror symmetry, which the neighbouring tables do not have."""
     half = Chords(egg(3).at(alpha="2/25"), (0, 0), MIRROR)
     x = np.array([0.3, 2.9])
-    event = Event(BifurcationKind.PITCHFORK, Point(np.append(x, 0.2), np.zeros(3), 0.0, {}), half, x)
+    event = Event(BifurcationKind.PITCHFORK, CurvePoint(np.append(x, 0.2), np.zeros(3), 0.0, {}), half, x)
     lopsided = Scene.of({"polar": "1 + b*sin(theta)", "shape": {"b": "0"}})
 
     assert curve_of(event, Plane.of(lopsided, "b", ("0", "1/10")), (0.0, 0.2)) is None

@@ -1,4 +1,4 @@
-"""Laws of how a ring closes, of what a bifurcation says of the multipliers, and of the systems that solve for it."""
+"""How a ring of rules closes, bifurcation conditions on multipliers, and the systems that solve for them."""
 
 from fractions import Fraction
 from math import prod
@@ -55,13 +55,14 @@ def test_the_shift_is_the_same_angle_in_every_arithmetic(closure):
 
 
 def monodromy(rows, turn):
-    """The matrix of one round: from each rule, what comes after is solved for."""
+    """The matrix of one round, the product of the matrices that solve each rule for its last unknown."""
     whole = eye(2)
     for before, here, after in rows:
         whole = Matrix([[0, 1], [-Rational(before / after), -Rational(here / after)]]) * whole
     return turn * whole
 
 
+@pytest.mark.slow
 @given(rings, st.sampled_from([1, -1]))
 def test_trace_and_determinant_are_those_of_the_product_of_the_linearised_maps(rows, turn):
     matrix = monodromy(rows, turn)
@@ -72,9 +73,10 @@ def test_trace_and_determinant_are_those_of_the_product_of_the_linearised_maps(r
     )
 
 
+@pytest.mark.slow
 @given(rings, st.sampled_from([1, -1]), st.sampled_from([FOLD, FLIP, BifurcationKind.PITCHFORK]))
 def test_a_ring_that_folds_or_flips_is_one_with_the_critical_multiplier(rows, turn, kind):
-    """`det(M - mu)` is affine in each diagonal entry: the bordering function has its zero."""
+    """`det(M - mu)` is affine in each diagonal entry, so that entry can be chosen to give the multiplier."""
 
     def closed(here):
         return [*rows[:-1], (rows[-1][0], here, rows[-1][2])]
@@ -94,6 +96,7 @@ def test_a_ring_that_folds_or_flips_is_one_with_the_critical_multiplier(rows, tu
     assert values[1] != 0
 
 
+@pytest.mark.slow
 @given(rings, st.sampled_from([1, -1]))
 def test_a_torus_is_born_where_the_determinant_is_one(rows, turn):
     expected = prod((before / after for before, _, after in rows), start=Fraction(1)) - 1
@@ -111,7 +114,7 @@ def test_what_is_no_zero_of_one_equation_is_refused_by_its_name(kind):
 @settings(max_examples=10, deadline=None)
 @given(st.fractions(-Fraction(1, 2), Fraction(1, 2), max_denominator=8))
 def test_the_fixed_points_of_henons_map_fold_and_flip_where_they_are_known_to(b):
-    """`x = 1 - a*x**2 + b*x` has a double zero at `a = -(1-b)**2/4`; the multiplier -1 is at `a = 3*(1-b)**2/4`."""
+    """`x = 1 - a*x**2 + b*x` has a double zero at `a = -(1-b)**2/4`, and multiplier -1 at `a = 3*(1-b)**2/4`."""
     fixed, share = {"b": Rational(b.numerator, b.denominator)}, float(1 - b) ** 2 / 4
     fold = floats(critical(henon(1), [FOLD], ["a"], fixed), [2 / float(1 - b), -share - 0.01])
     flip = floats(critical(henon(1), [FLIP], ["a"], fixed), [0.6 / float(1 - b), 3 * share + 0.01])
@@ -122,7 +125,7 @@ def test_the_fixed_points_of_henons_map_fold_and_flip_where_they_are_known_to(b)
 
 @pytest.mark.parametrize(("kind", "expected"), [(FOLD, (1, -1, -1)), (FLIP, (Rational(1, 3), 3, -1))])
 def test_two_conditions_at_once_are_solved_for_at_a_resonance(kind, expected):
-    """Henon's map keeps the area at `b = -1`; its fold and its flip end there, in the 1:1 and the 1:2 resonance."""
+    """Henon's map keeps areas at `b = -1`, where its fold ends in the 1:1 and its flip in the 1:2 resonance."""
     start = [float(x) + 0.02 for x in expected]
     found = refined(critical(henon(1), [kind, TORUS], ["a", "b"]), start, 30)
 
@@ -132,7 +135,7 @@ def test_two_conditions_at_once_are_solved_for_at_a_resonance(kind, expected):
 
 
 def test_a_billiards_flip_is_where_the_closed_form_puts_it():
-    """The horizontal cycle of the cuspless cardioid doubles at `lambda_c`. Paper: section 5.1."""
+    """The horizontal cycle of the cuspless cardioid doubles at `lambda_c` (paper, section 5.1)."""
     found = refined(critical(Chords(cuspless, (1, 0)), [FLIP], ["lam"]), [0.01, -0.01, 0.09], 30)
 
     assert abs(found.z[-1] - type(found.z[-1]).context.mpf(str(N(lambda_c(), 35)))) < 1e-29

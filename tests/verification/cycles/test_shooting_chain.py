@@ -1,4 +1,4 @@
-"""Linear algebra along a cycle, against exact dense algebra, and the derivatives it is fed."""
+"""Linear algebra along a cycle against exact dense algebra, and the derivatives that enter it."""
 
 from fractions import Fraction
 
@@ -46,6 +46,7 @@ def rationals(values: list) -> Matrix:
     return Matrix([Rational(Fraction(v)) for v in values])
 
 
+@pytest.mark.slow
 @given(chains(), st.data())
 def test_solving_a_chain_inverts_its_matrix_exactly(chain, data):
     n = len(chain.diagonal)
@@ -56,19 +57,7 @@ def test_solving_a_chain_inverts_its_matrix_exactly(chain, data):
     assert chain.times(one.solve(right)) == right
 
 
-@given(chains(), st.data())
-def test_a_bordered_chain_is_solved_exactly(chain, data):
-    n = len(chain.diagonal)
-    column, row = (data.draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(2))
-    corner = data.draw(fractions)
-    right = data.draw(st.lists(fractions, min_size=n + 1, max_size=n + 1))
-    whole = dense(chain).row_join(rationals(column)).col_join(rationals([*row, corner]).T)
-    one = eliminated(chain)
-    assume(whole.det() != 0)
-
-    assert whole * rationals(one.bordered(column, row, [corner], right)) == rationals(right)
-
-
+@pytest.mark.slow
 @given(chains())
 def test_rest_vanishes_exactly_when_the_matrix_is_singular(chain):
     one = eliminated(chain)
@@ -87,10 +76,7 @@ PROBLEMS = [
     (Problem(egg(3).at(alpha="2/25"), (0, 0), BifurcationKind.FLIP, "lam"), [0.3, 3.0, 0.2]),
     (Problem(cuspless, (1, 0, 0), BifurcationKind.FLIP, "lam"), [0.1, -0.4, 1.1, 0.3]),
     (Problem(egg(3).at(alpha="2/25"), (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR), [0.1, -2.7, 0.2]),
-    (
-        Problem(egg(3), (0, 0, 0), BifurcationKind.FOLD, "alpha", Rational(1, 3), MIRROR),
-        [0.1, -2.7, 0.2, 0.05],
-    ),
+    (Problem(egg(3), (0, 0, 0), BifurcationKind.FOLD, "alpha", Rational(1, 3), MIRROR), [0.1, -2.7, 0.2, 0.05]),
     (Problem(cuspless, (1, 0, 0), lam=Rational(1, 4)), [0.1, -0.4, 1.1]),
 ]
 
@@ -114,6 +100,7 @@ def test_newtons_correction_inverts_the_matrix_of_difference_quotients(problem, 
     assert max(abs(a - b) for a, b in zip(slope, value, strict=True)) < 1e-7 * size
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(st.floats(0.2, 3), st.floats(-2, 2), st.floats(-2, 2))
 def test_jets_are_the_taylor_coefficients(a, b, c):
@@ -154,8 +141,9 @@ def test_a_chain_whose_vectors_come_back_turned_is_solved_too(real, unit, data):
     assert (unit * turned.back).overlaps(acb(1))
 
 
+@pytest.mark.slow
 @given(chains(), st.data())
-def test_a_transposed_chain_is_solved_exactly_with_and_without_a_border(chain, data):
+def test_a_bordered_chain_and_its_transpose_are_solved_exactly(chain, data):
     n = len(chain.diagonal)
     column, row = (data.draw(st.lists(fractions, min_size=n, max_size=n)) for _ in range(2))
     corner = data.draw(fractions)
@@ -165,5 +153,6 @@ def test_a_transposed_chain_is_solved_exactly_with_and_without_a_border(chain, d
     one = eliminated(chain)
     assume(whole.det() != 0 and plain.det() != 0)
 
+    assert whole * rationals(one.bordered(column, row, [corner], right)) == rationals(right)
     assert whole.T * rationals(one.transposed(column, row, [corner], right)) == rationals(right)
     assert plain.T * rationals(one.transposed([], [], [], right[:n])) == rationals(right[:n])

@@ -1,4 +1,4 @@
-"""The map in balls and in mpmath: what is printed of an orbit, where it begins and ends, lengths of boundaries."""
+"""The map in balls and in mpmath: printed orbits, their starts and ends, and lengths of boundaries."""
 
 import math
 from fractions import Fraction
@@ -6,12 +6,16 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from flint import arb
-from sympy import Rational, pi, sqrt
+from sympy import Rational
 
 from numeric import PinballMap
 from symbolic import tables
 from verification.arithmetic.balls import working
-from verification.maps.enclosed import EnclosedMap, _text, _turns, in_balls, in_multiprecision, number, perimeter
+from verification.maps.enclosed import EnclosedMap, perimeter
+from verification.maps.exact import ExactMap
+from verification.maps.orbits import in_balls, in_multiprecision
+
+BITS = 120
 
 SCENES = {
     "egg": {"alpha": "0.08", "lam": "1/2"},
@@ -43,18 +47,6 @@ def test_an_orbit_is_the_same_in_balls_in_mpmath_and_in_doubles_as_far_as_each_g
 
 
 @pytest.mark.parametrize("orbit", [in_balls, in_multiprecision])
-def test_a_start_beyond_a_whole_turn_is_the_one_on_the_boundary(orbit):
-    map, lam = PinballMap("circle"), Rational(1, 2)
-    plain, turned = (
-        orbit(map, lam, (Rational(3, 10) + 2 * k * pi, Rational(1, 5), 0), 2, 20, lambda said: None) for k in (0, -3)
-    )
-
-    assert turned == plain
-    assert _turns(map, (Rational(3, 10) - 6 * pi, 0, 0)) == -3
-    assert _turns(PinballMap("cuspless"), (20.0, 0, 0)) == 0
-
-
-@pytest.mark.parametrize("orbit", [in_balls, in_multiprecision])
 def test_an_orbit_ends_where_the_map_is_not_defined_and_says_why(orbit):
     """Along the axis of the cardioid into its cusp."""
     entries = orbit(PinballMap("cardioid"), Rational(1, 2), (Rational(0), Rational(0), 0), 5, 20, lambda said: None)
@@ -64,40 +56,12 @@ def test_an_orbit_ends_where_the_map_is_not_defined_and_says_why(orbit):
     assert entries[1]["theta"] == entries[0]["theta"]
 
 
-@pytest.mark.parametrize("value", ["1/3", "-12345.678", "1e-30", "-0.000123456789", "0", "99999.99999"])
-def test_the_digits_printed_are_those_of_the_ball_but_for_one_in_the_last(value):
-    with working(300):
-        exact = Fraction(value)
-        middle = arb(exact.numerator) / exact.denominator
-        for digits in (5, 20):
-            shown = _text(middle + arb(0, 10.0 ** (-digits - 3)), digits)
-            before = len(str(abs(int(exact)))) if abs(exact) >= 1 else 0  # digits before the point
-            assert abs(Fraction(shown) - exact) <= Fraction(10) ** (before - digits)
-            assert _text(middle + arb(0, 2 * 10.0**-digits * max(1.0, abs(float(exact)))), digits) == ""
-            assert len(shown.lstrip("-").replace(".", "").lstrip("0").split("e")[0]) <= digits
-
-
-def test_numbers_of_every_kind_become_balls_that_hold_them_with_the_bits_asked_for():
-    with working(250):
-        for value, truth in (
-            (Fraction(1, 3), arb(1) / 3),
-            (0.1, arb(0.1)),
-            (7, arb(7)),
-            (sqrt(Rational(2)), arb(2).sqrt()),
-        ):
-            found = number(value, 200)
-            assert found.overlaps(truth)
-            assert found.rad() < 1e-59
-        ball = arb(1, 2)
-        assert number(ball, 200) is ball
-
-
 @pytest.mark.parametrize(
     "formula",
     ["2 + atan(cos(theta))", "(2 + cos(theta))^(1/3)", "2 + log(2 + sin(theta))", "2 + tanh(sin(theta))"],
 )
 def test_the_length_of_a_boundary_is_that_of_a_fine_polygon(formula):
-    """The rule of equal steps converges faster than any power for a smooth closed curve."""
+    """For a smooth closed curve the trapezoidal rule converges faster than any power."""
     map = PinballMap(tables.polar(formula))
     enclosed = EnclosedMap(map, 1, bits=100)
     found = perimeter(enclosed, 20)
@@ -110,3 +74,69 @@ def test_the_length_of_a_boundary_is_that_of_a_fine_polygon(formula):
     some = np.polynomial.legendre.leggauss(40)
     speeds = [float((sum(v * v for v in enclosed.curve(0, arb(0.75 + x / 4))[2:4])) ** 0.5) for x in some[0]]
     assert float(half) == pytest.approx(np.dot(some[1], speeds) / 4, rel=1e-12)
+
+
+@pytest.fixture(scope="module")
+def ellipse():
+    return EnclosedMap(PinballMap("ellipse", a=2, lam="1/2"), Fraction(1, 2), BITS)
+
+
+@pytest.fixture(scope="module")
+def cuspless():
+    return EnclosedMap(PinballMap("cuspless", lam="1/2"), Fraction(1, 2), BITS)
+
+
+@pytest.mark.parametrize(("theta", "phi"), [(0.0, 0.0), (1.0, 0.3), (2.5, -1.2), (-2.0, 0.9)])
+def test_a_start_flies_off_at_its_angle_from_the_inward_normal_towards_the_tangent(ellipse, theta, phi):
+    """On an ellipse with half axes 2 and 1, with tangent and normal worked out by hand."""
+    found = ellipse.start(theta, phi)
+    dx, dy = -2 * math.sin(theta), math.cos(theta)
+    size = math.hypot(dx, dy)
+    tangent, normal = (dx / size, dy / size), (-dy / size, dx / size)
+    wanted = [math.sin(phi) * t + math.cos(phi) * n for t, n in zip(tangent, normal, strict=True)]
+    assert [float(v) for v in found.v] == pytest.approx(wanted, abs=1e-15)
+    assert (float(found.x), float(found.y)) == pytest.approx((2 * math.cos(theta), math.sin(theta)), abs=1e-15)
+    assert (found.component, found.theta, found.phi) == (0, theta, phi)
+    assert max(x.rad() for x in (*found.v, found.x, found.y)) < 1e-34
+
+
+def test_a_start_of_a_set_holds_all_its_flights(ellipse):
+    wide = ellipse.start(arb(1, 0.01), arb(0.3, 0.02))
+    for theta, phi in ((0.99, 0.28), (1.01, 0.32), (0.99, 0.32), (1, 0.3)):
+        one = ellipse.start(theta, phi)
+        for held, value in zip((*wide.v, wide.x, wide.y), (*one.v, one.x, one.y), strict=True):
+            assert held.overlaps(value)
+    assert all(x.rad() < 0.06 for x in (*wide.v, wide.x, wide.y))
+
+
+def test_the_length_up_to_a_set_of_places_holds_that_of_each_and_is_as_wide_as_the_curve_is_fast(ellipse):
+    """On an ellipse by the trapezoidal rule, on a circle by its parameter."""
+    speed = lambda t: np.hypot(2 * np.sin(t), np.cos(t))  # noqa: E731
+    wide = ellipse.length(0, arb(1, 0.01), 25)
+    for end in (0.99, 1.0, 1.01):
+        at = np.linspace(0, end, 20001)
+        true = np.trapezoid(speed(at), at)
+        assert wide.overlaps(arb(true, 1e-8))
+        assert float(ellipse.length(0, arb(end), 25)) == pytest.approx(true, rel=1e-8)
+    assert float(wide.rad()) == pytest.approx(0.01 * speed(1.0), rel=0.05)
+    with working(BITS):
+        assert ellipse.length(0, arb(1), 25).rad() < 1e-25
+        assert ellipse.length(0, arb(1)).rad() < 1e-30  # of all its bits
+        backward = ellipse.length(0, arb(-1), 25)
+        assert (backward + ellipse.length(0, arb(1), 25)).contains(0)
+
+
+@pytest.mark.parametrize(("start", "turns"), [(10, 2), (-4, -1), (3, 0)])
+def test_an_orbit_begins_where_whole_turns_lead_a_start(start, turns):
+    (found,) = in_balls(PinballMap("circle"), 1, (Rational(start), 0, 0), 0, 12, lambda done: None)
+    assert float(found["theta"]) == pytest.approx(start - 2 * math.pi * turns, abs=1e-11)
+
+
+def test_a_contraction_that_is_text_means_the_decimal_that_it_shows():
+    egg = PinballMap("egg", alpha="2/25")
+    for text in ("9/10", "0.9"):
+        exact, own = ExactMap(egg, 50, text), EnclosedMap(egg, text, 400)
+        assert abs(exact.lam - exact.context.mpf(9) / 10) < 1e-60
+        with working(400):
+            assert (own.lam * 10 - 9).contains(0)
+            assert own.lam.rad() < 1e-100

@@ -1,4 +1,4 @@
-"""Numerical claims of the paper that proofs have settled, with what they came out as."""
+"""Numerical claims of the paper that have proofs, with their verdicts and values."""
 
 import pytest
 from sympy import Rational
@@ -6,10 +6,7 @@ from sympy import Rational
 from verification.arithmetic.iteration import heard
 from verification.paper.claims.claim import Verdict
 from verification.paper.egg.basins import without_triangles
-from verification.paper.judges import hyperbolicity as on_border
-from verification.paper.judges.hyperbolicity import born
 from verification.paper.report.report import verify
-from verification.proofs.corner.half_return import TrappingRegion
 
 LOCATED = {
     "cuspless.lambda_star": (Verdict.CORRECTED, "0.07121724524891598"),
@@ -25,7 +22,7 @@ LOCATED = {
 
 @pytest.mark.parametrize("name", LOCATED)
 def test_a_certified_value_judges_the_printed_digits(name: str):
-    """Digits: interval Newton at 20 digits beside mpmath shooting at 60; the slap infimum beside a sampled minimum."""
+    """Interval Newton at 20 digits against shooting in mpmath at 60; the slap infimum against a sampled minimum."""
     verdict, digits = LOCATED[name]
     (result,) = verify(name, digits=17)
 
@@ -67,19 +64,6 @@ def test_what_happens_at_the_corner_orbit_is_proved_as_far_as_the_proof_goes(nam
     (result,) = verify(name)
 
     assert result.verdict is CORNER_ORBIT[name]
-
-
-def test_a_proof_that_stops_early_leaves_its_claims_without_a_verdict(monkeypatch: pytest.MonkeyPatch):
-    stopped = TrappingRegion(None, 0.001, born().steps[:1])
-    monkeypatch.setattr(on_border, "born", lambda: stopped)
-    monkeypatch.setattr(on_border, "kink_falls", lambda lowest, highest: None)
-    verdicts = {name: next(iter(verify(name))).verdict for name in CORNER_ORBIT}
-
-    assert verdicts["cuspless.chaotic_above_star"] is Verdict.OPEN
-    assert verdicts["cuspless.thin_at_birth"] is Verdict.OPEN
-    assert verdicts["cuspless.coexistence"] is Verdict.REFUTED
-    assert verdicts["cuspless.fourth_collision_above"] is Verdict.REFUTED
-    assert verdicts["cuspless.fourth_collision_below"] is Verdict.OPEN
 
 
 def test_a_long_claim_tells_the_share_that_is_done():

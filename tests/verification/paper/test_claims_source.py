@@ -1,4 +1,4 @@
-"""No verdict from words: the sources of the judges, read as syntax trees."""
+"""No verdict depends on the words of a message: the judges' source files, checked as syntax trees."""
 
 import ast
 from collections.abc import Iterator
@@ -14,12 +14,12 @@ VERDICTS = {"shown", "answer"}  # findings from a decision
 
 
 def called(node: ast.Call) -> str:
-    """The name of what a call calls, without what stands before its last dot."""
+    """The name of the called function, without the part before its last dot."""
     return node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
 
 
 def flat(node: ast.AST) -> bool:
-    """A decision that is written down: `True`, or the outcome of a proof. (A refutation needs a witness besides.)"""
+    """Whether a node is a constant verdict: `True` or `Outcome.PROVED`. (A refutation needs a witness besides.)"""
     if isinstance(node, ast.Constant):
         return node.value is True
     outcome = isinstance(node, ast.Attribute) and node.attr == "PROVED"
@@ -27,7 +27,7 @@ def flat(node: ast.AST) -> bool:
 
 
 def asserted(tree: ast.AST) -> Iterator[ast.AST]:
-    """Findings whose outcome is written down and not computed."""
+    """Calls that make a finding with a constant outcome."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and called(node) in VERDICTS | {"Finding"}:
             given = [*node.args, *(keyword.value for keyword in node.keywords)]
@@ -35,7 +35,7 @@ def asserted(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 def compared(tree: ast.AST) -> Iterator[ast.AST]:
-    """Decisions that read a sentence: a search in a text, or a comparison of a field that holds one."""
+    """Decisions that depend on a sentence: a search in a text, or a comparison of a field that holds one."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and called(node) in READERS:
             yield from [] if getattr(node.func.value, "attr", "") == "id" else [node]  # a claim's name is no message

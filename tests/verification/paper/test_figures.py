@@ -1,4 +1,4 @@
-"""Laws of the figures: what their data must obey, that all of them draw, and what a bad request is told."""
+"""The figures: properties of their data, that all of them can be drawn, and sentences for bad requests."""
 
 import json
 import subprocess
@@ -7,12 +7,9 @@ import warnings
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.pinball.sampling import interior_starts
-from numeric.sweeps import space
 from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import stability_number, trace_of
 from symbolic.tables import named
@@ -35,7 +32,7 @@ JOIN = 3**0.5 / 4
 
 
 def crossings(curve: Curve) -> np.ndarray:
-    """Where a graph crosses the diagonal, by linear interpolation; jumps do not count."""
+    """The places where a graph crosses the diagonal, by linear interpolation; jumps do not count."""
     gap = curve.y - curve.x
     i = np.flatnonzero(np.sign(gap[1:]) * np.sign(gap[:-1]) < 0)
     return curve.x[i] + (curve.x[i + 1] - curve.x[i]) * gap[i] / (gap[i] - gap[i + 1])
@@ -70,12 +67,6 @@ def test_the_eigenvalues_multiply_to_the_square_of_lambda_and_are_those_of_the_s
     assert np.allclose(plus * panel.curves["mu_minus"].y, lams**2, rtol=1e-12, atol=1e-15)
     assert plus[k] == pytest.approx(float((trace + discriminant(trace, at**2) ** Rational(1, 2)) / 2), rel=1e-12)
     assert np.allclose(plus[lams > panel.facts["lambda_minus"]], lams[lams > panel.facts["lambda_minus"]])
-
-
-def test_the_trajectory_in_the_ellipse_ends_on_the_minor_axis():
-    _, panel = circle_ellipse.configuration()
-
-    assert np.all(np.abs(panel.curves["trajectory"].x[-10:-1]) < 0.15)
 
 
 def test_the_second_slap_iterate_of_the_cardioid_meets_the_diagonal_at_the_vertical_orbit_alone():
@@ -123,19 +114,6 @@ def test_the_fourth_collision_touches_the_join_at_lambda_star_stays_off_below_an
     assert lowest["0.09"] < -JOIN - 0.02
 
 
-def test_islands_of_period_3_are_centred_on_the_sine_one_half_at_every_shape():
-    for panel in egg.islands(2.0):
-        centred = []
-        for angle, sine in panel.curves.values():
-            off = np.abs(np.abs(sine) - 0.5)
-            near = np.abs(np.mod(angle, 2 * np.pi / 3) - np.pi / 3)
-            if off.max() < 0.12 and near.max() < 0.6:
-                centred.append(abs(sine.mean()))
-
-        assert centred
-        assert np.all(np.abs(np.array(centred) - 0.5) < 0.02)
-
-
 def test_each_triangle_obeys_the_collision_law_and_they_turn_counterclockwise():
     angles = [egg.triangle(name) for name in egg.TRIANGLES]
     lams = np.array([float(name) for name in egg.TRIANGLES])
@@ -177,27 +155,6 @@ def test_centres_of_curvature_in_float64_are_those_of_the_exact_formula(table, s
         assert [x[k], y[k]] == pytest.approx(expected, abs=1e-13)
 
 
-def test_an_orbit_that_is_left_off_early_in_the_plane_of_parameters_has_no_positive_exponent(monkeypatch):
-    table, lams = PinballMap("egg", alpha="0.085"), np.array([0.2, 0.4, 0.6, 0.8])
-    starts = interior_starts(PinballMap("egg", lam=1, alpha="0.05"), 80, 1)
-    early = egg.signs(table, lams, starts, 1000)
-    monkeypatch.setattr(egg, "FIRST", 20)  # all starts at once
-    monkeypatch.setattr(space, "periods", lambda map, starts: np.zeros(starts.theta.size, dtype=int))  # none is left
-
-    assert egg.signs(table, lams, starts, 1000).tolist() == early.tolist()
-    assert set(early) == {0, 1}
-
-
-def test_exponents_have_opposite_signs_and_their_sum_vanishes_at_lambda_one():
-    (panel,) = cardioid.exponents(0.5)
-    total = panel.curves["sum"].y
-
-    assert np.all(panel.curves["nu_plus"].y > 0.2)
-    assert np.all(panel.curves["nu_minus"].y < -0.2)
-    assert np.all(np.diff(total) > 0)
-    assert abs(total[-1]) < 0.01
-
-
 def test_below_lambda_star_nothing_is_chaotic_and_above_lambda_c_everything_is():
     (panel,) = cardioid.cuspless_exponents(0.5)
     lams, share = panel.curves["chaotic_share"]
@@ -205,19 +162,6 @@ def test_below_lambda_star_nothing_is_chaotic_and_above_lambda_c_everything_is()
     assert np.all(share[lams < 0.0712] == 0)
     assert np.all(share[lams > 0.1] == 1)
     assert np.all(np.isnan(panel.curves["nu_plus_chaotic"].y[lams < 0.0712]))
-
-
-def test_the_bifurcation_diagram_has_the_periods_of_the_certified_cascade():
-    (panel,) = egg.bifurcation(0.1)
-    each = -1, panel.facts["orbits"], panel.facts["points"]
-    angles, lams = (values.reshape(each) for values in panel.curves["attractors"])
-    periods = [[np.unique(ball.round(5)).size for ball in balls] for balls in angles]
-    values = lams[:, 0, 0]
-
-    assert set(periods[0]) == {4}  # lam = 0.36, below lambda_3 = 0.3712
-    between = (values > 0.383) & (values < 0.388)  # above the side cascades, below lambda_4 = 0.3888
-    assert {p for i in np.flatnonzero(between) for p in periods[i]} <= {3, 8}
-    assert max(periods[-1]) > 8  # lam = 0.46: chaos
 
 
 def test_reflection_swaps_the_basins_of_the_two_triangles():
@@ -229,32 +173,6 @@ def test_reflection_swaps_the_basins_of_the_two_triangles():
 
     assert {first, second, names.index("chaotic")} == set(np.unique(labels))
     assert np.mean(mirrored != labels) < 0.01
-
-
-def test_three_localised_attractors_become_one():
-    before, after = egg.configurations(TINY)[2:]
-
-    assert sum(name.startswith("chaotic") for name in before.curves) == 3
-    assert sum(name.startswith("chaotic") for name in after.curves) == 1
-    assert sum(name.startswith("period 3") for name in after.curves) == 2
-
-
-def test_the_same_panels_give_the_same_bytes():
-    picture = pictures()["ellipse-slap"]
-    panels = picture.data(TINY)
-
-    for kind in (".png", ".pdf", ".svg"):
-        assert picture.image(panels, kind) == picture.image(panels, kind)
-
-
-@pytest.mark.parametrize("kind", [".png", ".svg", ".webp"])
-def test_a_figure_that_is_laid_out_is_drawn_once(monkeypatch, kind):
-    drawings, draw = [], Figure.draw
-    monkeypatch.setattr(Figure, "draw", lambda figure, renderer: drawings.append(draw(figure, renderer)))
-    picture = pictures()["ellipse-slap"]
-
-    picture.image(picture.data(TINY), kind)
-    assert len(drawings) == 1
 
 
 def test_the_list_and_the_data_alone_need_no_matplotlib():
@@ -294,18 +212,3 @@ def test_a_figure_goes_where_out_says_and_its_data_where_json_says(tmp_path, cap
 def test_a_bad_request_is_told_in_one_sentence(arguments, said, capsys):
     assert main(["figure", *arguments]) == 2
     assert said in capsys.readouterr().err
-
-
-def test_without_matplotlib_the_way_out_is_named(monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-
-    assert main(["figure", "egg-slap"]) == 2
-    assert "install pinball-billiards[plot]" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("name", ["egg-parameter-space", "egg-bifurcation"])
-def test_figures_of_sweeps_need_no_extra_but_plots(name, monkeypatch):
-    for package in ("xarray", "zarr", "dask", "distributed"):
-        monkeypatch.setitem(sys.modules, package, None)
-
-    assert pictures()[name].data(TINY)

@@ -1,6 +1,7 @@
-"""The folder of any paper: judged as the package's own, refused in one sentence when it is not in order."""
+"""A folder with another paper's claims: verified like the package's own paper, or refused in one sentence."""
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from verification import verify
 from verification.app.cli import BAD_INPUT, main
 from verification.paper.claims.claim import Verdict
-from verification.paper.claims.folder import OWN, ROOT, SHIPPED, begin, judge_of, paper
+from verification.paper.claims.folder import OWN, SHIPPED, begin, judge_of, paper
 from verification.paper.report import report
 from verification.paper.report.report import codes
 
@@ -68,7 +69,7 @@ def half(claim):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A paper with three claims, one of them by a name that the package's own paper has as well."""
+    """A paper with three claims; the name of one is also a name in the package's own paper."""
     home = tmp_path / "two"
     home.mkdir()
     (home / "paper.toml").write_text(PAPER)
@@ -110,7 +111,7 @@ def test_why_a_claim_is_not_settled_is_shown_as_long_as_it_is_not(folder):
 
 
 def test_the_claims_of_a_folder_are_judged_by_its_own_judges(folder):
-    """The one that has the name of a claim of the package's own paper as well."""
+    """Also the claim that shares its name with one of the package's own paper."""
     found = verdicts(folder)
 
     assert found == {"x.square": Verdict.CONFIRMED, "x.half": Verdict.CORRECTED, "circle.exit_angle": Verdict.REFUTED}
@@ -121,22 +122,6 @@ def test_the_claims_of_a_folder_are_judged_by_its_own_judges(folder):
 def test_the_packages_own_paper_is_a_folder_like_any_other():
     assert [claim.id for claim in report.catalogue(SHIPPED / OWN)] == [claim.id for claim in report.catalogue()]
     assert {result.id for result in verify("circle.exit*", claims=SHIPPED / OWN)} == {"circle.exit_angle"}
-
-
-def test_nothing_of_the_papers_is_named_by_what_reads_and_tells_them():
-    """Neither a title, nor an author, nor a section, nor an id, but in the docstrings' examples."""
-    rooms = [SHIPPED, SHIPPED.parent / "report", ROOT / "verification" / "app" / "commands" / "verify.py"]
-    texts = "\n".join(
-        line
-        for room in rooms
-        for path in (sorted([*room.glob("*.py"), *room.glob("*.html")]) if room.is_dir() else [room])
-        for line in path.read_text().splitlines()
-        if not line.strip().startswith((">>>", "'", '"', "@click", "("))
-    )
-    for name in (OWN, *OTHERS):
-        about = paper(name)
-        words = [about.title, *about.authors, *(s for s in about.sections if s != "Abstract")]
-        assert [word for word in [*words, *(claim.id for claim in about.claims)] if word in texts] == []
 
 
 def test_the_report_says_which_paper_it_is_about_and_keeps_its_order_of_sections(folder, tmp_path, capsys):
@@ -156,13 +141,44 @@ def test_the_report_says_which_paper_it_is_about_and_keeps_its_order_of_sections
     assert json.loads((out / "report.json").read_text())["paper"] == about
 
 
-def test_worker_processes_load_the_judges_too(folder, monkeypatch):
-    monkeypatch.setattr(report, "SMALL", 0.0)
+SECONDS = re.compile(r"(?:\"seconds\": |seconds: |claims took |quiet\">)[\d.]+(?: s; [\d.]+ s with)?")
+
+
+def dear(folder):
+    """The same folder, with claims whose declared seconds are so long that other processes verify them."""
+    changed(folder / "paper.toml", "[sections]", 'seconds = "seconds.json"\n\n[sections]')
+    (folder / "seconds.json").write_text('{"seconds": {"x.square": 9.0, "x.half": 9.0}, "spares": {}}')
+    return folder
+
+
+def test_worker_processes_load_the_judges_too(folder):
+    folder = dear(folder)
     one, two = (list(verify(claims=folder, jobs=jobs)) for jobs in (1, 2))
 
     assert [result.verdict for result in one] == [result.verdict for result in two]
     assert two[1].erratum.startswith("a half")
     assert two[1].erratum != one[1].erratum  # judged in another process
+
+
+def test_the_report_does_not_depend_on_the_number_of_processes(folder, tmp_path):
+    changed(dear(folder) / "judges.py", "{os.getpid()}", "one")
+    files = []
+    for jobs in ("1", "2"):
+        assert main(["verify", "--claims", str(folder), "--jobs", jobs, "--report", str(tmp_path / jobs)]) == 0
+        files.append({path.name: SECONDS.sub("", path.read_text()) for path in (tmp_path / jobs).iterdir()})
+
+    assert files[0] == files[1]
+
+
+def test_a_claim_whose_process_dies_is_open_and_says_so(folder):
+    changed(
+        folder / "judges.py", "return identity(claim, q / 2", "os.kill(os.getpid(), 9)\n    return identity(claim, q"
+    )
+    alone, lost, _ = verify(claims=dear(folder), jobs=2)
+
+    assert (alone.id, alone.verdict) == ("x.square", Verdict.CONFIRMED)
+    assert (lost.id, lost.verdict) == ("x.half", Verdict.OPEN)
+    assert lost.method.startswith("not judged: the process that worked at it died")
 
 
 def test_only_and_section_choose_among_the_claims_of_a_folder(folder, tmp_path, capsys):
@@ -213,18 +229,8 @@ def test_judges_that_were_edited_are_run_anew(folder):
         ("paper.toml", 'quote = "$q/3$"', "", "claim 'x.half': 'quote' is missing"),
         ("paper.toml", 'printed = "q/3"', "printed = 3", "'x.half': printed = 3 should be a text or a list"),
         ("paper.toml", 'printed = "q/3"', 'printed = ["q", 3]', "printed = ['q', 3] should be a text or a list"),
-        (
-            "paper.toml",
-            'printed = "q/3"',
-            'printed = "q/3"\nover = { q = "(0; 1)" }',
-            "q = '(0; 1)' } is no range of a l",
-        ),
-        (
-            "paper.toml",
-            'printed = "q/3"',
-            'printed = "q/3"\nover = { p = "(0, 1)" }',
-            "p = '(0, 1)' } is no range of a l",
-        ),
+        ("paper.toml", '"q/3"', '"q/3"\nover = { q = "(0; 1)" }', "q = '(0; 1)' } is no range of a l"),
+        ("paper.toml", '"q/3"', '"q/3"\nover = { p = "(0, 1)" }', "p = '(0, 1)' } is no range of a l"),
         ("paper.toml", '"Squares" = ""', "", "claim 'x.square': no section is called 'Squares'; listed: 'Thirds'"),
         ("paper.toml", 'letters = ["q"]', 'claims = ["no.toml"]', "no.toml cannot be read: No such file or directory"),
         ("paper.toml", 'letters = ["q"]', 'judges = ["no.py"]', "no.py, and there is no such file"),

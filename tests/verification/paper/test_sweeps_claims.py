@@ -1,6 +1,4 @@
-"""Judges on parameter space and on elastic collisions: what decides them, and the twist by two methods."""
-
-from dataclasses import replace
+"""Judges on parameter space and elastic collisions: the facts behind their verdicts, and the twist by two methods."""
 
 import numpy as np
 import pytest
@@ -11,15 +9,12 @@ from numeric import PinballMap
 from numeric.dynamics.phase_points import phase_points
 from numeric.dynamics.recognition import polished
 from symbolic.cycles.normal_forms import egg_diameter
-from symbolic.expressions.signs import Finding, Outcome
 from symbolic.tables import egg, ellipse
-from symbolic.tables.table import alpha, lam
-from verification.named.branches import cascade
+from symbolic.tables.table import alpha
+from verification.named.cascades import cascade
 from verification.paper.claims.claim import Verdict
-from verification.paper.egg import elastic as on_elastic
-from verification.paper.egg import stability as on_stability
-from verification.paper.egg.elastic import elastic_mixed, isosceles, no_full_chaos
-from verification.paper.egg.stability import CASCADES, chaotic_interval, isolated_regions, no_chaos_below, periods_at
+from verification.paper.egg.elastic import elastic_mixed, isosceles
+from verification.paper.egg.stability import CASCADES, periods_at
 from verification.paper.report.report import catalogue
 from verification.proofs.periodic.bifurcation import Twist, twist
 
@@ -77,14 +72,6 @@ def test_a_multiplier_that_is_a_root_of_unity_proves_no_island():
     assert Twist(arb(3), arb(1), arb(0)).islands is None
 
 
-def test_no_full_chaos_needs_the_island_at_the_end(monkeypatch):
-    claim = CLAIMS["egg.no_full_chaos"]
-    assert no_full_chaos(claim).verdict is Verdict.CONFIRMED
-
-    monkeypatch.setattr(on_elastic, "isosceles", lambda: (True, Twist(arb(1), arb(0, 1), arb(0))))
-    assert no_full_chaos(claim).verdict is Verdict.OPEN
-
-
 def test_the_circle_at_the_end_of_the_printed_range_does_not_refute_mixed_phase_spaces():
     found = elastic_mixed(CLAIMS["egg.elastic_mixed"])
 
@@ -93,46 +80,12 @@ def test_the_circle_at_the_end_of_the_printed_range_does_not_refute_mixed_phase_
     assert "(0, 1/10]" in found.derived
 
 
-def test_strange_attractors_below_a_printed_limit_refute_it_and_their_absence_supports_it(monkeypatch):
-    claim = CLAIMS["egg.no_chaos_below"]
-
-    found = no_chaos_below(claim)
-    assert found.verdict is Verdict.REFUTED
-    assert found.witness(claim)[alpha] == Rational(1, 20)
-    assert 0.9165 < found.witness(claim)[lam] < 0.9166
-    assert no_chaos_below(replace(claim, printed="0.03")).verdict is Verdict.SUPPORTED
-
-    monkeypatch.setattr(on_stability, "strange", lambda shape: (Finding(Outcome.UNKNOWN, "not proved"), arb(0.9)))
-    assert no_chaos_below(claim).verdict is Verdict.OPEN
-
-
-def test_the_chaotic_interval_is_judged_by_both_ends(monkeypatch):
-    claim = CLAIMS["egg.chaotic_interval"]
-
-    found = chaotic_interval(claim)
-    assert found.verdict is Verdict.CORRECTED
-    assert "The lower does not agree and the upper agrees" in found.derived
-    assert chaotic_interval(replace(claim, printed="[0.394, 0.66]")).verdict is Verdict.SUPPORTED
-    assert chaotic_interval(replace(claim, printed="[0.394, 0.70]")).verdict is Verdict.OPEN
-
-    unproved = Finding(Outcome.UNKNOWN, "not proved")
-    monkeypatch.setattr(on_stability, "strange", lambda _, kind="": (unproved, arb("0.398" if kind else "0.662")))
-    assert chaotic_interval(claim).verdict is Verdict.OPEN
-
-
 def test_periods_are_those_of_the_paper_s_cascade():
     # section 6.6: period 4 before lambda_3 = 0.372 and period 8 after it; period 3 from 0.39 on, as printed
     assert set(periods_at("0.08", "0.3", 20)) == {4}
     assert set(periods_at("0.08", "0.377", 20)) == {8}
     assert set(periods_at("0.08", "0.7", 20)) == {3}
     assert 0 in periods_at("0.08", "0.5", 20)
-
-
-def test_isolated_regions_end_cascades_of_higher_period():
-    found = isolated_regions(CLAIMS["egg.isolated_regions"])
-
-    assert found.verdict is Verdict.SUPPORTED
-    assert "doublings of period 12 at 0.373122, 24 at 0.373521, 48 at 0.373608, certified" in found.evidence
 
 
 def test_a_cascade_needs_a_cycle_to_start_from():

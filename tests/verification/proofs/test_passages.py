@@ -1,4 +1,4 @@
-"""The stay above a homoclinic crisis, one passage of the saddle at a time."""
+"""The mean stay above a homoclinic crisis, in passages of the saddle."""
 
 import math
 
@@ -21,8 +21,8 @@ def test_far_down_the_law_is_the_power_of_grebogi_ott_and_yorke(stable, unstable
 
 
 @pytest.mark.parametrize(("stable", "unstable"), SADDLES)
-def test_between_two_passages_the_slope_is_one_half_and_a_passage_is_a_step(stable, unstable):
-    """The steps lie at the powers of the stable multiplier."""
+def test_between_two_passages_the_slope_is_one_half(stable, unstable):
+    """The steps of the stay lie at the powers of the stable multiplier."""
     for n in (1, 2, 3):
         edge = abs(stable) ** n
         above, below, lower = (log_stay(edge * x, stable, unstable) for x in (1.001, 0.999, 0.999 * abs(stable) * 1.01))

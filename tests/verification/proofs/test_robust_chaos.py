@@ -1,4 +1,4 @@
-"""Where a border collision bears robust chaos: the hypotheses in balls, orbits and eigenvectors as a second method."""
+"""Border collisions with robust chaos: the hypotheses in balls, against orbits and eigenvectors."""
 
 from dataclasses import replace
 
@@ -7,23 +7,31 @@ import pytest
 from flint import arb
 
 from verification.named.locate import locate
-from verification.proofs.corner.border_collision import Kind, Piece, Pieces, homoclinic, hypotheses, kind, robust
+from verification.proofs.corner.border_collision import (
+    AffinePiece,
+    FixedPointChange,
+    Pieces,
+    homoclinic,
+    hypotheses,
+    kind,
+    robust,
+)
 from verification.proofs.corner.corner import ARC, WALL
 from verification.proofs.corner.half_return import limit
 
 
 def normal_form(left: tuple[float, float], right: tuple[float, float], spread: float = 0.0) -> Pieces:
-    """The border collision normal form from traces and determinants; `v` is its first coordinate."""
+    """The border collision normal form with these traces and determinants; `v` is its first coordinate."""
     balls = arb(left[0]), arb(right[0], spread)
     made = [
-        Piece(((arb(0), -arb(d)), (arb(1), t)), (arb(0), arb(1)))
+        AffinePiece(((arb(0), -arb(d)), (arb(1), t)), (arb(0), arb(1)))
         for t, (_, d) in zip(balls, (left, right), strict=True)
     ]
     return {ARC: made[0], WALL: made[1]}
 
 
 def fold_beyond_the_stable_line(left: tuple[float, float], right: tuple[float, float]) -> float:
-    """How far beyond `Y`'s stable line the unstable one is folded, from eigenvectors; affine in the right trace."""
+    """How far beyond the stable line of `Y` the unstable line is folded; affine in the right trace."""
     step = np.array([[left[0], 1], [-left[1], 0]])
     y = np.linalg.solve(np.eye(2) - step, [1, 0])
     values, vectors = np.linalg.eig(step)
@@ -36,7 +44,7 @@ def fold_beyond_the_stable_line(left: tuple[float, float], right: tuple[float, f
 
 
 def followed(left: tuple[float, float], right: tuple[float, float], steps: int) -> tuple[float, float]:
-    """The share of 100 orbits that stay bounded, and the least exponent."""
+    """The share of 100 orbits that stay bounded, and the least exponent of those."""
     x, y = np.random.default_rng(1).uniform(0, 1, 100), np.zeros(100)
     p, q, rate = np.ones(100), np.zeros(100), np.zeros(100)
     for _ in range(steps):
@@ -48,9 +56,10 @@ def followed(left: tuple[float, float], right: tuple[float, float], steps: int) 
     return float(np.mean(np.abs(x) < 1e5)), float(rate.min()) / steps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("left", "d"), [((1.1718, 0.00588), 0.00588), ((1.6, 0.3), 0.3), ((1.3, 0.05), 0.8)])
-def test_robust_chaos_ends_where_the_unstable_manifold_folds_at_the_stable_one(left, d):
-    """The boundary from eigenvectors; orbits stay and stretch just inside of it, and all of them leave just outside."""
+def test_robust_chaos_ends_where_the_manifolds_meet(left, d):
+    """Just inside the boundary from eigenvectors orbits stay and stretch, and just outside all of them leave."""
     at = [fold_beyond_the_stable_line(left, (t, d)) for t in (-1.0, -2.0)]
     edge = -1 - at[0] / (at[0] - at[1])
     least = min(np.log(max(np.roots([1, -left[0], left[1]]))), np.log(-min(np.roots([1, -edge, d]))))
@@ -88,7 +97,7 @@ def test_every_hypothesis_of_robust_chaos_is_asked_for(left, right, broken):
     assert robust(normal_form(left, right)) is False
 
 
-def test_robust_chaos_is_on_the_side_of_the_parameter_where_the_fixed_points_are():
+def test_robust_chaos_is_on_the_side_of_the_fixed_points():
     forwards = normal_form((1.6, 0.3), (-2.0, 0.3))
     backwards = {side: replace(piece, shift=(arb(0), arb(-1))) for side, piece in forwards.items()}
     mirrored = {
@@ -96,7 +105,7 @@ def test_robust_chaos_is_on_the_side_of_the_parameter_where_the_fixed_points_are
         ARC: replace(forwards[WALL], shift=(arb(0), arb(-1))),
     }
 
-    assert kind(forwards) is kind(backwards) is Kind.FOLD
+    assert kind(forwards) is kind(backwards) is FixedPointChange.FOLD
     assert [robust(found) for found in (forwards, backwards, mirrored)] == [True, False, True]
 
 

@@ -1,10 +1,9 @@
-"""Laws of torus bifurcations: the normal form against a textbook's, iterates, orbits and derivatives of the map."""
+"""Torus bifurcations: the normal form against a textbook's; iterates, orbits and derivatives of the map."""
 
 import cmath
 from dataclasses import replace
 from fractions import Fraction
 from math import cos, pi
-from types import SimpleNamespace
 
 import mpmath
 import numpy as np
@@ -19,12 +18,11 @@ from symbolic.tables import egg
 from verification.arithmetic.balls import FLOAT64, balls, exact_balls, multiprecision, working
 from verification.cycles.chords import chord_angles
 from verification.cycles.newton import refined
-from verification.cycles.recurrence import AFTER, BEFORE, HERE, IDENTITY, MIRROR, Explicit, delayed
+from verification.cycles.recurrence import AFTER, BEFORE, HERE, MIRROR, Explicit, delayed
 from verification.maps.exact import ExactMap
 from verification.named.curves import invariant_circle
-from verification.proofs.periodic import torus as torus_of
 from verification.proofs.periodic.bifurcation import birkhoff_normal_form
-from verification.proofs.periodic.interval_newton import Status
+from verification.proofs.periodic.interval_newton import ZeroStatus
 from verification.proofs.periodic.torus import TRACE, Rotating, Rotation, torus
 
 t, d, bend, cubic = (Symbol(name, real=True) for name in ("t", "d", "bend", "cubic"))
@@ -35,7 +33,7 @@ coefficients = st.floats(-3, 3)
 
 
 def at_zero(trace, a, c, ring=PLANE):
-    """The fixed point 0 of the plane map with that trace and determinant 1, run through once or several times."""
+    """The fixed point 0 of the plane map with this trace and determinant 1, repeated once or several times."""
     once = cmath.rect(1, cmath.acos(trace / 2).real)
     whole = ring.closure.turn * once**ring.period
     fixed = {"t": Rational(trace), "bend": Rational(a), "cubic": Rational(c)}
@@ -43,7 +41,7 @@ def at_zero(trace, a, c, ring=PLANE):
 
 
 def by_the_textbook(trace, a, c):
-    """`conj(mu)` times the cubic coefficient by the multilinear formula of [Kuznetsov2004], section 5.4."""
+    """`conj(mu)` times the cubic coefficient, by the multilinear formula of [Kuznetsov2004], section 5.4."""
     matrix = np.array([[trace, -1.0], [1.0, 0.0]])
     mu = cmath.rect(1, cmath.acos(trace / 2).real)
     q = np.array([1, 1 / mu])
@@ -72,7 +70,7 @@ def test_the_cubic_coefficient_is_that_of_the_textbook(trace, a, c):
 
 
 @given(traces, coefficients, coefficients, st.integers(2, 5))
-def test_run_through_several_times_a_cycle_grows_and_turns_as_many_times_as_fast(trace, a, c, times):
+def test_a_cycle_run_through_several_times(trace, a, c, times):
     once, _ = at_zero(trace, a, c)
     ring = replace(PLANE, period=times)
     assume(all(abs(cmath.exp(1j * k * times * cmath.acos(trace / 2).real) - 1) > 0.05 for k in (1, 2, 3, 4)))
@@ -89,7 +87,7 @@ def test_run_through_several_times_a_cycle_grows_and_turns_as_many_times_as_fast
 
 @given(traces, coefficients)
 def test_half_of_a_symmetric_cycle_has_the_same_normal_form(trace, c):
-    """The cubic map is odd, so it may be followed by `x -> -x`, which only changes the sign of the multiplier."""
+    """The cubic map is odd; following it with `x -> -x` only changes the sign of the multiplier."""
     once, _ = at_zero(trace, 0.0, c)
     half, _ = at_zero(trace, 0.0, c, replace(PLANE, closure=MIRROR))
 
@@ -97,8 +95,8 @@ def test_half_of_a_symmetric_cycle_has_the_same_normal_form(trace, c):
     assert abs(half.drift("d") - once.drift("d").conjugate()) < 1e-9
 
 
-def test_the_closed_curve_of_the_delayed_logistic_map_has_the_size_and_the_rotation_of_the_normal_form():
-    """`x` moves by `2*abs(z)*cos(...)` with `abs(z)**2 = -growth*h/lyapunov`, at a distance `h` beyond `r = 2`."""
+def test_the_closed_curve_of_the_delayed_logistic_map():
+    """At `r = 2 + h` the amplitude of `x` is `2*abs(z)`, with `abs(z)**2 = -growth*h/lyapunov`."""
     here = Rotation(Rotating(delayed(1), ("r", "trace")), FLOAT64, [0.5, 2.0, 1.0])
     drift, coefficient = here.drift("r"), here.cubic()
     h, x, y = 1e-3, 0.52, 0.5
@@ -120,8 +118,8 @@ def test_the_closed_curve_of_the_delayed_logistic_map_has_the_size_and_the_rotat
 
 
 @pytest.mark.parametrize(("c", "attracting"), [("-1/4", True), ("1/4", False)])
-def test_the_sign_of_the_cubic_term_tells_attracting_circles_from_repelling_ones(c, attracting):
-    """Without a square it is `cubic/2`, the real part of `-cubic*(1 + 2*w)/(1 - w)`, where `w = conj(mu)**2`."""
+def test_the_cubic_term_tells_attracting_circles(c, attracting):
+    """Without a square the coefficient is `cubic/2`, the real part of `-cubic*(1 + 2*w)/(1 - w)`, `w = conj(mu)**2`."""
     fixed = {"trace": Rational(1, 2), "bend": Rational(0), "cubic": Rational(c)}
     found = torus(Rotating(PLANE, ("t", "d"), fixed), [0.01, 0.49, 1.02], "d")
     other = torus(Rotating(PLANE, ("t", "d"), fixed | {"cubic": Rational(0)}), [0.0, 0.49, 1.02], "d")
@@ -144,7 +142,7 @@ def test_strong_resonances_are_not_certified(trace):
 
 @given(st.fractions(-2, 2, max_denominator=6))
 def test_a_rational_turn_with_a_rational_trace_has_an_integer_one(turn):
-    """What the criterion of irrationality rests on: no `2*cos(2*pi*p/q)` is a fraction."""
+    """The criterion for irrational turns rests on this: no `2*cos(2*pi*p/q)` is a fraction other than an integer."""
     trace = Fraction(2 * cos(2 * pi * turn)).limit_denominator(12)
 
     if abs(trace - 2 * cos(2 * pi * turn)) < 1e-12:
@@ -153,11 +151,11 @@ def test_a_rational_turn_with_a_rational_trace_has_an_integer_one(turn):
     assert Rotating(PLANE, ("t", "d"), fixed).irrational is (trace.denominator != 1)
 
 
-def test_the_egg_bears_an_attracting_circle_next_to_its_cycle_of_period_17():
+def test_the_egg_bears_an_attracting_circle_at_period_17():
     found = invariant_circle()
 
     assert found.certified
-    assert found.enclosure.status is Status.UNIQUE
+    assert found.enclosure.status is ZeroStatus.UNIQUE
     assert found.attracting is True
     assert found.side == 1
     assert found.problem.irrational
@@ -169,9 +167,9 @@ def test_the_egg_bears_an_attracting_circle_next_to_its_cycle_of_period_17():
 
 
 def test_its_coefficient_is_that_of_the_derivatives_of_the_map_itself():
-    """A second method: the 17th iterate by its definition, flight after flight, and its differences to third order.
+    """A second method: differences to third order of the 17th iterate, flight after flight.
 
-    Both normal forms have a unit of their own; the ratio of imaginary and real part has none.
+    The two normal forms use different units; the ratio of imaginary and real part is free of them.
     """
     found = invariant_circle()
     solution = refined(found.problem, [float(x) for x in found.enclosure.zero], 80)
@@ -199,32 +197,3 @@ def test_its_coefficient_is_that_of_the_derivatives_of_the_map_itself():
     assert abs(form.trace - 0.5) < 1e-9
     assert form.drift < 0
     assert abs(abs(ratio) - 1) < 1e-9
-
-
-@pytest.mark.parametrize(
-    ("changed", "missing"),
-    [
-        ({}, set()),
-        ({"closes": False}, {"admissible"}),
-        ({"uniform": False}, {"admissible"}),
-        ({"closure": MIRROR}, {"admissible"}),
-        ({"convex": None}, {"admissible"}),
-        ({"inside": None}, {"admissible"}),
-        ({"minimal": None}, {"minimal_period"}),
-        ({"lam": arb(1, 0.1)}, {"contraction"}),
-        ({"lam": arb(0, 0.1)}, {"contraction"}),
-        ({"lam": arb(-0.5)}, {"contraction"}),
-    ],
-    ids=str,
-)
-def test_each_hypothesis_on_the_table_fails_alone(monkeypatch, changed, missing):
-    """A smooth closed convex curve under the paper's law, a cycle that closes by no symmetry, and `0 < lam < 1`."""
-    monkeypatch.setattr(torus_of, "closes_smoothly", lambda _: changed.get("closes", True))
-    for name in ("convex", "inside", "minimal"):
-        monkeypatch.setattr(torus_of, name, lambda *_, name=name: changed.get(name, True))
-    law, closure = SimpleNamespace(uniform=changed.get("uniform", True)), changed.get("closure", IDENTITY)
-    ring = SimpleNamespace(shapes=(), table=None, law=law, closure=closure, components=(0, 0))
-    found = torus_of.on_the_table(ring, SimpleNamespace(at={"lam": changed.get("lam", arb(0.5))}, x=[]))
-
-    assert {name for name, held in found.items() if held is not True} == missing
-    assert found.keys() == {"admissible", "minimal_period", "contraction"}

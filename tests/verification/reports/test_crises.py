@@ -1,4 +1,4 @@
-"""The tangencies of a report: found near the changes of its diagram, and then proved."""
+"""The tangencies of a report: found near changes of its diagram, and then proved."""
 
 import json
 from dataclasses import replace
@@ -15,13 +15,13 @@ from verification.cycles.newton import refined
 from verification.maps.first_hit import convex, unobstructed
 from verification.named.questions import PeriodicOrbit
 from verification.named.tangencies import round_of
-from verification.proofs.manifolds.claim import contact_said
+from verification.proofs.manifolds.certificate import contact_said
 from verification.proofs.manifolds.grow import touches
 from verification.proofs.manifolds.known import shadow
 from verification.proofs.manifolds.plane_map import pinball
-from verification.proofs.manifolds.proof import ITEMS
+from verification.proofs.manifolds.proof import ManifoldsTouch
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Known, Number, Words
+from verification.reports.blocks import Known, Paragraph, ShownNumber
 from verification.reports.crises import crises, proved, told
 from verification.reports.parted import NONE, least_angle
 
@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[3]
 
 
 def tangencies(tmp_path, text, lost, **more):
-    """What a report says of tangencies where a made-up diagram loses chaos between two contractions, then proved."""
+    """The report's blocks on tangencies before and after proofs, from a diagram that loses chaos between `lost`."""
     asked, counts = Asked(Scene.parse(text), at=("1/2",), **more), np.ones((240, 7), int)
     counts[50:, 3:] = 0  # the chaotic attractor is gone from the fourth contraction on
     parts = Parts(tmp_path, asked.digest)
@@ -43,8 +43,9 @@ def tangencies(tmp_path, text, lost, **more):
     return before, told(asked, made)
 
 
+@pytest.mark.slow
 def test_the_boundary_crisis_of_the_egg_is_found_and_proved_by_a_report_that_knows_no_name_of_it(tmp_path):
-    """Its table is a radius, its diagram is made up; the certificate of the named crisis comes from other methods."""
+    """The table is a radius with an invented diagram; the named crisis has its certificate from other methods."""
     egg = 'scene = { polar = "1 + 2*cos(3*theta)/25", lam = "1/2" }'
     certificate = json.loads((ROOT / "certificates" / "boundary-crisis.json").read_text())
     mantissa, exponent = map(int, certificate["centre"][-1])
@@ -52,18 +53,21 @@ def test_the_boundary_crisis_of_the_egg_is_found_and_proved_by_a_report_that_kno
 
     for told_of, known in zip(tangencies(tmp_path, egg, (0.64, 0.69)), (Known.FLOAT, Known.PROVED), strict=True):
         (table, *files), (found,) = told_of.blocks, told_of.events
-        assert [file.document["checks"] for file in files] == [dict.fromkeys(ITEMS, True)] * found["certified"]
+        assert [file.document["checks"] for file in files] == [
+            dict.fromkeys(ManifoldsTouch.hypotheses(), True)
+        ] * found["certified"]
         assert [file.name for file in files] == ["tangency-0"] * found["certified"]
         assert (found["kind"], found["period"]) == ("homoclinic_tangency", 3)
         assert found["certified"] is (known is Known.PROVED)
         assert abs(Fraction(found["value"]) - exact) <= Fraction(found["radius"])
         assert table.rows[0][0].known is known
-        assert all(cell.error for row in table.rows for cell in row if isinstance(cell, Number))
+        assert all(cell.error for row in table.rows for cell in row if isinstance(cell, ShownNumber))
     assert Fraction(found["radius"]) < Fraction(1, 10**20)
 
 
+@pytest.mark.slow
 def test_a_tangency_of_a_table_that_is_not_convex_is_proved_with_every_flight_on_the_way():
-    """In the limacon; folds of long cycles, found by other equations, come near it as the multiplier says."""
+    """In the limacon; folds of long cycles, from other equations, approach it at the rate of the multiplier."""
     scene = Scene.of({"polar": "1 + 3*cos(theta)/5", "lam": "1/2"})
     bounces = (-2.3414388, -0.1354213, 2.3414388, 0.1354213)
     orbit = round_of(PeriodicOrbit(scene, (0,) * 4, bounces, (0.0,) * 4, (2j, 0j)), 1, True)
@@ -85,7 +89,7 @@ def test_a_tangency_of_a_table_that_is_not_convex_is_proved_with_every_flight_on
 
 
 def test_a_flight_that_the_boundary_cuts_is_no_proof():
-    """Of the limacon's tangency with a bounce where its boundary bends outwards: the chord leaves the table."""
+    """The limacon's tangency with a bounce at the dent of the boundary, so that the chord leaves the table."""
     limacon = Scene.of({"polar": "1 + 3*cos(theta)/5", "lam": "1/2"}).table
     with working(96):
         straight, cut = ([(0, arb(at)) for at in places] for places in ((0.0, 2.0), (2.6, 3.6)))
@@ -93,8 +97,9 @@ def test_a_flight_that_the_boundary_cuts_is_no_proof():
         assert not unobstructed(limacon, cut)
 
 
+@pytest.mark.slow
 def test_tangencies_are_proved_under_another_law(tmp_path):
-    """That of tests/verification/proofs/test_manifolds_proof.py, where the cycles that shadow it fold as well."""
+    """The law of tests/verification/proofs/test_manifolds_proof.py, under which the shadowing cycles fold as well."""
     bent = 'scene = { polar = "1 + 2*cos(3*theta)/25", lam = "1/2", law = "-lam*eta*(1 - eta**2/40)" }'
     _, after = tangencies(tmp_path, bent, (0.645, 0.69))
 
@@ -103,7 +108,7 @@ def test_tangencies_are_proved_under_another_law(tmp_path):
 
 
 def parted(tmp_path, name, values, lost):
-    """What a report says of a table in pieces whose made-up diagram loses chaos after some of its columns."""
+    """The report's block on a table in pieces, whose invented diagram loses chaos after some of its columns."""
     asked, counts = Asked(Scene(name)), np.ones((240, 7), int)
     for j in lost:
         counts[50:, j:] = 0
@@ -116,11 +121,12 @@ def parted(tmp_path, name, values, lost):
 
 
 def test_where_no_attractor_changes_the_report_says_that_there_is_no_tangency_to_seek(tmp_path):
-    assert parted(tmp_path, "cardioid", (0.3, 0.4), ()) == (Words(NONE), [])
+    assert parted(tmp_path, "cardioid", (0.3, 0.4), ()) == (Paragraph(NONE), [])
 
 
+@pytest.mark.slow
 def test_the_attractor_of_the_cuspless_table_changes_far_from_a_tangency(tmp_path):
-    """Near lambda-c, paper: section 5.2. From 1/10 on a cone of directions is proved to keep apart from the other."""
+    """Near lambda-c (paper, section 5.2). From 1/10 on a cone of directions is proved to stay apart from the other."""
     block, ((row),) = parted(tmp_path, "cuspless", (0.10, 0.13), (3,))
 
     angle, error, points = row["angle"]
@@ -129,7 +135,8 @@ def test_the_attractor_of_the_cuspless_table_changes_far_from_a_tangency(tmp_pat
     assert block.rows[0][2].known is Known.SAMPLED
 
 
+@pytest.mark.slow
 def test_an_angle_near_a_tangency_is_small():
-    """On the egg just below its boundary crisis, 0.66214: manifolds of the triangle touch, so do others near by."""
+    """The egg just below its boundary crisis, 0.66214: manifolds of the triangle and of nearby cycles touch."""
     angle, _, _ = least_angle(Asked(Scene("egg", alpha="2/25")), 0.66)
     assert angle < 0.01

@@ -1,22 +1,26 @@
-"""The machine's side: `pinball bench` times one bounce, `pinball work` a whole question, `pinball cache` looks after
-what is kept between runs."""
+"""Timing and caching: `pinball bench` times one bounce, `pinball work` a whole question, `pinball cache` shows or
+clears the files kept between runs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from verification.app.cli import DONE, FAILED, Output, json_option
+from numeric.lowering.files import write_whole
+from symbolic.tables.scene import Scene
+from verification.app.cli import DONE, FAILED, Output, Whole, json_option
+from verification.app.scene import optional_scene_options
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.measure.extremes.orbits import Accuracy
-    from verification.measure.work.bench import Row
+    from verification.measure.work.bench import SceneTiming
     from verification.measure.work.calls import Call
     from verification.measure.work.question import Question
-    from verification.measure.work.row import Row as WorkRow
+    from verification.measure.work.row import MethodResult
 
 
 HEAD = f"     {'way':<38}{'time a bounce':>13}{'ratio':>10}   error / 2**-52"
@@ -27,12 +31,18 @@ CASES = f"{'case':<40}{'particles':>6}{'position':>10}{'direction':>11}{'/condit
 
 @click.command(epilog="Example: pinball bench --scene egg --digits 20 --digits 100 --json bench.json")
 @click.option("--scene", "scenes", multiple=True, metavar="TABLE", help="Only these tables; all if left out.")
-@click.option("--digits", multiple=True, type=click.IntRange(10, 1000), help="For mpmath and arb; 20, 100 and 1000.")
-@click.option("--runs", type=click.IntRange(1, 1000), default=5, show_default=True, help="The best of how many.")
-@click.option("--baselines/--no-baselines", default=True, show_default=True, help="The benchmark folder's own ways.")
+@click.option("--digits", multiple=True, type=Whole(10, 1000), help="For mpmath and arb; 20, 100 and 1000.")
+@click.option("--runs", type=Whole(1, 1000), default=5, show_default=True, help="The best of how many.")
+@click.option("--baselines/--no-baselines", default=True, show_default=True, help="Also the code in benchmarks/.")
 @click.option("--accuracy/--no-accuracy", default=True, show_default=True, help="The errors of labelled hard cases.")
 @click.option("--calls/--no-calls", default=True, show_default=True, help="Whole calls against the kernel inside.")
-@click.option("--compare", metavar="FILE", help="Say what moved since a run of which FILE is the --json.")
+@click.option(
+    "--questions/--no-questions",
+    default=True,
+    show_default=True,
+    help="What users type, from start to last line, beside plain scripts; without --scene.",
+)
+@click.option("--compare", metavar="FILE", help="Compare with an earlier run: its --json FILE.")
 @json_option
 def command(
     scenes: tuple[str, ...],
@@ -41,6 +51,7 @@ def command(
     baselines: bool,
     accuracy: bool,
     calls: bool,
+    questions: bool,
     compare: str | None,
     output: Output,
 ) -> int:
@@ -48,16 +59,17 @@ def command(
 
     Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30
     digits more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the
-    Pareto front: no other way is both faster and more exact. Whole calls have bars, as multiples
-    of what they are compared with, and so have tables beside the egg; the exit status is 1 when one is over its bar.
-    So it is with --compare when a time, beside the others of its run, changed by more than a factor 1.5, or an error
-    grew tenfold.
+    Pareto front: no other way is both faster and more exact. Whole calls, questions, and tables other than the
+    egg, are compared with other times, and each ratio has a bar that it should not pass. The exit status is 1 when
+    one is over its bar or, with --compare, when a time changed by a factor of more than 1.5 against the other times
+    of its run, or an error grew tenfold.
     """
     from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
     from verification.measure.work.bench import MISSING, baseline_rows, is_checkout
     from verification.measure.work.calls import call_rows, pieces_at_rest, table_rows
     from verification.measure.work.choice import earlier, moved, of_bench
+    from verification.measure.work.plain import QUESTIONS, asked_rows
     from verification.measure.work.scaling import sweep_rows
 
     before = earlier(Path(compare)) if compare else []
@@ -65,11 +77,13 @@ def command(
     unknown = [name for name in scenes if name not in known]
     if unknown:
         raise ValueError(f"--scene = {unknown[0]} is no table; accepted: {', '.join(known)}")
-    rows: list[Row] = []
+    rows: list[SceneTiming] = []
     cases: list[Accuracy] = []
     whole: list[Call] = []
+    asked: list[Call] = []
     chosen = scenes or known
-    with output.progress("Measuring", 3 * len(chosen) + 2 * (not scenes)) as step:
+    known_questions = QUESTIONS if questions and not scenes else ()
+    with output.progress("Measuring", 3 * len(chosen) + 2 * (not scenes) + len(known_questions)) as step:
         for name in chosen:
             step(f"{name}, float64")
             papers = name in labelled.SCENES
@@ -80,17 +94,21 @@ def command(
             rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if papers else []
             step(f"{name}, hard cases")
             cases += labelled.accuracy(name) if accuracy else []
-        pieces: list[Row] = []
+        pieces: list[SceneTiming] = []
         if not scenes:
             step("tables beside the egg")
             pieces = list(table_rows(runs, baselines))
             whole += pieces_at_rest(min(runs, 3)) if calls else []
             step("sweeps by several workers")
             whole += sweep_rows() if calls else []
+        for question in known_questions:
+            step(question.typed)
+            asked += asked_rows(min(runs, 3), [question])
     facts = bench.machine_facts()
     measured = [row.as_data() for row in (*rows, *pieces)]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []
     document = {"machine": facts, "rows": measured, "calls": [call.as_data() for call in whole]}
+    document["questions"] = [call.as_data() for call in asked]
     document |= {"accuracy": [case._asdict() | {"error_unit": "2**-52"} for case in cases]}
     output.write(document | ({"moved": changes} if compare else {}))
     for name in chosen:
@@ -98,6 +116,7 @@ def command(
     show_ratios(output.console, rows)
     good = show_tables(output.console, pieces)
     show_calls(output.console, whole)
+    show_questions(output.console, asked)
     if baselines and not is_checkout():
         output.console.print(f"\n{MISSING}")
     if cases:
@@ -107,11 +126,11 @@ def command(
     )
     if compare:
         output.console.print(f"\nsince {compare}: " + ("; ".join(changes) or "nothing moved by more than a factor 1.5"))
-    return FAILED if changes or not good or any(call.ratio > call.bar for call in whole) else DONE
+    return FAILED if changes or not good or any(call.ratio > call.bar for call in (*whole, *asked)) else DONE
 
 
-def show(console: "Console", name: str, rows: "list[Row]") -> None:
-    """A scene's rows, with ratios to the kernel and a mark on the Pareto front, and two diagrams."""
+def show(console: "Console", name: str, rows: "list[SceneTiming]") -> None:
+    """Prints a scene's rows with ratios to the kernel and marks on the Pareto front, and two diagrams."""
     from verification.measure.extremes.orbits import RADII, SCENES
     from verification.measure.work.bench import frontier
     from verification.measure.work.row import diagram, duration
@@ -130,8 +149,8 @@ def show(console: "Console", name: str, rows: "list[Row]") -> None:
         console.print(diagram([(row.seconds_per_bounce, row.error) for row in kept], front))
 
 
-def show_ratios(console: "Console", rows: "list[Row]") -> None:
-    """Tables that are not the paper's, as multiples of the egg in the same run."""
+def show_ratios(console: "Console", rows: "list[SceneTiming]") -> None:
+    """Prints the times of tables that are not the paper's, as multiples of the egg's in the same run."""
     from verification.measure.extremes.orbits import RADII
 
     times = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}
@@ -148,8 +167,8 @@ def show_ratios(console: "Console", rows: "list[Row]") -> None:
         console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
 
 
-def show_tables(console: "Console", rows: "Sequence[Row]") -> bool:
-    """Bounces on many tables as multiples of the egg or the square in the same run; whether none is over its bar."""
+def show_tables(console: "Console", rows: "Sequence[SceneTiming]") -> bool:
+    """Prints times of many tables as multiples of the egg's or the square's; True when none is over its bar."""
     from verification.measure.work.bench import SCALAR
     from verification.measure.work.calls import BARS, KERNEL
     from verification.measure.work.row import duration
@@ -174,7 +193,7 @@ def show_tables(console: "Console", rows: "Sequence[Row]") -> bool:
 
 
 def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
-    """Whole calls with their bars; what is over its bar is marked."""
+    """Prints whole calls with their bars, and marks those over their bar."""
     from verification.measure.work.row import duration
 
     if calls:
@@ -184,8 +203,23 @@ def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
         console.print(f"{call.scene:<10}{call.call:<36}{times}{' *' if call.ratio > call.bar else '  '} {call.against}")
 
 
+def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
+    """What users type, from the start of the process to its last line; what is over its bar is marked."""
+    from verification.measure.work.row import duration
+
+    if asked:
+        console.print(
+            f"\nquestions as processes, beside plain scripts; over the bar marked\n{'time':>12}{'ratio':>8}{'bar':>7}"
+        )
+    for one in asked:
+        times = f"{duration(one.seconds):>12}{one.ratio:>8.3g}{one.bar:>7.3g}"
+        console.print(
+            f"{times}{' *' if one.ratio > one.bar else '  '} {one.call.splitlines()[-1]}   beside {one.against}"
+        )
+
+
 def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
-    """The errors of the hard cases, and which are beyond 4 and 8 units."""
+    """Prints the errors of the hard cases; position errors beyond 4 units and direction errors beyond 8 are marked."""
     console.print("\naccuracy of one bounce in float64, largest errors in units of 2**-52; beyond 4 and 8 marked")
     console.print(CASES)
     for case in cases:
@@ -199,36 +233,60 @@ def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
 ENDINGS = (".png", ".pdf", ".svg")
 
 
-@click.command(epilog="Example: pinball work lambda-star --most-digits 100 --out lambda-star.png")
+@click.command(epilog="Example: pinball work step egg --alpha 0.08 --lam 0.5 --digits 100 --plot step.png")
 @click.argument("question", required=False)
-@click.option("--out", metavar="FILE", help="The diagram, a .png, .pdf or .svg file; for one question.")
-@click.option("--runs", type=click.IntRange(1, 1000), default=5, show_default=True, help="The median of how many.")
-@click.option("--most-digits", type=click.IntRange(16, 1000), default=1000, show_default=True, help="For mpmath, arb.")
+@optional_scene_options
+@click.option("--plot", "--out", "out", metavar="FILE", help="The diagram, a .png, .pdf or .svg; of one question.")
+@click.option("--runs", type=Whole(1, 1000), default=5, show_default=True, help="The median of how many.")
+@click.option("--digits", "--most-digits", "digits", type=Whole(16, 1000), help="For mpmath, arb, at most.")
+@click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of random particles; with a table.")
 @json_option
-def work_command(question: str | None, out: str | None, runs: int, most_digits: int, output: Output) -> int:
-    """Error against run time for a whole question: every arithmetic, and the ways that one would write first.
+def work_command(
+    question: str | None,
+    scene: Scene | None,
+    bare: dict[str, Any],
+    out: str | None,
+    runs: int,
+    digits: int | None,
+    seed: int,
+    output: Output,
+) -> int:
+    """Error against run time for a whole question: every arithmetic, and the scripts that one would write first.
 
-    QUESTION is step-egg, step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling,
-    exponent-cycle, exponent-chaos, arclength, arclength-inverse or slap-infimum; all of them if left out. Errors
-    are distances from a certified ball. In the table `*` marks the Pareto front: nothing else is both quicker
-    and more exact; `!` marks a method whose error is larger than it claims.
+    With a table QUESTION is step, jacobian, orbit, cycle, fold or exponent: of that scene. Without one it is step-egg,
+    step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle,
+    exponent-chaos, arclength, arclength-inverse or slap-infimum; all of these if left out. Errors are distances from
+    a certified ball. In the table `*` marks the Pareto front: nothing else is both quicker and more exact; `!` marks
+    a method whose error is larger than it claims.
     """
     from verification.measure.work.bench import MISSING, is_checkout
     from verification.measure.work.choice import QUESTIONS
     from verification.measure.work.choice import question as asked
     from verification.measure.work.question import measured
     from verification.measure.work.row import facts, footer, plain
+    from verification.measure.work.scenes import QUESTIONS as OF_SCENES
 
     path = _target(question, out)
-    names = list(QUESTIONS) if question is None else [question]
-    if question is not None and question not in QUESTIONS:
-        asked(question)  # refuses it in one sentence
-    known, questions, rows = facts(), list["Question"](), list["WorkRow"]()
-    with output.progress("Measuring", len(names)) as step:
-        for name in names:
-            step(name)
-            questions.append(asked(name))
-            rows += measured(questions[-1], runs, most_digits)
+    for option, value in bare.items():
+        if scene is None and value is not None:
+            raise ValueError(f"--{option} {value} is for a table, and none is given")
+    makers: list[Callable[[], Question]] = [partial(asked, name) for name in QUESTIONS]
+    if scene is not None:
+        if question not in OF_SCENES:
+            raise ValueError(f"QUESTION = {question} is no question about a scene; accepted: {', '.join(OF_SCENES)}")
+        makers = [partial(OF_SCENES[question], scene, seed)]
+    elif question in OF_SCENES and question not in QUESTIONS:
+        raise ValueError(f"{question} needs a table, as in pinball work {question} circle --lam 0.5")
+    elif question is not None:
+        if question not in QUESTIONS:
+            asked(question)  # refuses it in one sentence
+        makers = [partial(asked, question)]
+    known, questions, rows = facts(), list["Question"](), list["MethodResult"]()
+    with output.progress("Measuring", len(makers)) as step:
+        for make in makers:
+            questions.append(make())
+            step(questions[-1].title)
+            rows += measured(questions[-1], runs, digits or (1000 if scene is None else 100))
     output.write(
         {"machine": known, "questions": [described(q) for q in questions], "rows": [r.to_dict() for r in rows]}
     )
@@ -237,33 +295,33 @@ def work_command(question: str | None, out: str | None, runs: int, most_digits: 
         sure = "a certified ball" if each.certified else "a long run with its error bar, not a proof"
         output.console.print(f"\n{each.title}: {each.answers}\nerror {each.unit}, against {sure}")
         output.console.print(plain(own))
-    if not is_checkout():
+    if scene is None and not is_checkout():
         output.console.print(f"\n{MISSING}")
     if path is not None:
         from verification.measure.work.figure import drawn, image
 
         (only,) = questions
-        path.write_bytes(image(drawn(only.title, only.unit, rows, known), path.suffix[1:]))
+        write_whole(path, image(drawn(only.title, only.unit, rows, known), path.suffix[1:]))
         output.console.print(f"{path}: the diagram")
     output.console.print(f"\none core; {footer(known)}")
     return DONE
 
 
 def described(question: "Question") -> dict[str, str | bool]:
-    """What a question is, for the JSON document."""
+    """Name, title, answers, unit and certainty of a question, as JSON."""
     return {name: getattr(question, name) for name in ("name", "title", "answers", "unit", "certified")}
 
 
 def _target(question: str | None, out: str | None) -> Path | None:
-    """The file of the diagram; refused before anything is measured."""
+    """The path of the diagram, or None; refused, before anything is measured, where it cannot be written."""
     if out is None:
         return None
     path = Path(out)
     if question is None:
-        raise ValueError(f"--out {out} needs one QUESTION; a diagram shows one")
+        raise ValueError(f"--plot {out} needs one QUESTION; a diagram shows one")
     if path.suffix not in ENDINGS or not path.parent.is_dir():
         raise ValueError(
-            f"--out = {out} cannot be written; accepted: {', '.join(ENDINGS)} files in a folder that is there"
+            f"--plot = {out} cannot be written; accepted: {', '.join(ENDINGS)} files in a folder that is there"
         )
     return path
 

@@ -7,7 +7,7 @@ import click
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, plot_option
+from verification.app.cli import DONE, FAILED, Output, Whole, json_option, plot_option
 from verification.app.scene import varied_options
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from verification.cycles.branch import Branch
     from verification.named.events import Plane
 
-ALONE = "alone"  # what --curves says without a parameter
+ALONE = "alone"  # the value of --curves without a parameter
 ROWS = 12  # points of a branch shown to people, and all its events
 
 
@@ -31,8 +31,8 @@ ROWS = 12  # points of a branch shown to people, and all its events
 @click.option("--start", metavar="THETA,...", help="Or the bounces of one, roughly.")
 @click.option("--components", metavar="NAME,...", help="Where the bounces of --start lie, on a table of several parts.")
 @click.option("--at", metavar="NUMBER", help="The contraction of the start; LOW, or the named cycle's own.")
-@click.option("--points", type=click.IntRange(2, 100_000), default=400, show_default=True, help="At most, each way.")
-@click.option("--switch", type=click.IntRange(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
+@click.option("--points", type=Whole(2, 100_000), default=400, show_default=True, help="At most, each way.")
+@click.option("--switch", type=Whole(0, 12), default=0, show_default=True, help="Crossroads to turn off at.")
 @click.option(
     "--curves",
     is_flag=False,
@@ -40,7 +40,8 @@ ROWS = 12  # points of a branch shown to people, and all its events
     metavar="[NAME=LOW:HIGH]",
     help="Follow the events on in a second parameter, with lam or the shape; the egg's is alpha if none is named.",
 )
-@click.option("--digits", type=click.IntRange(1, 1000), help="Certify the events to so many digits.")
+@click.option("--all", "whole", is_flag=True, help="Follow every cycle that random starts end on at some value.")
+@click.option("--digits", type=Whole(1, 1000), help="Certify the events to so many digits.")
 @plot_option("dynamics.plotted", "the branches")
 @json_option
 def command(
@@ -54,6 +55,7 @@ def command(
     points: int,
     switch: int,
     curves: str | None,
+    whole: bool,
     digits: int | None,
     output: Output,
 ) -> int:
@@ -61,13 +63,17 @@ def command(
 
     With --shape [NAME=]LOW:HIGH, or NAME=VALUE:LOW..HIGH, and one number for --lam it is the table's shape that
     changes, or a parameter of the law; its number is the start's. Exit status 1 when a branch stops inside the
-    interval; what was found is kept.
+    interval; what was found is kept. With --all no start is given: all families of cycles that attract random starts at
+    some values are followed, and random starts at other values say what was missed, with exit status 1 if anything was.
     """
     from verification.cycles.arc import Steps
     from verification.cycles.branch import at_contraction, branch, named, record, typed
+    from verification.cycles.crossing import continued
     from verification.named.questions import law_over
 
     shape = axis or (ranged(scene) if ":" not in interval else None)
+    if whole:
+        return all_families(scene, shape, interval, digits or 20, output)
     if (cycle is None) == (start is None):
         raise ValueError("one start is needed; accepted: --cycle NAME, or --start THETA,... with two bounces or more")
     parameter, ends = varied(scene, shape) if shape else ("lam", interval)
@@ -97,6 +103,7 @@ def command(
         found = [
             branch(ring, x, parameter, value, (low, high), fixed, steps, lambda p: tick(f"{parameter} = {p.z[-1]:.4f}"))
         ]
+        found[0] = continued(found[0], (low, high), steps, lambda p: tick(f"{parameter} = {p.z[-1]:.4f}"))
         found += turned_off(found[0], (low, high), steps, switch)
     certificates = {}
     if digits:
@@ -119,8 +126,36 @@ def command(
     return told(output.console, found)
 
 
+def all_families(scene: Scene, shape: str | None, interval: str, digits: int, output: Output) -> int:
+    """Follows and prints every family of cycles that attracts random starts, with events and a check; exit status."""
+    from verification.named.bifurcations import bifurcations
+
+    parameter, ends = varied(scene, shape) if shape else ("lam", interval)
+    interval_of(f"--{'shape' if shape else 'lam'}", ends)
+    here = scene.at(lam=contraction(interval)) if shape else scene
+    with output.progress("Following", 100) as tick:
+        given: dict[str, Any] = {parameter: tuple(ends.split(":"))}
+        found = bifurcations(here, tick=tick, **given)
+    checked = found.check()
+    document = {"table": scene.name, **found.document(digits), "check": checked.document()}
+    output.write(document, [family.branch for family in found.families])
+    for number, one in enumerate(document["branches"]):
+        ranges = ", ".join(f"{low:.9g} to {high:.9g}" for low, high in one["attracts"]) or "nowhere"
+        said = f"branch {number}, period {one['period']}, {one['symmetry']}: {one['low']:.9g} to {one['high']:.9g}"
+        output.console.print(f"{said}; attracts {ranges}")
+    for one in document["events"]:
+        value = f"{one['value']} +- {one['radius']}" if one["radius"] else one["value"]
+        born = "" if one["born"] is None else f"; branch {one['born']} is born"
+        output.console.print(f"{one['kind']} of period {one['period']} at {parameter} = {value}{born}")
+    for one in document["ranges"]:
+        (a, b), (c, d) = one["low"], one["high"]
+        output.console.print(f"{one['kind']} from between {a:.6g} and {b:.6g} to between {c:.6g} and {d:.6g}")
+    output.console.print(checked.words)
+    return DONE if not checked.missing else FAILED
+
+
 def interval_of(option: str, text: str) -> tuple[float, float]:
-    """`LOW:HIGH` as two numbers.
+    """The two numbers of the text `LOW:HIGH`.
 
     >>> interval_of("--lam", "0.25:1/2")
     (0.25, 0.5)
@@ -137,12 +172,12 @@ def interval_of(option: str, text: str) -> tuple[float, float]:
 
 
 def own_numbers(scene: Scene) -> dict[str, Any]:
-    """The numbers of the law's own parameters."""
+    """The exact values of the law's own parameters, by name."""
     return {name: exact(name, text) for name, text in scene.law.numbers}
 
 
 def ranged(scene: Scene) -> str | None:
-    """The parameter that has a range, as --shape would vary it; None where none has one."""
+    """The parameter that has a range, as `NAME=LOW:HIGH`; None where none has one, an error where several have."""
     found = [f"{name}={low}:{high}" for name, (low, high) in scene.ranges.items()]
     if len(found) > 1:
         raise ValueError(
@@ -152,7 +187,7 @@ def ranged(scene: Scene) -> str | None:
 
 
 def varied(scene: Scene, shape: str) -> tuple[str, str]:
-    """What `LOW:HIGH` varies, the table's shape, or `NAME=LOW:HIGH`, that or a parameter of the law's own; the ends."""
+    """The name of the parameter of the table or the law that --shape varies, and its interval as text."""
     name, given, ends = shape.rpartition("=")
     known = [*scene.shape, *dict(scene.law.numbers)]
     if not known:
@@ -168,7 +203,7 @@ def varied(scene: Scene, shape: str) -> tuple[str, str]:
 
 
 def over(scene: Scene, parameter: str, ends: str) -> "Table":
-    """The table with its shape left free; refused with a value at which it is none."""
+    """The table with `parameter` free over the interval `ends`; an error names a value at which there is no table."""
     try:
         return scene.over(parameter, *ends.split(":"))
     except ValueError as why:
@@ -176,7 +211,7 @@ def over(scene: Scene, parameter: str, ends: str) -> "Table":
 
 
 def contraction(text: str) -> "Fraction | Expr":
-    """The one contraction at which the shape varies."""
+    """The one contraction of `--lam`, at which the shape varies."""
     lam = exact("--lam", text) if ":" not in text else -1
     if not 0 <= lam <= 1:
         raise ValueError(f"--lam {text} with --shape is no contraction; accepted: one number between 0 and 1")
@@ -184,26 +219,28 @@ def contraction(text: str) -> "Fraction | Expr":
 
 
 def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth: int) -> list["Branch"]:
-    """The branches that leave at events, and at theirs, `depth` deep."""
+    """The branches that leave `first` at its events, and those that leave them, up to this depth."""
     from verification.cycles.arc import LostError
     from verification.cycles.switching import switched
 
     found, newest = [], [first]
     for _ in range(depth):
         following = []
-        for one in newest:
-            for event in one.along:
+        for whole, piece in ((branch, piece) for branch in newest for piece in branch.each):
+            passed = {each.system.recurrence for each in whole.pieces}
+            for event in piece.along:
                 try:
-                    following += switched(one, event, interval, steps)
+                    others = switched(piece, event, interval, steps)
                 except LostError:
                     continue
+                following += [b for b in others if not (event.collision and b.system.recurrence in passed)]
         found += following
         newest = following
     return found
 
 
 def certificate(event: Any, digits: int, parameter: str, lam: Any) -> dict[str, Any] | None:
-    """Value, radius and checklist of an event, or None where there is no certificate."""
+    """Value, radius and checklist of an event's proof as JSON, or None where it has no certificate."""
     from verification.arithmetic.balls import decimal
     from verification.named.events import proof_of
 
@@ -214,11 +251,11 @@ def certificate(event: Any, digits: int, parameter: str, lam: Any) -> dict[str, 
     if proof is None:
         return None
     value, radius = decimal(proof.value, digits + 1)
-    return {"value": value, "radius": radius, "certified": proof.certified, "checks": proof.checks}
+    return {"value": value, "radius": radius, "certified": proof.proved, "checks": proof.checks}
 
 
 def noted(event: Any, parameter: str, proof: dict[str, Any] | None) -> dict[str, Any]:
-    """An event for JSON."""
+    """An event of a branch as JSON."""
     form = event.form
     return {
         "event": event.kind.value,
@@ -229,11 +266,12 @@ def noted(event: Any, parameter: str, proof: dict[str, Any] | None) -> dict[str,
         "branch_coefficient": form.branch if form else None,
         "supercritical": form.supercritical if form else None,
         "certificate": proof,
+        **({"collision": event.collision.value} if event.collision else {}),
     }
 
 
 def plane_of(scene: Scene, curves: str, parameter: str, ends: str) -> "Plane":
-    """The plane of the branch's parameter and of the one that --curves names; the contraction is one of the two."""
+    """The plane of the parameter that the branch varies and the one that --curves names; one of the two is `lam`."""
     from verification.named.events import Plane
 
     known = [*scene.shape, *dict(scene.law.numbers)]
@@ -257,7 +295,7 @@ def plane_of(scene: Scene, curves: str, parameter: str, ends: str) -> "Plane":
 
 
 def curves_of(branches: list["Branch"], plane: "Plane", scene: Scene, lam: Any, output: Output) -> list[dict[str, Any]]:
-    """The curves that the events draw in a plane, each with its points of codimension two."""
+    """The curves that events trace in a plane of two parameters, as JSON, each with its points of codimension two."""
     from verification.named.events import curve_of
 
     events = [(one.system.recurrence.period, event) for one in branches for event in one.events]
@@ -278,7 +316,7 @@ def curves_of(branches: list["Branch"], plane: "Plane", scene: Scene, lam: Any, 
 
 
 def show_curve(console: "Console", row: dict[str, Any]) -> None:
-    """Where a curve runs from and to, and its special points."""
+    """Prints where a curve starts and ends, and its special points."""
     key = next(key for key in row if key.endswith("_lam"))
     name, points = key.removesuffix("_lam"), row[key]
     first, last = points[0], points[-1]
@@ -291,7 +329,7 @@ def show_curve(console: "Console", row: dict[str, Any]) -> None:
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:
-    """The events of a branch, then some of its points."""
+    """Prints the events of a branch, then some of its points."""
     points, parameter = document["points"], document["parameter"]
     stride = max(1, len(points) // ROWS)
     console.print(f"{document['cycle']}: {len(points)} points")
@@ -304,22 +342,23 @@ def show(console: "Console", document: dict[str, Any]) -> None:
         )
         side = {True: ", supercritical", False: ", subcritical", None: ""}[event["supercritical"]]
         turns = ": here the branch turns, born of a cycle that repeats itself" if event["birth"] else ""
+        turns = f", {event['collision']}" if "collision" in event else turns
         console.print(f"  {event['event']} at {parameter} = {said}{side}{turns}")
-    console.print(f"  {parameter:<14}  multipliers                            stable  event")
+    console.print(f"  {parameter:<14}  multipliers                            stability   event")
     for i, point in enumerate(points):
         if i % stride and not point["event"] and i != len(points) - 1:
             continue
         shown = "  ".join(f"{m['real']:+.6f}{m['imaginary']:+.6f}i" for m in point["multipliers"])
-        console.print(f"  {point[parameter]:<14.9f}  {shown:<38} {said_stable(point):7} {point['event'] or ''}")
+        console.print(f"  {point[parameter]:<14.9f}  {shown:<38} {said_stable(point):11} {point['event'] or ''}")
 
 
 def said_stable(point: dict[str, Any]) -> str:
-    """Whether a point of a branch is stable; at an event it is on the edge."""
-    return "-" if point["event"] else "yes" if point["stable"] else "no"
+    """The stability of a point of a branch in words; `-` at an event, where it changes."""
+    return "-" if point["event"] else str(point["stability"])
 
 
 def told(console: "Console", branches: list["Branch"]) -> int:
-    """Says where and why branches stopped inside the interval; the exit status."""
+    """Prints where and why branches stopped inside the interval, and returns the exit status."""
     from verification.cycles.arc import End
 
     status = DONE

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import exact, like
+from numeric.lowering.files import write_whole
+from symbolic.tables.definition import exact, like, words_of
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, plot_option, write_whole
+from verification.app.cli import DIGITS, DONE, FAILED, Output, Whole, json_option, plot_option
 from verification.app.scene import optional_options
 
 if TYPE_CHECKING:
@@ -25,11 +26,11 @@ if TYPE_CHECKING:
 
 
 PARAMETERS = ("lam", "alpha", "n", "period")
-TANGENCY = "tangency"  # asked of a scene
+TANGENCY = "tangency"  # only with a table
 
 
 def _names(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The names that complete what is typed in a shell."""
+    """The names of values that begin with `begun`, for completion in a shell."""
     from verification.named.locate import NAMES
 
     return [name for name in (*NAMES, TANGENCY) if name.startswith(begun)]
@@ -38,11 +39,16 @@ def _names(context: click.Context, parameter: click.Parameter, begun: str) -> li
 @click.command(epilog="Example: pinball locate saddle-node --alpha 0.08 --digits 50")
 @click.argument("name", shell_complete=_names)
 @optional_options
-@click.option("--digits", type=click.IntRange(1, 20_000), default=30, show_default=True, help="Decimal digits.")
+@click.option("--digits", type=Whole(1, 20_000), default=30, show_default=True, help="Decimal digits.")
 @click.option("--lam", metavar="NUMBER", help="The contraction, for alpha-tilde and alpha-hat; LOW:HIGH for a table.")
 @click.option("--n", metavar="INTEGER", help="Which doubling, of period 2^(n-1) to 2^n, or which interior crisis.")
 @click.option("--period", metavar="INTEGER", help="Of a table's cycles; of the attractors that a window began with.")
-@click.option("--searches", type=click.IntRange(1, 100), default=3, show_default=True, help="For a table's cycles.")
+@click.option(
+    "--searches",
+    type=Whole(1, 100),
+    metavar="INTEGER",
+    help="At how many values a table's cycles are looked for; 12, or 3 for tangencies, which take longer.",
+)
 @click.option("--certificate", metavar="FILE", help="Write the certificate, for `pinball check`.")
 @plot_option("dynamics.situated", "the cycle in the table, and the branch near the value")
 @json_option
@@ -54,7 +60,7 @@ def command(
     digits: int,
     n: str | None,
     period: str | None,
-    searches: int,
+    searches: int | None,
     certificate: str | None,
     output: Output,
 ) -> int:
@@ -81,9 +87,9 @@ def command(
             raise ValueError("a table's cycles have a --period and no --n; accepted: --period with an integer from 2")
         return of_scene(scene, axis, name, bare["lam"], period, digits, searches, certificate, output)
     if bare["K"] is not None:
-        raise ValueError(f"--K {bare['K']} says something of a table; accepted: egg --K {bare['K']}, with --period")
+        raise ValueError(f"--K {bare['K']} is for a table; accepted: egg --K {bare['K']}, with --period")
     if name == TANGENCY:
-        raise ValueError("locate tangency is asked of a table; accepted: egg --alpha 2/25 --lam 0.6:0.7 --period 3")
+        raise ValueError("locate tangency needs a table; accepted: egg --alpha 2/25 --lam 0.6:0.7 --period 3")
     options = bare["lam"], bare["alpha"], n, period
     given = {parameter: text for parameter, text in zip(PARAMETERS, options, strict=True) if text is not None}
     shape = {parameter: number(text, f"--{parameter}") for parameter, text in given.items()}
@@ -109,23 +115,25 @@ def of_scene(
     lam: str | None,
     period: str,
     digits: int,
-    searches: int,
+    searches: int | None,
     certificate: str | None,
     output: Output,
 ) -> int:
-    """The bifurcations of the cycles of a table."""
+    """Locates and prints the bifurcations of a table's cycles, or its tangencies; returns the exit status."""
+    from verification.named.bifurcations import FEW_SEARCHES, KINDS, SEARCHES, bifurcations
     from verification.named.locate import NAMES
-    from verification.named.questions import KINDS, bifurcations
 
     asked_of = *KINDS, TANGENCY
     if name not in asked_of:
         why = f"{name} knows its own table of the paper" if name in NAMES else f"no value is called {name}"
         raise ValueError(f"locate: {why}; accepted with {scene.name}: {', '.join(asked_of)}{like(name, asked_of)}")
-    if not period.isascii() or not period.isdigit() or int(period) < 2:
+    if not (period.isascii() and period.isdigit() and len(period) <= DIGITS and int(period) >= 2):
         raise ValueError(f"--period {period} is no period; accepted: integers from 2")
     scene, parameter, ends = interval_of(scene, axis, lam)
-    asked: dict[str, Any] = {"period": int(period), "digits": digits, "searches": searches, parameter: ends}
-    with output.progress(f"Locating {name}", searches) as step:
+    count = searches or (FEW_SEARCHES if name == TANGENCY else SEARCHES)
+    asked: dict[str, Any] = {"period": int(period), "digits": digits, parameter: ends}
+    asked["searches"] = count if name == TANGENCY else searches
+    with output.progress(f"Locating {name}", count) as step:
         if name != TANGENCY:
             found = bifurcations(scene, name, tick=step, **asked)
         else:
@@ -141,12 +149,13 @@ def of_scene(
     for one in found:
         show(output, one)
     if not found:
-        output.console.print(f"no {name} of period {period} found for {parameter} from {ends[0]} to {ends[1]}")
+        said = f"no {name} of period {period} found for {parameter} from {ends[0]} to {ends[1]}"
+        output.console.print(f"{said} from cycles at {count} values; --searches {3 * count} looks at more")
     return DONE if found and all(one.certified for one in found) else FAILED
 
 
 def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[Located, ...]":
-    """The tangencies of manifolds as the contraction varies."""
+    """The tangencies of a table's manifolds as the contraction varies; `ValueError` where another parameter varies."""
     if parameter != "lam":
         raise ValueError(f"locate tangency: {parameter} varies; accepted: --lam LOW:HIGH")
     from verification.named.tangencies import tangencies
@@ -155,7 +164,7 @@ def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[L
 
 
 def interval_of(scene: Scene, axis: str | None, lam: str | None) -> tuple[Scene, str, tuple[str, str]]:
-    """The scene at its fixed contraction, what varies, and from where to where."""
+    """The scene at its fixed contraction, the parameter that varies, and the two ends."""
     if lam is None:
         raise ValueError("--lam is missing; accepted: LOW:HIGH, or one number and --shape NAME=LOW:HIGH")
     ends = (axis or "").rpartition("=")[2] or lam
@@ -182,13 +191,13 @@ HAPPENS = {"flip": "period {n} doubles", "fold": "period {n} folds", "tangency":
 
 
 def marked(path: str, scene: Scene, parameter: str) -> "Marked":
-    """The value of a certificate of this scene, checked anew, and what happens there."""
+    """The value that a certificate proves for this scene, checked anew, and what happens there in words."""
     from symbolic.tables.definition import table_boundary
-    from verification.named.files import checked, read
-    from verification.named.scene_entries import SCHEMA
+    from verification.named.theorems import checked
     from verification.plots.results import Marked
+    from verification.rigorous.certificate import SCHEMA, read_document
 
-    given = read(Path(path))
+    given = read_document(Path(path))
     boundary, held = table_boundary(replace(scene.table, fit=None))
     shape = {name: str(value) for name, value in held.items()} | dict(scene.law.numbers)
     own = {key: value for key, value in boundary.items() if key != "name"}
@@ -202,16 +211,16 @@ def marked(path: str, scene: Scene, parameter: str) -> "Marked":
     if said != own:
         raise ValueError(f"--mark {path} is about another scene: {given.get('statement')}")
     proof = checked(given)
-    if not proof.certified:
+    if not proof.proved:
         raise ValueError(f"--mark {path} does not prove what it says; pinball check {path} shows the checklist")
     n = len(given.get("components", ()))
     words = f"period {2 * n} loses its symmetry" if given.get("mirror") and given["kind"] == "flip" else None
     words = words or HAPPENS.get(given["kind"], str(given["name"])).format(n=n)
-    return Marked(float(proof.value.mid()), words)
+    return Marked(float(proof.result["value"]), words)
 
 
 def show(output: Output, found: "Located") -> None:
-    """The value, the checklist and the notes, for people."""
+    """Prints the value, the checklist and the notes."""
     from verification.named.locate import GMPY2, WORDS
 
     said = "certified" if found.certified else "not certified"
@@ -227,23 +236,18 @@ def show(output: Output, found: "Located") -> None:
 
 
 def writable(path: str) -> None:
-    """Refuses, before any work, a file that could not be written."""
+    """Raises `ValueError`, before any work, where the certificate's file could not be written."""
     where = Path(path)
     if where.is_dir() or not where.parent.is_dir() or not os.access(where if where.exists() else where.parent, os.W_OK):
         raise ValueError(f"--certificate {path!r} cannot be written; accepted: a file in a directory of yours")
 
 
 def _write(path: str, found: "Located") -> None:
-    from verification.named.files import document
-
     if found.proof is None:
         raise ValueError(
             f"--certificate: {found.name} was not proved here; accepted: names and shapes that are certified"
         )
-    write_whole(Path(path), json.dumps(document(found.proof), indent=1) + "\n")
-
-
-BOXES = "trapping region", "boundary crisis", "no two attractors"  # kinds of certificates that name no cycle
+    write_whole(Path(path), json.dumps(found.proof.document(), indent=1) + "\n")
 
 
 @click.command(epilog="Example: pinball locate lambda-c --certificate lambda_c.json && pinball check lambda_c.json")
@@ -255,14 +259,13 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
     The whole checklist is worked through anew; what the file says of itself is not believed. With several files the
     JSON has a list of them, under `files`.
     """
-    from verification.named.files import read
+    from verification.rigorous.certificate import read_document
 
     documents = []
     for file in files:
-        given = read(Path(file))
-        boxes = given.get("kind") in BOXES
+        given = read_document(Path(file))
         try:
-            document, lines = (_boxes_checked if boxes else _proof_checked)(given)
+            document, lines = _checked(given)
         except ValueError as why:
             raise ValueError(f"{file}: {why}" if len(files) > 1 else str(why)) from None
         documents.append(document)
@@ -276,56 +279,23 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
     return DONE if all(document["certified"] for document in documents) else FAILED
 
 
-Checked = tuple[dict[str, Any], list[str]]
-
-
-def _proof_checked(given: Mapping[str, Any]) -> Checked:
-    """The value that a certificate proves, and its checklist: for JSON, and in lines."""
-    from verification.arithmetic.balls import decimal
-    from verification.named.files import checked
+def _checked(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """The verdict on a certificate's theorem, whose hypotheses are proved anew: as JSON and as lines of text."""
     from verification.named.locate import WORDS
+    from verification.named.theorems import checked
 
     started = time.perf_counter()
     proof = checked(given)
-    seconds = time.perf_counter() - started
-    name = str(given["name"])  # held to be what the equations say
-    value, radius = decimal(proof.value, proof.claim.digits + 1)
-    document: dict[str, Any] = {
-        "name": name,
-        "value": value,
-        "radius": radius,
-        "digits": proof.claim.digits,
-        "certified": proof.certified,
-        "checks": proof.checks,
-        "seconds": seconds,
-    }
-    said = "certified" if proof.certified else "not certified"
-    lines = [f"{name} = {value} +- {radius}  ({said}, {seconds:.2f} s)", *_checklist(proof.checks)]
-    if given["kind"] == "tangency":
-        from verification.proofs.manifolds.claim import TangencyProof  # NumPy, which no other certificate needs
-
-        if isinstance(proof, TangencyProof):
-            document["strange_attractors"] = follow = proof.strange
-            lines.append(f"  {'strange attractors follow':28} {WORDS[all(follow.values()) or None]}")
+    certified, checks, seconds = proof.proved, proof.checks, time.perf_counter() - started
+    result, follows = proof.result, proof.follows
+    document = {"name": proof.name, **result, "certified": certified, "checks": checks, "seconds": seconds}
+    value = f" = {result['value']} +- {result['radius']}" if result else ""
+    lines = [f"{proof.name}{value}  ({'' if certified else 'not '}certified, {seconds:.2f} s)"]
+    lines += [f"  {item.replace('_', ' '):28} {WORDS[outcome]}" for item, outcome in checks.items()]
+    scene = given["scene"]
+    if result and "lam" in scene and "law" in scene and "lam" not in words_of([scene["law"]]):
+        lines.append("  the law does not depend on lam, so the contraction above has no effect")
+    for name, theorem in follows.items():
+        document[name] = theorem.checks
+        lines.append(f"  {name.replace('_', ' ') + ' follow':28} {WORDS[theorem.proved or None]}")
     return document, lines
-
-
-def _checklist(checks: Mapping[str, bool | None]) -> list[str]:
-    from verification.named.locate import WORDS
-
-    return [f"  {item.replace('_', ' '):28} {WORDS[outcome]}" for item, outcome in checks.items()]
-
-
-def _boxes_checked(given: Mapping[str, Any]) -> Checked:
-    """What has no value to show: boxes of a trapping region are mapped anew, those of other statements grow again."""
-    from verification.proofs.global_dynamics.crisis import BoundaryCrisis
-    from verification.proofs.global_dynamics.regions import Region, checked
-    from verification.proofs.unstable_curves.certificate import Certificate
-
-    started = time.perf_counter()
-    kinds: tuple[type[Region | BoundaryCrisis | Certificate], ...] = Region, BoundaryCrisis, Certificate
-    name, checks = checked(given, kinds[BOXES.index(given["kind"])].from_dict)
-    seconds, certified = time.perf_counter() - started, all(checks.values())
-    said = "certified" if certified else "not certified"
-    document = {"name": name, "certified": certified, "checks": checks, "seconds": seconds}
-    return document, [f"{name}  ({said}, {seconds:.2f} s)", *_checklist(checks)]

@@ -1,15 +1,16 @@
 """Where particles end: the attractors, and their exponents with error bars.
 
-`pinball attractor` finds them and says what each is like; `pinball lyapunov` measures two exponents for each.
+`pinball attractor` finds and describes them; `pinball lyapunov` measures two exponents for each.
 """
 
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, INTERRUPTED, Output, json_option, plot_option
-from verification.app.lines import table, widest
+from verification.app.cli import DONE, FAILED, INTERRUPTED, Output, Whole, json_option, plot_option
+from verification.app.lines import FAR, table, widest
 from verification.app.scene import scene_options
 
 if TYPE_CHECKING:
@@ -22,13 +23,11 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Example: pinball attractor egg --alpha 0.08 --lam 0.43 --orbits 2000 --seed 1")
 @scene_options
-@click.option(
-    "--orbits", type=click.IntRange(1, 10_000_000), default=100, show_default=True, help="How many random starts."
-)
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
-@click.option("--transient", type=click.IntRange(10, 10**8), default=1000, show_default=True, help="Bounces first.")
-@click.option("--bounces", type=click.IntRange(100, 10**8), default=4000, show_default=True, help="For exponents.")
-@click.option("--points", type=click.IntRange(0, 8192), default=256, show_default=True, help="Listed of each, in JSON.")
+@click.option("--orbits", type=Whole(1, 10_000_000), default=100, show_default=True, help="How many random starts.")
+@click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of the random starts.")
+@click.option("--transient", type=Whole(10, 10**8), default=1000, show_default=True, help="Bounces first.")
+@click.option("--bounces", type=Whole(100, 10**8), default=4000, show_default=True, help="For exponents.")
+@click.option("--points", type=Whole(0, 8192), default=256, show_default=True, help="Listed of each, in JSON.")
 @click.option("--certify", is_flag=True, help="Prove that each cycle exists and attracts.")
 @plot_option("results.attractors", "the attractors in the table and in phase space")
 @json_option
@@ -40,11 +39,14 @@ def attractor_command(
     Starts are uniform inside the table with uniform directions; the first collision is elastic.
     """
     from numeric import PinballMap
-    from numeric.dynamics.attractors import find
+    from numeric.dynamics.attractors import Kind, find
 
     map = PinballMap(scene)
     found = find(map, orbits, seed, transient, bounces, images=True)
+    doubts = [a.doubt for a in found if a.doubt]
     document: dict[str, Any] = {
+        "count": None if doubts else sum(a.kind is not Kind.STOPPED for a in found),
+        "undecided": "; ".join(dict.fromkeys(doubts)) or None,
         "orbits": orbits,
         "seed": seed,
         "transient": transient,
@@ -65,7 +67,7 @@ def attractor_command(
 
 
 def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, Any]:
-    """An attractor as JSON has it."""
+    """An attractor as JSON, with up to `points` of its points."""
     import numpy as np
 
     from numeric.dynamics.recognition import Kind
@@ -73,7 +75,7 @@ def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, 
     spread = attractor.kind is Kind.CHAOTIC
     x, y = map.states.point(attractor.points.component, attractor.points.theta)
     names = [part.name for part in map.ir.parts]
-    rows = zip(*attractor.points, x, y, strict=True)
+    rows = list(zip(*attractor.points, x, y, strict=True))
     share = attractor.share
     assert share is not None
     numbers = {
@@ -83,8 +85,14 @@ def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, 
         "nu_minus_stderr": attractor.errors[1],
         "stay_at_least": attractor.stay if spread else None,
     }
+    entries = [
+        {"component": names[i], "theta": float(a), "phi": float(b), "x": float(p), "y": float(q)}
+        for i, a, b, p, q in rows[: max(points, 1)]
+    ]
     return {
         "kind": attractor.kind.name.lower(),
+        "undecided": attractor.doubt or None,
+        "at": entries[0],
         "status": attractor.status.name.lower(),
         "period": attractor.period,
         "family": attractor.family,
@@ -95,15 +103,12 @@ def listed(map: "PinballMap", attractor: "Attractor", points: int) -> dict[str, 
         "share_high": share.high,
         **{key: value if value is not None and np.isfinite(value) else None for key, value in numbers.items()},
         "multipliers": [{"re": mu.real, "im": mu.imag} for mu in attractor.multipliers or ()],
-        "points": [
-            {"component": names[i], "theta": float(a), "phi": float(b), "x": float(p), "y": float(q)}
-            for (i, a, b, p, q), _ in zip(rows, range(points), strict=False)
-        ],
+        "points": entries[:points],
     }
 
 
 def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
-    """The checklist of a cycle's proof; empty for what is no cycle."""
+    """The checklist of a cycle's proof; empty for other attractors."""
     from numeric.dynamics.recognition import Kind
     from verification.named.attractors import certificate
 
@@ -115,32 +120,61 @@ def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
 
 
 def show_attractor(console: "Console", document: dict[str, Any]) -> None:
-    """A line for each attractor; where that is too wide, with fewer digits, and what is proved below."""
-    names = "family", "symmetry", "attractor", "share (95%)", "nu_plus", "nu_minus"
+    """Prints a line for each attractor; where that is too wide, with fewer digits and the proofs below."""
+    names = "row", "symmetry", "attractor", "at x, y, phi", "starts", "share (95%)", "nu_plus", "nu_minus"
     found = document["attractors"]
     proofs = [said(a.get("checks")) for a in found]
-    lines = table((*names, ""), [(*_row(a, 4, 5), word) for a, word in zip(found, proofs, strict=True)])
+    rows = [_row(a, number, found, 5) for number, a in enumerate(found, 1)]
+    lines = table((*names, ""), [(*row, word) for row, word in zip(rows, proofs, strict=True)])
     if widest(lines) > console.width:
-        lines = table(names, [_row(a, 3, 4) for a in found])
+        lines = table(names, [_row(a, number, found, 4) for number, a in enumerate(found, 1)])
         for word in dict.fromkeys(filter(None, proofs)):
-            families = dict.fromkeys(str(a["family"]) for a, proof in zip(found, proofs, strict=True) if proof == word)
-            lines.append(f"{word}: family {', '.join(families)}")
+            numbers = (str(number) for number, proof in enumerate(proofs, 1) if proof == word)
+            lines.append(f"{word}: row {', '.join(numbers)}")
     for line in lines:
         console.print(line)
+    if document["count"] is not None and document["count"] > 1:
+        console.print(f"{document['count']} attractors")
+    show_doubts(console, [(number, a["undecided"]) for number, a in enumerate(found, 1) if a["undecided"]])
     console.print(f"{document['orbits']} starts, seed {document['seed']}; {document['unsettled']} did not settle")
 
 
-def _row(a: dict[str, Any], places: int, digits: int) -> tuple[str, ...]:
-    """An attractor in words: its share to so many places, its exponents to so many digits after the point."""
+def show_doubts(console: "Console", doubts: list[tuple[int, str]]) -> None:
+    """Prints which rows may each be several attractors, or part of one, and why: a line for each reason."""
+    for reason in dict.fromkeys(reason for _, reason in doubts):
+        rows = [str(row) for row, word in doubts if word == reason]
+        many = f"row {rows[0]} is" if len(rows) == 1 else f"rows {', '.join(rows)} are"
+        console.print(f"undecided whether {many} one attractor or several: {reason}")
+
+
+def _row(a: dict[str, Any], number: int, found: list[dict[str, Any]], digits: int) -> tuple[str, ...]:
+    """The cells of an attractor's row in the table; exponents have `digits` decimals."""
     kind = {"cycle": f"period {a['period']}", "chaotic": "chaotic", "stopped": f"stopped: {a['status']}"}
     name = kind.get(a["kind"], f"neutral, period {a['period']}" if a["period"] else "neutral")
-    share = f"{a['share']:.{places}f} ({a['share_low']:.{places}f}, {a['share_high']:.{places}f})"
+    first = next(k for k, other in enumerate(found, 1) if other["family"] == a["family"])
+    name += ", undecided" if a["undecided"] else "" if first == number else f", image of {first}"
+    of = round(a["starts"] / a["share"]) if a["share"] else 0
+    starts = f"{a['starts']} of {of}" if of else "0"
     exponents = (_number(a[nu], a[f"{nu}_stderr"], digits) for nu in ("nu_plus", "nu_minus"))
-    return str(a["family"]), str(a["symmetry"]), name, share, *exponents
+    return str(number), str(a["symmetry"]), name, place(a), starts, share_in_words(a), *exponents
+
+
+def share_in_words(a: dict[str, Any]) -> str:
+    """The 95 per cent interval of a share, estimated from counts, in words; a bound for 0 or 1.
+
+    >>> share_in_words({"share": 1.0, "share_low": 0.98116, "share_high": 1.0})
+    'at least 98.1 %'
+    >>> share_in_words({"share": 0.5, "share_low": 0.43137, "share_high": 0.56863})
+    '43.1 to 56.9 %'
+    """
+    low, high = floor(1000 * a["share_low"]) / 10, ceil(1000 * a["share_high"]) / 10
+    if a["share"] == 1:
+        return f"at least {low} %"
+    return f"{low} to {high} %" if a["share"] else f"at most {high} %"
 
 
 def said(checks: dict[str, bool | None] | None) -> str:
-    """`proved`, or what is not; nothing where no proof was asked for."""
+    """`proved`, or the names of the checks that are not proved; empty without a proof."""
     if not checks:
         return ""
     missing = [name for name, value in checks.items() if value is not True]
@@ -150,34 +184,31 @@ def said(checks: dict[str, bool | None] | None) -> str:
 def _number(value: float | None, error: float | None, digits: int) -> str:
     if value is None:
         return "-"
-    return f"{value:.{digits}f}" + (f"({error:.0e})" if error else "")
+    places = max(digits, min(ceil(-log10(error)), PLACES)) if error else digits
+    return f"{value:.{places}f}" + (f"({error:.0e})" if error else "")
 
 
+PLACES = 10  # decimals of an exponent, at most
 LAWS = {
     "interior": "points uniform in the table, directions uniform, first collision elastic",
     "phase": "uniform in arc length and in sin(phi)",
 }
 SIZE = 1_000_000_000
-LONG = 10_000  # bounces of a transient, unless it is given
+LONG = 10_000  # bounces of a transient, at most, unless --transient is given
 
 
 @click.command(epilog="Example: pinball lyapunov cuspless --lam 0.8 --bounces 10000 --orbits 100 --seed 1")
 @scene_options
-@click.option(
-    "--bounces", type=click.IntRange(10, SIZE), default=10_000, show_default=True, help="Bounces that count, each."
-)
-@click.option(
-    "--orbits", type=click.IntRange(2, 10_000_000), default=100, show_default=True, help="How many random starts."
-)
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
-@click.option("--transient", type=click.IntRange(0, SIZE), help="Bounces before; if left out --bounces, at most 10000.")
+@click.option("--bounces", type=Whole(10, SIZE), default=10_000, show_default=True, help="Bounces that count, each.")
+@click.option("--orbits", type=Whole(2, 10_000_000), default=100, show_default=True, help="How many random starts.")
+@click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of the random starts.")
+@click.option("--transient", type=Whole(0, SIZE), help="Bounces before; if left out --bounces, at most 10000.")
 @click.option(
     "--start-law", type=click.Choice(list(LAWS)), default="interior", show_default=True, help="Of the starts."
 )
 @click.option("--until-error", type=float, help="Go on, twice as long each time, until every error is at most this.")
-@click.option(
-    "--budget", type=click.IntRange(1), default=SIZE, show_default=True, help="Bounces of all particles, then."
-)
+@click.option("--budget", type=Whole(1), default=SIZE, show_default=True, help="Bounces of all particles, then.")
+@click.option("--per-time", is_flag=True, help="Also the mean flight, and exponents per unit of time at speed 1.")
 @click.option("--certified", is_flag=True, help="Also the proved ones: of cycles; of the cardioid's chaos at --lam 0.")
 @plot_option("results.exponents", "the exponents with their errors")
 @json_option
@@ -190,6 +221,7 @@ def command(
     start_law: str,
     until_error: float | None,
     budget: int,
+    per_time: bool,
     certified: bool,
     output: Output,
 ) -> int:
@@ -203,7 +235,7 @@ def command(
         raise ValueError(f"--until-error = {until_error} is no error; give a positive number such as 1e-4")
     from numeric import PinballMap
     from numeric.dynamics.account import account
-    from numeric.dynamics.exponents import surveyed
+    from numeric.dynamics.exponents import surveyed, with_families
     from numeric.pinball import sampling
 
     map = PinballMap(scene)
@@ -220,12 +252,12 @@ def command(
         transient = min(bounces, LONG) if transient is None else transient
         survey = surveyed(map, starts, bounces, transient, until_error, budget, say)
     survey = with_families(map, survey)
-    document = {**account(map, survey), "bounces": bounces, "seed": seed, "start_law": start_law}
+    document = {**account(map, survey, per_time), "bounces": bounces, "seed": seed, "start_law": start_law}
     if until_error is not None:
         document |= {"until_error": until_error, "reached": survey.ended == "error"}
     if certified:
         with output.progress("Proving", 1) as step:
-            certify(scene, survey, document)
+            add_proofs(scene, survey, document)
             step("")
     output.write(document, document)
     show(output.console, document)
@@ -238,22 +270,8 @@ def command(
     )
 
 
-def with_families(map: "PinballMap", survey: "Survey") -> "Survey":
-    """The survey with attractors that are symmetry images of each other numbered alike."""
-    from dataclasses import replace
-
-    found = [group.attractor for group in survey.groups if group.attractor is not None]
-    if len(found) < 2:
-        return survey
-    from numeric.dynamics.attractors import with_images
-
-    joined = iter(with_images(map, found))
-    groups = [one if one.attractor is None else one._replace(attractor=next(joined)) for one in survey.groups]
-    return replace(survey, groups=tuple(groups))
-
-
-def certify(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
-    """Adds the proved exponents of each cycle to its group, null where the proof failed; and those of chaos."""
+def add_proofs(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
+    """Adds proved exponents to each group of `document`: of a cycle (null where the proof failed) or proved chaos."""
     from sympy import S
 
     from verification.named.attractors import certified_exponents, chaotic_exponents
@@ -270,9 +288,10 @@ def certify(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:
-    """The result of the one attractor, or of each, and where the error bars come from."""
+    """Prints the exponents of the one attractor or of each, and where the error bars come from."""
     if document["nu_plus"] is None:
-        console.print(f"{document['attractors']} attractors: nothing is averaged across them")
+        many = "undecided how many" if document["undecided"] else document["attractors"]
+        console.print(f"{many} attractors: nothing is averaged across them")
     else:
         console.print(f"nu_plus  = {_measured(document, 'nu_plus')}")
         console.print(f"nu_minus = {_measured(document, 'nu_minus')}")
@@ -280,10 +299,16 @@ def show(console: "Console", document: dict[str, Any]) -> None:
     law = LAWS[document["start_law"]]
     console.print(f"over {document['orbits']} orbits of {document['counted']} bounces, per bounce; starts: {law}")
     for group in document["groups"]:
-        console.print(f"{group['orbits']:>8} orbits: {group['kind']}")
+        alike = sum(other["kind"] == group["kind"] for other in document["groups"]) > 1
+        console.print(f"{group['orbits']:>8} orbits: {group['kind']}{f', at {place(group)}' if alike else ''}")
+        if group.get("undecided"):
+            console.print(f"{'':>17} undecided whether it is one attractor or several: {group['undecided']}")
         if group["nu_plus"] is not None:
             both = (f"{name} = {_measured(group, name)}" for name in ("nu_plus", "nu_minus"))
             console.print(f"{'':>17} {', '.join(both)}")
+        if group.get("mean_flight"):
+            both = (f"{name} = {_measured(group, f'{name}_per_time')}" for name in ("nu_plus", "nu_minus"))
+            console.print(f"{'':>17} mean flight {_measured(group, 'mean_flight')}; per unit of time {', '.join(both)}")
         if group.get("naive_stderr"):
             ratio = group["nu_plus_stderr"] / group["naive_stderr"]
             console.print(
@@ -292,6 +317,11 @@ def show(console: "Console", document: dict[str, Any]) -> None:
             )
         if group.get("trusted") is False:
             console.print(f"{'':>17} too short for its memory: the error bar is rough")
+        if group.get("skewed"):
+            console.print(
+                f"{'':>17} rare stretches make the error (skewness {group['skewness']:.2g}): 95 per cent interval of "
+                f"nu_plus {group['interval_95'][0]:.6g} to {group['interval_95'][1]:.6g}"
+            )
         if group.get("along_orbits"):
             console.print(
                 f"{'':>17} from its multipliers; along the orbits nu_plus = {group['along_orbits']['nu_plus']:.6g}"
@@ -310,6 +340,19 @@ def show(console: "Console", document: dict[str, Any]) -> None:
         console.print(
             f"the error {document['until_error']:g} was not reached within the budget; give a larger --budget"
         )
+
+
+def place(described: dict[str, Any]) -> str:
+    """A point of an attractor as text: its place in the table and its exit angle.
+
+    >>> place({"at": {"x": 0.0, "y": -2e-10, "phi": 0.25}})
+    '0.000e+00, -2.000e-10, 0.250'
+    """
+    x, y, phi = (described["at"][key] for key in ("x", "y", "phi"))
+    size = max(abs(x), abs(y))
+    digits = ".3f" if size == 0 or 0.01 <= size < FAR else ".3e"
+    at = (format(round(value, 3) + 0.0 if digits == ".3f" else value, digits) for value in (x, y))
+    return f"{', '.join(at)}, {round(phi, 3) + 0.0:.3f}"
 
 
 def _measured(document: dict[str, Any], name: str) -> str:

@@ -1,6 +1,6 @@
 """`pinball morse`: which attractors and repellers are proved, and in what order?
 
-`pinball sweep morse-graphs` asks so for every box of a grid of parameters, and which of the answers continue.
+`pinball sweep morse-graphs` does so for each box of a parameter grid, and finds the graphs that continue.
 """
 
 import json
@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from numeric.lowering.files import write_whole
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, plot_option, write_whole
+from verification.app.cli import DONE, FAILED, Output, Whole, json_option, plot_option
 from verification.app.commands.sweep import How, carried_out, lams_option, sweep_options
 from verification.app.scene import along, table_options, varied_options
 from verification.app.scene import span as numbers
@@ -24,10 +25,11 @@ if TYPE_CHECKING:
     import xarray as xr
     from rich.console import Console
 
+    from numeric.sweeps.store import Memory, Stored
     from verification.proofs.global_dynamics.database import Numbers
-    from verification.proofs.global_dynamics.graph import Mask, MorseGraph
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import Region
+    from verification.rigorous.graph import Mask, MorseGraph
 
 WINDOW = 12  # columns beside a join in which the density at a cut is measured
 SHOWN = 24  # Morse sets in the table for people
@@ -37,14 +39,14 @@ WIDTH = 100  # letters of the picture of a database
 @click.command(epilog="Example: pinball morse egg --alpha 0.08 --lam 0.5 --columns 512 --rows 256 --plot morse.png")
 @table_options
 @click.option("--lam", "lams", metavar="LOW:HIGH", required=True, help="Contractions, all at once, or one; below 1.")
-@click.option("--columns", type=click.IntRange(8, 1 << 13), default=512, show_default=True, help="Cells along theta.")
-@click.option("--rows", type=click.IntRange(8, 1 << 13), default=256, show_default=True, help="Cells along phi.")
-@click.option("--coarsest", type=click.IntRange(1, 64), default=4, show_default=True, help="Cells a box begins with.")
-@click.option("--parts", type=click.IntRange(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
-@click.option("--exponents", type=click.IntRange(1, 16), metavar="PARTS", help="Bound nu_plus; cuts of a box for it.")
+@click.option("--columns", type=Whole(8, 1 << 13), default=512, show_default=True, help="Cells along theta.")
+@click.option("--rows", type=Whole(8, 1 << 13), default=256, show_default=True, help="Cells along phi.")
+@click.option("--coarsest", type=Whole(1, 64), default=4, show_default=True, help="Cells a box begins with.")
+@click.option("--parts", type=Whole(1, 16), default=1, show_default=True, help="Cuts of a box for its image.")
+@click.option("--exponents", type=Whole(1, 16), metavar="PARTS", help="Bound nu_plus; cuts of a box for it.")
 @click.option(
     "--almost-every",
-    type=click.IntRange(64, 1 << 15),
+    type=Whole(64, 1 << 15),
     metavar="N",
     help="nu_plus of almost every orbit there; N columns.",
 )
@@ -63,15 +65,15 @@ def command(
     certificates: str | None,
     output: Output,
 ) -> int:
-    """Which attractors are proved, and in what order? Exit status 1 when no trapping region smaller than all is found.
+    """Which attractors are proved, and in what order? Exit status 1 when no trapping region but the whole is found.
 
     The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. Proved: from some
     bounce on, every orbit that never lands on a join is in one of the Morse sets listed; it goes from one to another
     only in the order given; and each trapping region keeps what enters it. A set may hold several attractors, or none.
     """
-    from verification.proofs.global_dynamics.graph import Grid, morse_graph, refined
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import region, sampled_share, shares
+    from verification.rigorous.graph import Grid, morse_graph, refined
 
     if certificates is not None and not Path(certificates).is_dir():
         raise ValueError(f"--certificates {certificates!r} is no directory; create it first")
@@ -110,7 +112,7 @@ def command(
 
 
 def span(text: str) -> tuple[Fraction, Fraction]:
-    """`LOW:HIGH`, or one number, as exact contractions.
+    """The two ends of `LOW:HIGH`, or one number twice, as exact contractions.
 
     >>> span("0.5"), span("1/4:1/2")
     ((Fraction(1, 2), Fraction(1, 2)), (Fraction(1, 4), Fraction(1, 2)))
@@ -123,8 +125,8 @@ def span(text: str) -> tuple[Fraction, Fraction]:
 
 
 def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
-    """A Morse set: how many boxes, the range of them, and where walks lead from it."""
-    from verification.proofs.global_dynamics.graph import Cells
+    """A Morse set as JSON: its number of boxes, their range, and the sets that walks lead to."""
+    from verification.rigorous.graph import Cells
 
     members = graph.sets[index]
     inner = members[members < graph.transitions.count]
@@ -137,7 +139,7 @@ def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
 
 
 def blocks(graph: "MorseGraph") -> "Iterator[tuple[int, Mask]]":
-    """The trapping region of each attracting set that has one."""
+    """Index and trapping region (a mask of boxes) of each attracting set that has one."""
     for index in graph.attracting:
         block = graph.trapping(index)
         if not block[-1]:
@@ -145,7 +147,7 @@ def blocks(graph: "MorseGraph") -> "Iterator[tuple[int, Mask]]":
 
 
 def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, list[float] | None]:
-    """Bounds for `nu_plus` in each trapping region, rounded outwards; None where no cones were found."""
+    """Bounds for `nu_plus` in each trapping region, rounded outwards; None where no invariant cones were found."""
     from math import ceil, floor, isfinite
 
     from verification.proofs.global_dynamics.regions import expansion
@@ -159,22 +161,22 @@ def growths(map: "PinballImages", graph: "MorseGraph", parts: int) -> dict[int, 
 
 
 def almost(map: "PinballImages", graph: "MorseGraph", columns: int) -> "dict[int, dict[str, Any] | None]":
-    """Bounds for `nu_plus` of almost every orbit in each trapping region, or what is not proved."""
+    """Bounds for `nu_plus` of almost every orbit in each trapping region, or the reason why there are none."""
     from verification.proofs.starts.curves import PinballCurves
-    from verification.proofs.starts.typical import typical
+    from verification.proofs.starts.typical import TypicalExponent
 
     found: dict[int, dict[str, Any] | None] = dict.fromkeys(graph.attracting)
     curves = PinballCurves(map)
     for index, block in blocks(graph):
         cells = graph.transitions.chosen(block)
-        bounds = typical(curves, graph.transitions.grid, cells, columns, 2 * columns, WINDOW)
+        bounds = TypicalExponent(curves, graph.transitions.grid, cells, columns, 2 * columns, WINDOW)
         ends = [bounds.low, bounds.high] if bounds.proved else None
         found[index] = {"nu_plus": ends, "labels": bounds.labels, "why": bounds.why}
     return found
 
 
 def show(console: "Console", label: str, document: dict[str, Any]) -> None:
-    """The Morse graph, for people."""
+    """Prints the Morse graph."""
     console.print(f"{label}: {document['boxes']} boxes, {document['edges']} edges, {document['seconds']:.1f} s")
     console.print("proved: from some bounce on every orbit that never lands on a join is in one of these sets")
     console.print("  set    boxes  attracting  phi                   leads to")
@@ -206,7 +208,7 @@ def show(console: "Console", label: str, document: dict[str, Any]) -> None:
 
 
 def written(region: "Region", path: Path, console: "Console") -> None:
-    """Writes a certificate, which `pinball check` proves anew."""
+    """Writes a certificate of a trapping region, which `pinball check` proves anew."""
     write_whole(path, json.dumps(region.to_dict()) + "\n")
     console.print(f"{path}: {region.name}")
 
@@ -220,9 +222,9 @@ CLASSES = 12  # in the table for people
 )
 @varied_options
 @lams_option
-@click.option("--columns", type=click.IntRange(8, 1 << 10), default=96, show_default=True, help="Cells along theta.")
-@click.option("--rows", type=click.IntRange(8, 1 << 10), default=128, show_default=True, help="Cells along phi.")
-@click.option("--coarsest", type=click.IntRange(1, 64), default=8, show_default=True, help="Cells a box begins with.")
+@click.option("--columns", type=Whole(8, 1 << 10), default=96, show_default=True, help="Cells along theta.")
+@click.option("--rows", type=Whole(8, 1 << 10), default=128, show_default=True, help="Cells along phi.")
+@click.option("--coarsest", type=Whole(1, 64), default=8, show_default=True, help="Cells a box begins with.")
 @click.option("--page", metavar="FILE", help="Write a page that shows the graph of the box of parameters pointed at.")
 @plot_option("graphs.database", "what continues over both parameters")
 @sweep_options
@@ -239,7 +241,7 @@ def graphs_command(
     """The Morse graph of each box of parameters, and which of them continue from box to box.
 
     The N values of --lams and of --shape NAME=LOW:HIGH:N are the borders of the boxes; contractions are below 1. What
-    is proved of a box holds for each of its parameters. A table that turns keep is looked at up to them.
+    is proved of a box holds for each of its parameters. Rotations that keep the table are divided out.
     """
     from verification.proofs.global_dynamics.database import continued, database
 
@@ -248,7 +250,8 @@ def graphs_command(
     scene, parameter, values = along(scene, axis)
     sweep = database(scene, parameter, values.tolist(), numbers("--lams", lams), columns, rows, coarsest)
 
-    def lines(found: "xr.Dataset") -> list[str]:
+    def lines(results: "Memory | Stored") -> list[str]:
+        found = results.dataset()
         label = continued(found)
         if page is not None:
             from verification.reports.explorer import explorer
@@ -260,7 +263,7 @@ def graphs_command(
 
 
 def graph_lines(found: "xr.Dataset", label: "Numbers") -> list[str]:
-    """How many boxes each of the largest classes has, and how many trapping regions are proved, in letters."""
+    """Lines of text: the boxes of the largest classes, and the numbers of trapping regions as a picture."""
     import numpy as np
 
     sets, attracting = found.sets.values, found.attracting.values

@@ -4,48 +4,60 @@
 return.
 """
 
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from symbolic.tables.definition import UNIFORM
+from symbolic.tables.definition import UNIFORM, exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, json_option, plot_option
-from verification.app.lines import of_bounces
-from verification.app.scene import scene_options, start_of, table_options
+from verification.app.cli import DONE, FAILED, Output, Whole, json_option, plot_option
+from verification.app.lines import of_bounces, short, table
+from verification.app.scene import scene_options, table_options
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from verification.app.commands.starts import Start
     from verification.cycles.newton import Solution
     from verification.cycles.search import Catalogue, Found
 
 
 MOST = 40  # bounces shown to people
 WAYS = ("float64", "mpmath", "arb", "auto")
-FEW, MANY = 12, 50  # digits, where nothing is said: for auto, and for mpmath and arb
+FEW, MANY = 12, 50  # digits without --digits: for auto, and for mpmath and arb
 PROVED = "arb, each landing proved to be the first hit"
-KEYS = ("component", "theta", "s", "x", "y", "eta", "phi", "status")
+CUT = 60  # particles shown to people
 
 
 @click.command(epilog="Example: pinball orbit ellipse --a 1.5 --lam 0.9 --start 0.5,-0.2 --bounces 10")
 @scene_options
-@click.option("--start", required=True, metavar="THETA,PHI", help="Boundary parameter and exit angle, in radians.")
+@click.option("--start", metavar="THETA,PHI", help="Boundary parameter, or s=ARC LENGTH, and exit angle in radians.")
+@click.option("--from", "point", metavar="X,Y", help="Start at an interior point; the first wall is the first bounce.")
+@click.option("--towards", metavar="DX,DY", help="The direction of --from; or one angle from the x axis, in radians.")
+@click.option("--starts", type=click.Path(path_type=Path), metavar="FILE", help="Many starts: a CSV file, see below.")
 @click.option("--component", metavar="NAME", help="The component of the start; the first one if left out.")
-@click.option("--bounces", type=click.IntRange(1, 10_000_000), default=20, show_default=True, help="How many.")
+@click.option("--bounces", type=Whole(1, 10_000_000), default=20, show_default=True, help="How many.")
+@click.option("--door", metavar="LOW:HIGH", help="An opening, by arc length: what lands in it has escaped.")
+@click.option("--fields", metavar="NAME,...", help="What each bounce is asked for, such as x,y,flight,time.")
 @click.option("--arithmetic", type=click.Choice(WAYS), default="float64", show_default=True)
-@click.option("--digits", type=click.IntRange(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
-@click.option("--tolerance", metavar="T", help="In place of --digits: so many that the error is below it.")
-@click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="A table in .npz, .parquet or .zarr.")
+@click.option("--digits", type=Whole(1, 10_000), help="For mpmath and arb [default: 50], and auto [12].")
+@click.option("--tolerance", metavar="T", help="In place of --digits: the error; with --data: gaps closed.")
+@click.option("--out", type=click.Path(path_type=Path), metavar="FILE", help="A table: .csv, .npz, .parquet or .zarr.")
 @plot_option("results.orbit", "the flights, and the bounces in phase space")
 @json_option
 def command(
     scene: Scene,
-    start: str,
+    start: str | None,
+    point: str | None,
+    towards: str | None,
+    starts: Path | None,
     component: str | None,
     bounces: int,
+    door: str | None,
+    fields: str | None,
     arithmetic: str,
     digits: int | None,
     tolerance: str | None,
@@ -58,56 +70,122 @@ def command(
     that goes on where that cannot be proved ends as `unproved`. The other outcomes are found, and not proved.
     `auto` takes what is cheapest for the digits asked of the last bounce, and says why: float64 as long as the orbit
     leaves it enough of its own, then arb.
+
+    The first line of a --starts file names its columns: theta,phi or theta,phi,component or s,phi or x,y,dx,dy or
+    x,y,angle. Of --fields, `flight` is the length of the flight before a bounce and `time` the length of all so far;
+    nothing else than what is asked is computed, and arc lengths in mpmath and arb are for --json or --fields alone.
+    With a --door a particle that lands between two arc lengths ends as `escaped`, and its number of bounces is told.
     With --out every bounce is a row of a table of float64 columns, and `component` and `code` are whole numbers; then
     --json has the first bounces only. A .zarr store is written in pieces, and the same command resumes it.
     """
     from numeric import PinballMap
+    from numeric.pinball.states import KEYS
+    from verification.app.commands.starts import chosen, fields_of
 
-    map = PinballMap(scene)
-    names = [part.name for part in map.ir.parts]
-    if component is not None and component not in names:
-        raise ValueError(f"--component = {component} is not on this table; accepted: {', '.join(names)}")
-    index = names.index(component) if component else 0
-    theta, phi = start_of(start)
+    map, named = PinballMap(scene), fields_of(fields)
+    particles = chosen(map, start, point, towards, component, starts)
+    first = particles[0]
     digits = wanted(digits, tolerance)
-    picked: dict[str, str] = {}
+    picked: dict[str, Any] = {}
+    if door is not None and (arithmetic != "float64" or out is not None):
+        raise ValueError(f"--door {door} is for orbits in float64 that are shown; leave --arithmetic and --out out")
+    opening = opened(map, door) if door is not None else None
     if arithmetic != "float64":
-        map.orbit(float(theta), float(phi), 1, index)  # refuses a bad start in one sentence
+        if len(particles) > 1 or first.given is None:
+            raise ValueError(
+                f"--arithmetic {arithmetic} takes one exact start on the wall; accepted: --start THETA,PHI, or float64"
+            )
+        map.orbit(first.theta, first.phi, 1, first.component)  # refuses a bad start in one sentence
     if arithmetic == "auto":
         from verification.measure.work.choice import for_orbit
 
-        choice = for_orbit(map, (float(theta), float(phi), index), bounces, digits := digits or FEW)
+        choice = for_orbit(map, (first.theta, first.phi, first.component), bounces, digits := digits or FEW)
         arithmetic = choice.arithmetic
         picked = {"arithmetic": arithmetic, "why": choice.why}
     digits = digits or MANY
+    if output.plot is not None and len(particles) > 1:
+        raise ValueError(f"--plot {output.plot} draws one particle, and --starts {starts} has {len(particles)}")
     if out is not None:
         if arithmetic != "float64":
             raise ValueError(f"--out {out} holds float64 columns; accepted: --arithmetic float64, or --json FILE")
-        from numeric.sweeps.orbits import written
+        from verification.app.commands.starts import written
 
-        picked |= {"out": str(out), "last": written(map, (float(theta), float(phi), index), bounces, out)}
-        output.console.print(f"{bounces + 1} rows are in {out}; the first:")
+        picked |= {"out": str(out), "last": written(map, particles, bounces, out, named)}
+        rows = (bounces + 1) * len(particles)
+        output.console.print(f"{rows} rows are in {out}; the first:")
         bounces = min(bounces, MOST - 1)
+    shown = named or KEYS
+    if arithmetic != "float64" and named is None and output.path is None and output.plot is None:
+        shown = tuple(name for name in KEYS if name != "s")
+    extra = (*(("s",) if opening else ()), *(("x", "y", "s", "phi") if output.plot is not None else ()))
+    asked = tuple(dict.fromkeys((*shown, *extra)))
     if arithmetic == "float64":
-        entries = in_float64(map, float(theta), float(phi), bounces, index)
+        told = in_float64(map, particles, bounces, asked)
+        times = [escape(entries, opening) for entries in told] if opening else []
     else:
-        from verification.maps.enclosed import in_balls, in_multiprecision
+        from verification.maps.orbits import in_balls, in_multiprecision
 
         follow = in_multiprecision if arithmetic == "mpmath" else in_balls
+        assert first.given is not None
         with output.progress("Bouncing", bounces) as step:
-            entries = follow(map, scene.lam, (theta, phi, index), bounces, digits, step)
-    output.write({"bounces": entries} | picked, map, entries)
-    show(output.console, entries, {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED))
+            told = [follow(map, scene.lam, (*first.given, first.component), bounces, digits, step, asked)]
+    if opening:
+        picked["escape_times"] = times
+    lists = [[{name: entry[name] for name in shown} for entry in entries] for entries in told]
+    body: dict[str, Any] = {"bounces": lists[0]} if starts is None else {"particles": [{"bounces": x} for x in lists]}
+    output.write(body | picked, map, told[0])
+    if starts is None:
+        how = {"float64": map.path, "mpmath": f"mpmath, {digits} digits"}.get(arithmetic, PROVED)
+        show(output.console, lists[0], shown, how)
+    else:
+        show_ends(output.console, told, shown)
+    if opening:
+        output.console.print(escapes(times, bounces))
     if "why" in picked:
         output.console.print(f"{arithmetic}: {picked['why']}")
-    if entries[-1]["status"] == "unproved":
+    if told[0][-1]["status"] == "unproved":
         output.console.print("no proof that the next flight meets nothing before it lands; it is not given")
-    statuses = [*(entry["status"] for entry in entries), picked.get("last", "regular")]
-    return DONE if all(status == "regular" for status in statuses) else FAILED
+    statuses = [*(entries[-1]["status"] for entries in told), picked.get("last", "regular")]
+    return DONE if all(status in ("regular", "escaped") for status in statuses) else FAILED
+
+
+def opened(map: Any, text: str) -> tuple[float, float]:
+    """The ends of a door, by arc length, in counterclockwise order; it may lie over the end of arc length."""
+    half, parts = map.arclength.perimeter / 2, text.split(":")
+    try:
+        low, high = (float(exact("--door", part)) for part in parts)
+    except ValueError:
+        raise ValueError(f"--door {text} is no opening; accepted: LOW:HIGH, two arc lengths such as 0.1:1/4") from None
+    if low == high or not (-half <= low <= half and -half <= high <= half):
+        raise ValueError(f"--door {text}: accepted are two arc lengths from {-half:.6g} to {half:.6g}")
+    return low, high
+
+
+def escape(entries: list[dict[str, Any]], door: tuple[float, float]) -> int | None:
+    """After how many bounces a particle lands in a door, at which its orbit is cut; None where it never does."""
+    low, high = door
+    for bounce, entry in enumerate(entries[1:], 1):
+        s = entry["s"] if entry["status"] == "regular" else None
+        if s is not None and (low <= s <= high if low < high else s >= low or s <= high):
+            entry["status"] = "escaped"
+            del entries[bounce + 1 :]
+            return bounce
+    return None
+
+
+def escapes(times: Sequence[int | None], bounces: int) -> str:
+    """How many particles escaped, and when.
+
+    >>> escapes([3, None, 5], 100)
+    '2 of 3 particles escaped within 100 bounces, after 4 on average, the last after 5'
+    """
+    found = [time for time in times if time is not None]
+    said = f"{len(found)} of {len(times)} particles escaped within {bounces} bounces"
+    return f"{said}, after {sum(found) / len(found):g} on average, the last after {max(found)}" if found else said
 
 
 def wanted(digits: int | None, tolerance: str | None) -> int | None:
-    """The digits asked for, in either way; None where nothing was said."""
+    """The number of digits that --digits or --tolerance gives; None without either."""
     if tolerance is None:
         return digits
     if digits is not None:
@@ -117,30 +195,32 @@ def wanted(digits: int | None, tolerance: str | None) -> int | None:
     return digits_for(tolerance)
 
 
-def in_float64(map: Any, theta: float, phi: float, bounces: int, index: int = 0) -> list[dict[str, Any]]:
-    """The orbit from the kernels, as far as it goes."""
-    orbit = map.orbit(theta, phi, bounces, index)
-    names = [part.name for part in map.ir.parts]
-    s = map.arclength.s(orbit.theta, orbit.component)
-    statuses = [status.name.lower() for status in orbit.status]
-    end = next((i for i, status in enumerate(statuses) if status != "regular"), len(statuses) - 1)
-    entries = []
-    for i in range(end + 1):
-        eta = float(orbit.eta[i])
-        values = (names[orbit.component[i]], *(float(row[i]) for row in (orbit.theta, s, orbit.x, orbit.y)))
-        entries.append(
-            dict(zip(KEYS, (*values, None if eta != eta else eta, float(orbit.phi[i]), statuses[i]), strict=True))
-        )
-    return entries
+def in_float64(map: Any, particles: "list[Start]", bounces: int, fields: Sequence[str]) -> list[list[dict[str, Any]]]:
+    """The bounces of each particle by the float64 kernels, until it stops."""
+    from verification.app.commands.starts import columns, entries_of
+
+    found = columns(map, particles, bounces, fields)
+    return [entries_of(map, found, i) for i in range(len(particles))]
 
 
-def show(console: "Console", entries: list[dict[str, Any]], how: str) -> None:
-    """The first bounces, as many columns wide as the terminal."""
-    for line in of_bounces(entries[:MOST], KEYS, console.width):
+def show(console: "Console", entries: list[dict[str, Any]], keys: Sequence[str], how: str) -> None:
+    """Prints the first bounces, with as many columns as fit the terminal."""
+    for line in of_bounces(entries[:MOST], keys, console.width):
         console.print(line)
     if len(entries) > MOST:
         console.print(f"... and {len(entries) - MOST} more; --json FILE has them all")
     console.print(f"{len(entries) - 1} bounces ({how})")
+
+
+def show_ends(console: "Console", told: list[list[dict[str, Any]]], keys: Sequence[str]) -> None:
+    """Prints the last bounce of each particle."""
+    ends = [{"particle": str(i), "bounces": str(len(each) - 1), **each[-1]} for i, each in enumerate(told)]
+    names = ["particle", "bounces", *keys, *(() if "status" in keys else ("status",))]
+    rows = [[short(end[name]) for name in names] for end in ends[:CUT]]
+    for line in table(names, rows):
+        console.print(line)
+    if len(ends) > CUT:
+        console.print(f"... and {len(ends) - CUT} more; --json FILE has them all")
 
 
 ROWS = 33  # points shown to people
@@ -148,8 +228,8 @@ ROWS = 33  # points shown to people
 
 @click.command(epilog="Example: pinball slap egg --alpha 0.08 --iterates 4 --points 1000 --json slap.json")
 @table_options
-@click.option("--iterates", type=click.IntRange(1, 1000), default=1, show_default=True, help="Up to which power.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=200, show_default=True, help="On each component.")
+@click.option("--iterates", type=Whole(1, 1000), default=1, show_default=True, help="Up to which power.")
+@click.option("--points", type=Whole(2, 1_000_000), default=200, show_default=True, help="On each component.")
 @plot_option("results.slap", "the graphs of the iterates, and the slope")
 @json_option
 def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> int:
@@ -192,7 +272,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
 
 
 def normal_exits(scene: Scene) -> Scene:
-    """The scene with the paper's law, whose slap map is that of every law with `phi = 0` at `lam = 0`."""
+    """The scene with the paper's law: at `lam = 0` every law with normal exits has the same slap map."""
     if scene.law.uniform:
         return scene
     from symbolic.expressions.signs import vanishes
@@ -205,10 +285,10 @@ def normal_exits(scene: Scene) -> Scene:
 
 
 def show_slap(console: "Console", rows: list[tuple[float, list[float], float]]) -> None:
-    """Some points, their images and the slope `T0'(s)`."""
+    """Prints some points, their images and the slope `T0'(s)`."""
     console.print("theta        slope        images")
     for theta, images, slope in rows:
-        console.print(f"{theta:<13.6f}{slope:<13.6f}" + "  ".join(f"{image:.6f}" for image in images[:8]))
+        console.print(f"{short(theta):<13}{short(slope):<13}" + "  ".join(map(short, images[:8])))
 
 
 CYCLES_MOST = 60  # cycles shown to people
@@ -216,11 +296,11 @@ CYCLES_MOST = 60  # cycles shown to people
 
 @click.command(epilog="Example: pinball cycles egg --alpha 0.08 --lam 0.5 --period 8 --count 4 --prove 3")
 @scene_options
-@click.option("--period", type=click.IntRange(2, 24), required=True, help="The longest.")
-@click.option("--count", type=click.IntRange(2, 12), help="Count up to this period a second way, on cells.")
-@click.option("--prove", type=click.IntRange(2, 6), help="Prove completeness up to this period, in balls.")
-@click.option("--budget", type=click.IntRange(1), default=100_000, show_default=True, help="Boxes of a proof.")
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the starts of the search.")
+@click.option("--period", type=Whole(2, 24), required=True, help="The longest.")
+@click.option("--count", type=Whole(2, 12), help="Count up to this period a second way, on cells.")
+@click.option("--prove", type=Whole(2, 6), help="Prove completeness up to this period, in balls.")
+@click.option("--budget", type=Whole(1), default=100_000, show_default=True, help="Boxes of a proof.")
+@click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of the starts of the search.")
 @plot_option("results.cycles", "the first cycles in the table")
 @json_option
 def cycles_command(
@@ -278,7 +358,7 @@ def cycles_command(
 
 
 def entry(cycle: "Found") -> dict[str, Any]:
-    """A cycle for JSON."""
+    """A cycle as JSON."""
     spectrum = cycle.spectrum
     return {
         "period": cycle.period,
@@ -288,19 +368,23 @@ def entry(cycle: "Found") -> dict[str, Any]:
         "phi": list(cycle.phi),
         "multipliers": [{"real": m.real, "imaginary": m.imag} for m in spectrum.multipliers],
         "determinant": spectrum.determinant,
-        "stable": spectrum.stable,
+        "stable": spectrum.stable if cycle.one_sided is None else cycle.stability.value == "stable",
+        "stability": cycle.stability.value,
         "index": cycle.index(cycle.period),
+        "one_sided": bool(cycle.one_sided),
+        **({"sides": cycle.one_sided.value} if cycle.one_sided else {}),
+        "length": cycle.length,
     }
 
 
 def worth(solution: "Solution") -> dict[str, Any]:
-    """What the digits of a cycle are worth, for JSON."""
+    """Condition number and reliable digits of a computed cycle, as JSON."""
     condition = solution.condition if isfinite(solution.condition) else None
     return {"condition": condition, "digits_sure": solution.digits_sure, "conditioning": solution.conditioning.name}
 
 
 def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[str, Any]]:
-    """Fixed points of `T**n` on cells against those of the catalogue."""
+    """For each period, fixed points of `T**n` counted on cells, and those of the catalogue, as JSON."""
     from numeric import PinballMap
     from verification.cycles.cells import fixed_points
     from verification.maps.first_hit import closes_smoothly, convex
@@ -332,29 +416,27 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
 
 
 def provable(scene: Scene) -> None:
-    """Refuses --prove, in a sentence that says why, where its theorem asks for more than the scene has."""
+    """Raises `ValueError`, with the reason, where the theorem behind --prove does not apply to the scene."""
     from symbolic.tables.curves import is_periodic
-    from verification.maps.first_hit import closes_smoothly, convex
-    from verification.proofs.periodic.interval_newton import stays_below
+    from verification.maps.first_hit import convex
+    from verification.proofs.periodic.completeness import one_smooth_curve, stays_below
 
-    if not closes_smoothly(scene.table) or convex(scene.table) is not True:
+    if not one_smooth_curve(scene.table, scene.law) or convex(scene.table) is not True:
         raise ValueError(
-            f"--prove covers all closed chains of chords of one smooth convex curve, and {scene.name} is not proved to "
-            "be one: chains that a wall cuts could not be told from cycles; leave --prove out"
+            f"--prove covers all closed chains of chords of one smooth strictly convex curve, and {scene.name} is not "
+            "proved to be one: chains that a wall cuts could not be told from cycles; leave --prove out"
         )
     if not scene.law.uniform:
         stated = scene.law.on(scene.table)
         if stated.placed and not (stated.measured or is_periodic(stated.phi)):
-            raise ValueError(
-                f"--prove: a whole turn of theta is not seen to leave {stated} the same; leave --prove out"
-            )
+            raise ValueError(f"--prove: {stated} is not proved to have period 2*pi in theta; leave --prove out")
         if not stays_below(stated, scene.lam, scene.table):
             raise ValueError(f"--prove: |phi| = |{stated}| is not proved to stay below pi/2 by a margin; leave it out")
 
 
 def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, output: Output) -> list[dict[str, Any]]:
-    """What balls prove, period by period."""
-    from verification.proofs.periodic.interval_newton import proofs
+    """For each period, whether the cycles found are proved to be all, as JSON."""
+    from verification.proofs.periodic.completeness import proofs
 
     with output.progress("Proving", highest - 1) as tick:
         return [
@@ -364,12 +446,14 @@ def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, ou
 
 
 def show_cycles(console: "Console", catalogue: "Catalogue", document: dict[str, Any]) -> None:
-    """The cycles, a line each, then what is known about completeness."""
-    console.print("period  winding  multipliers                              stable  first bounce")
+    """Prints the cycles, a line each, then what is known about completeness."""
+    console.print("period winding multipliers            stability length      first bounce")
     for cycle in catalogue.cycles[:CYCLES_MOST]:
-        pair = "  ".join(f"{m.real:+.5g}{m.imag:+.4g}i" for m in cycle.spectrum.multipliers)
-        stable = "yes" if cycle.spectrum.stable else "no"
-        console.print(f"{cycle.period:<8}{cycle.winding:<9}{pair:<41}{stable:<8}{cycle.theta[0]:.9f}")
+        one, other = cycle.spectrum.multipliers
+        pair = f"{one.real:+.5g} +- {abs(one.imag):.5g}i" if one.imag else f"{one.real:+.5g}  {other.real:+.5g}"
+        stability, parts = cycle.stability.value, catalogue.table.components
+        first = f"{cycle.theta[0]:.9f}" + (f" on {parts[cycle.components[0]].name}" if len(parts) > 1 else "")
+        console.print(f"{cycle.period:<7}{cycle.winding:<8}{pair:<23}{stability:<10}{cycle.length:<12.9g}{first}")
     if len(catalogue.cycles) > CYCLES_MOST:
         console.print(f"... and {len(catalogue.cycles) - CYCLES_MOST} more; --json FILE has them all")
     if catalogue.degenerate:
@@ -377,8 +461,17 @@ def show_cycles(console: "Console", catalogue: "Catalogue", document: dict[str, 
             f"{catalogue.degenerate} times a cycle with the multiplier 1 was met, of a family or at a bifurcation; "
             "such are not listed, and the index law does not count them"
         )
+    if on_joins := [cycle for cycle in catalogue.cycles if cycle.one_sided]:
+        why = "a bounce lies on a join where the curvature jumps: multipliers are those of the component behind it"
+        console.print(f"some multipliers are one-sided; {why}")
+        for cycle in on_joins[:CYCLES_MOST]:
+            where, sides = catalogue.table.components[cycle.components[0]].name, cycle.one_sided
+            place = f"period {cycle.period}, {cycle.theta[0]:.9f} on {where}"
+            console.print(f"{place}: {sides.value if sides else ''}")
     for row in document["periods"]:
         laws = {True: "index sums vanish", False: "index sums do NOT vanish", None: "no index law here"}
+        if row["index_sums_vanish"] is False and not row["cycles"]:
+            laws[False] = "but a smooth convex curve has two double normals: some were missed"
         console.print(f"period {row['period']:<3} {row['cycles']:>5} cycles, {laws[row['index_sums_vanish']]}")
     if document["periods"]:
         console.print(document["periods"][-1]["resolution"])

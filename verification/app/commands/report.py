@@ -1,6 +1,5 @@
 """`pinball report`: what becomes of this table? One page, useful first and refined in the time given."""
 
-import json
 from functools import wraps
 from importlib.util import find_spec
 from pathlib import Path
@@ -8,16 +7,17 @@ from typing import Any
 
 import click
 
+from numeric.lowering.files import json_text, write_whole
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, EXTRAS, FAILED, Output, json_option
+from verification.app.cli import DONE, EXTRAS, FAILED, Output, Whole, json_option
 from verification.app.scene import Command, varied_options
 
-STEPS = 45  # about; of a bar
+STEPS = 45  # about, of the progress bar
 NEEDED = "matplotlib", "xarray"  # by its pictures and grids, which come after some work
 
 
 def as_shape(command: Command) -> Command:
-    """Takes `--vary NAME=LOW:HIGH` for `--shape NAME=LOW:HIGH`, which says the same."""
+    """Decorator that takes `--vary NAME=LOW:HIGH` as another way to write `--shape NAME=LOW:HIGH`."""
 
     @wraps(command)
     def called(vary: str | None, given: tuple[str, ...], **others: Any) -> Any:
@@ -27,7 +27,7 @@ def as_shape(command: Command) -> Command:
 
 
 def varied(text: str) -> tuple[str, str, str]:
-    """What varies, from where and to where.
+    """The parameter that varies, and the ends of its interval, as text.
 
     >>> varied("b=0:1/30")
     ('b', '0', '1/30')
@@ -35,12 +35,12 @@ def varied(text: str) -> tuple[str, str, str]:
     name, equals, ends = (part.strip() for part in text.partition("="))
     low, colon, high = (part.strip() for part in ends.partition(":"))
     if not equals or not colon or ":" in high:
-        raise ValueError(f"{text} is no interval; accepted: LOW:HIGH such as 0:1, or NAME=LOW:HIGH")
+        raise ValueError(f"--vary {text} is no interval; accepted: NAME=LOW:HIGH")
     return name, low, high
 
 
 def needed() -> None:
-    """Refuses, before any work, when a package that a report needs is not there, with the command that brings them."""
+    """Raises `ValueError`, before any work, where a package that a report needs is missing, and says how to get it."""
     absent = [name for name in NEEDED if find_spec(name) is None]
     if absent:
         extras = ",".join(EXTRAS[name] for name in NEEDED)
@@ -70,9 +70,15 @@ def needed() -> None:
 @click.option(
     "--at", default="1/10,1/2,9/10", show_default=True, metavar="LAM,...", help="Where portraits and censuses are made."
 )
-@click.option("--period", type=click.IntRange(2, 12), default=3, show_default=True, help="The longest searched for.")
-@click.option("--digits", type=click.IntRange(5, 200), default=20, show_default=True, help="Of certified events.")
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+@click.option(
+    "--period",
+    type=Whole(2, 12),
+    default=3,
+    show_default=True,
+    help="The longest of saddles whose tangencies are sought.",
+)
+@click.option("--digits", type=Whole(5, 200), default=20, show_default=True, help="Of certified events.")
+@click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of the random starts.")
 @click.option("--latex", metavar="FILE", help="The same as a LaTeX article.")
 @click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler whose workers do the grids, or else all cores.")
 @json_option
@@ -92,9 +98,10 @@ def command(
 ) -> int:
     """What becomes of this table as the contraction varies? One page of HTML that needs no network.
 
-    The table and what is proved of it, slap map, portraits, bifurcation diagram, attractors with basins, cycles from
-    birth to death with certificates. With --vary NAME=LOW:HIGH also the plane of that parameter and the contraction,
-    shaded by exponent, with curves of events. A report that was stopped goes on when the same command is given again.
+    Every family of cycles that attracts random starts, from birth to death, with events and certificates; attractors
+    with basins; what may be missing; the table and what is proved of it, slap map, portraits. With --vary
+    NAME=LOW:HIGH also the plane of that parameter and the contraction, shaded by exponent, with curves of events. A
+    report that was stopped goes on when the same command is given again.
     """
     needed()
     from numeric.sweeps.run import UnfinishedError
@@ -108,10 +115,13 @@ def command(
     if folder:
         if page.is_file():
             raise ValueError(f"--out {page} is a file; accepted: a folder, or a page whose name ends in .html")
-        page.mkdir(exist_ok=True)
         page, latex = page / "report.html", latex or str(page / "report.tex")
     single = axis is not None and ":" not in interval
-    lams = interval.strip() if single else varied(f"lam={interval}")[1:]
+    if not single and interval.count(":") != 1:
+        raise ValueError(
+            f"--lam {interval} is no interval; accepted: LOW:HIGH such as 0:1; with --vary, one number too"
+        )
+    lams = interval.strip() if single else tuple(end.strip() for end in interval.split(":"))
     places = tuple(text.strip() for text in at.split(","))
     with output.progress("Reporting", STEPS) as step:
         try:
@@ -129,13 +139,16 @@ def command(
                 scheduler=scheduler,
                 tick=step,
             )
-        except UnfinishedError as stop:
-            reason = str(stop).partition(";")[0]  # what follows is of a sweep without a store
-            click.echo(f"pinball: {reason}; what was done is in {page}, and the same command goes on", err=True)
+        except (UnfinishedError, KeyboardInterrupt) as stop:
+            reason = str(stop).partition(";")[0] or "interrupted"  # the rest is about sweeps without a store
+            said = f"{reason}; what was done is in {page}, and the same command goes on"
+            if isinstance(stop, KeyboardInterrupt):
+                raise KeyboardInterrupt(said) from None
+            click.echo(f"pinball: {said}", err=True)
             return FAILED
     output.write(made.document())
     if folder:
-        page.with_suffix(".json").write_text(json.dumps(made.document(), indent=1), encoding="utf-8")
+        write_whole(page.with_suffix(".json"), json_text(made.document(), indent=1))
     output.console.print(f"{page}: {len(made.sections)} sections, {made.seconds:.0f} s of work")
     if made.left:
         words = further(made.left)

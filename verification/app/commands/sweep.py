@@ -15,24 +15,25 @@ import click
 
 from symbolic.tables.definition import POINTS, exact
 from symbolic.tables.scene import Scene
-from verification.app.cli import DONE, FAILED, Output, document, json_option, plot_option
+from verification.app.cli import DONE, FAILED, Output, Whole, document, json_option, plot_option
 from verification.app.scene import along, optional_options, over, scene_options, span, varied_options
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from numeric.sweeps.store import Memory, Stored
     from numeric.sweeps.sweep import Sweep
 
 
 COLUMNS, ROWS = 80, 24  # of the picture in letters
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 Command = Callable[..., Any]
-Lines = Callable[["xr.Dataset"], list[str]]
+Lines = Callable[["Memory | Stored"], list[str]]
 
 
 @dataclass(frozen=True)
 class How:
-    """Where results go and who computes them."""
+    """Where the results of a sweep go, and who computes them."""
 
     output: Output
     store: Path | None
@@ -44,7 +45,7 @@ class How:
 OPTIONS = (
     click.option("--store", type=click.Path(path_type=Path), metavar="DIR", help="Zarr store, made or resumed."),
     click.option("--scheduler", metavar="ADDRESS", help="Dask scheduler, such as tcp://127.0.0.1:8786."),
-    click.option("--workers", type=click.IntRange(1, 4096), help="Threads; all cores if left out."),
+    click.option("--workers", type=Whole(1, 4096), help="Threads; all cores if left out."),
     click.option("--dry-run", is_flag=True, help="Say what it costs, and do nothing."),
     json_option,
 )
@@ -53,11 +54,11 @@ OPTIONS = (
 lams_option = click.option(
     "--lams", metavar="LOW:HIGH:N", required=True, help="Contractions, equally spaced, both ends included."
 )
-seed_option = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random starts.")
+seed_option = click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of the random starts.")
 
 
 def sweep_options(command: Command) -> Command:
-    """Gives `command` the options of every sweep, as a keyword `how`."""
+    """Decorator that gives a command the options of every sweep, as a keyword `how`."""
 
     @wraps(command)
     def called(
@@ -71,9 +72,9 @@ def sweep_options(command: Command) -> Command:
 
 
 def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
-    """Does a sweep, or says what it would cost, and shows what `lines` makes of it; `more` is for the picture."""
+    """Runs a sweep and prints what `lines` makes of it, or prints its cost; the exit status. `more` goes to --plot."""
+    from numeric.sweeps import run
     from numeric.sweeps.cost import cost
-    from numeric.sweeps.run import UnfinishedError, run
 
     if how.dry_run:
         expected = cost(sweep, how.workers, how.store is not None)
@@ -91,11 +92,13 @@ def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
             shown = done
 
         try:
-            found = run(sweep, how.store, how.scheduler, how.workers, tick)
-        except UnfinishedError as stop:
+            found = run.carried_out(sweep, how.store, how.scheduler, how.workers, tick)
+        except run.UnfinishedError as stop:
             click.echo(f"pinball: {stop}", err=True)
             return FAILED
-    how.output.write(document(found, how.store), found, *more)
+    if how.output.wanted:
+        labelled = found.dataset()
+        how.output.write(document(labelled, how.store), labelled, *more)
     for line in lines(found):
         how.output.console.print(line)
     if how.store is not None:
@@ -105,14 +108,14 @@ def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
 
 @click.command(epilog="Example: pinball basins cuspless --lam 0.09 --columns 400 --rows 400 --store basins.zarr")
 @scene_options
-@click.option("--columns", type=click.IntRange(1, 100_000), required=True, help="Cells along the boundary.")
-@click.option("--rows", type=click.IntRange(1, 100_000), required=True, help="Cells in sin(phi).")
+@click.option("--columns", type=Whole(1, 100_000), required=True, help="Cells along the boundary.")
+@click.option("--rows", type=Whole(1, 100_000), required=True, help="Cells in sin(phi).")
 @click.option(
     "--window", nargs=4, metavar="S S SIN SIN", help="Ends of s and of sin(phi); all of phase space if not given."
 )
-@click.option("--starts", type=click.IntRange(1, 10**7), default=1000, show_default=True, help="To find attractors.")
-@click.option("--transient", type=click.IntRange(10, 10**8), default=1000, show_default=True, help="Bounces of each.")
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the starts.")
+@click.option("--starts", type=Whole(1, 10**7), default=1000, show_default=True, help="To find attractors.")
+@click.option("--transient", type=Whole(10, 10**8), default=1000, show_default=True, help="Bounces of each.")
+@click.option("--seed", type=Whole(0), default=1, show_default=True, help="Of the starts.")
 @plot_option("grids.basins", "the basins, a colour for each attractor")
 @sweep_options
 def basins_command(
@@ -145,16 +148,15 @@ def basins_command(
     return carried_out(sweep, how, basins_lines)
 
 
-def basins_lines(found: "xr.Dataset") -> list[str]:
-    """What share of the cells each attractor takes, and a small picture in letters."""
+def basins_lines(found: "Memory | Stored") -> list[str]:
+    """Lines of text: the share of cells of each attractor, and a small picture in letters."""
     import numpy as np
 
-    from numeric.sweeps.fields import attractors_of
-
-    label = found.label.values
+    label = found.arrays["label"][:]
     shown = []
-    for i, attractor in enumerate(attractors_of(found.attrs["settings"])):
+    for i, attractor in enumerate(found.sweep.settings["attractors"]):
         kind = f"cycle of period {attractor['period']}" if attractor["kind"] == "cycle" else attractor["kind"]
+        kind += f" ({reason}: undecided whether it is one)" if (reason := attractor.get("undecided")) else ""
         shown.append(
             f"{letter(i)}  {np.mean(label == i):7.2%}  {kind} near theta = {round(attractor['theta'], 4) + 0.0:.4f}"
         )
@@ -167,7 +169,7 @@ def basins_lines(found: "xr.Dataset") -> list[str]:
 
 
 def letter(index: int) -> str:
-    """The letter of an attractor.
+    """The letter for the attractor of this index; a dot for a negative index.
 
     >>> letter(0), letter(-1)
     ('A', '.')
@@ -176,7 +178,7 @@ def letter(index: int) -> str:
 
 
 BIFURCATION_ROWS = 24  # contractions shown to people
-DISTINCT = 1e-6  # between points of phase space, to tell one from another
+DISTINCT = 1e-6  # points of phase space closer than this count as one
 MANY = 64  # distinct points; more are not counted
 
 
@@ -185,12 +187,10 @@ MANY = 64  # distinct points; more are not counted
 )
 @varied_options
 @lams_option
-@click.option(
-    "--orbits", type=click.IntRange(1, 100_000), default=20, show_default=True, help="Random particles for each."
-)
-@click.option("--points", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Bounces kept of each.")
-@click.option("--transient", type=click.IntRange(0, 10**9), default=4000, show_default=True, help="Bounces before.")
-@click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="For the exponents.")
+@click.option("--orbits", type=Whole(1, 100_000), default=20, show_default=True, help="Random particles for each.")
+@click.option("--points", type=Whole(1, 100_000), default=100, show_default=True, help="Bounces kept of each.")
+@click.option("--transient", type=Whole(0, 10**9), default=4000, show_default=True, help="Bounces before.")
+@click.option("--bounces", type=Whole(8, 10**9), default=2000, show_default=True, help="For the exponents.")
 @seed_option
 @click.option("--mark", "marks", multiple=True, metavar="FILE", help="A certificate, checked and drawn by --plot.")
 @plot_option("grids.bifurcation", "the attractors as a density, and the exponents")
@@ -218,11 +218,11 @@ def bifurcation_command(
     text, parameter, values, lam = over(scene, lams, axis)
     sweep = bifurcation(text, values, orbits, points, bounces, transient, seed, parameter, lam)
     shown = [] if how.dry_run else [marked(path, scene, parameter) for path in marks]
-    return carried_out(sweep, how, bifurcation_lines, shown)
+    return carried_out(sweep, how, lambda found: bifurcation_lines(found.dataset()), shown)
 
 
 def bifurcation_lines(found: "xr.Dataset") -> list[str]:
-    """For some contractions, how many orbits are chaotic and how many points the attractors show."""
+    """Lines of text for some contractions: how many orbits are chaotic, how many points the attractors have."""
     import numpy as np
 
     parameter = str(found.chaotic.dims[0])
@@ -244,14 +244,14 @@ SWEEP_ROWS = 24  # contractions shown to people
 
 
 class Kinds(click.Group):
-    """A group that says which kinds there are when another is asked for."""
+    """A group of commands that lists the kinds of sweep when an unknown one is given."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [*super().list_commands(ctx), "morse-graphs"]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
         if cmd_name == "morse-graphs":
-            from verification.app.commands.morse import graphs_command  # which takes what is above from here
+            from verification.app.commands.morse import graphs_command  # which imports this module
 
             return graphs_command
         if cmd_name not in self.commands:
@@ -280,11 +280,9 @@ def command() -> None:
 @optional_options
 @click.option("--alphas", metavar="LOW:HIGH:N", help="Shapes of the egg, equally spaced, with both ends.")
 @lams_option
-@click.option(
-    "--starts", type=click.IntRange(1, 100_000), default=100, show_default=True, help="Random particles a pair."
-)
-@click.option("--bounces", type=click.IntRange(8, 10**9), default=2000, show_default=True, help="That count, each.")
-@click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
+@click.option("--starts", type=Whole(1, 100_000), default=100, show_default=True, help="Random particles a pair.")
+@click.option("--bounces", type=Whole(8, 10**9), default=2000, show_default=True, help="That count, each.")
+@click.option("--transient", type=Whole(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
 @plot_option("grids.parameter_space", "the largest exponent over both parameters")
 @sweep_options
@@ -312,7 +310,7 @@ def parameter_space(
     if (axis is None) == (alphas is None) or (scene is None) != (axis is None):
         raise ValueError("one shape varies; accepted: --alphas LOW:HIGH:N, or a table with --shape NAME=LOW:HIGH:N")
     if bare["law"] is not None:
-        raise ValueError(f"--law {bare['law']} says something of a table, and none is given")
+        raise ValueError(f"--law {bare['law']} is for a table, and none is given")
     contractions = np.array(span("--lams", lams))
     if scene is None or axis is None:
         K = bare["K"] or POINTS
@@ -323,11 +321,11 @@ def parameter_space(
         map_of(text := text_of(scene), contractions)
         count = starts, bounces, transient
         sweep = space.parameter_space(shapes, contractions, *count, seed=seed, scene=text, parameter=parameter)
-    return carried_out(sweep, how, picture)
+    return carried_out(sweep, how, lambda found: picture(found.dataset()))
 
 
 def picture(found: "xr.Dataset") -> list[str]:
-    """The parameter space in letters: `#` where some orbit is chaotic, `.` where none is. Paper: section 6.5."""
+    """Lines of text: the parameter space, `#` where some orbit is chaotic, `.` where none is. Paper: section 6.5."""
     step = max(1, -(-found.lam.size // TEXT_WIDTH))
     shape, ends = str(found.chaotic.dims[0]), (float(found.lam[0]), float(found.lam[-1]))
     shown = [f"{shape} down, lam from {ends[0]:g} to {ends[1]:g} across; # chaos, . none"]
@@ -341,12 +339,10 @@ def picture(found: "xr.Dataset") -> list[str]:
 )
 @varied_options
 @lams_option
-@click.option(
-    "--orbits", type=click.IntRange(2, 10**6), default=100, show_default=True, help="Random particles for each."
-)
-@click.option("--groups", type=click.IntRange(1, 64), default=6, show_default=True, help="Attractors kept for each.")
-@click.option("--bounces", type=click.IntRange(64, 10**9), default=4096, show_default=True, help="That count, each.")
-@click.option("--transient", type=click.IntRange(0, 10**9), default=2000, show_default=True, help="Bounces before.")
+@click.option("--orbits", type=Whole(2, 10**6), default=100, show_default=True, help="Random particles for each.")
+@click.option("--groups", type=Whole(1, 64), default=6, show_default=True, help="Attractors kept for each.")
+@click.option("--bounces", type=Whole(64, 10**9), default=4096, show_default=True, help="That count, each.")
+@click.option("--transient", type=Whole(0, 10**9), default=2000, show_default=True, help="Bounces before.")
 @seed_option
 @plot_option("grids.by_attractor", "the exponents with their errors")
 @sweep_options
@@ -369,11 +365,11 @@ def exponents(
 
     text, parameter, values, lam = over(scene, lams, axis)
     sweep = kind.exponents(text, values, orbits, groups, bounces, transient, seed, parameter, lam)
-    return carried_out(sweep, how, table_of_groups)
+    return carried_out(sweep, how, lambda found: table_of_groups(found.dataset()))
 
 
 def table_of_groups(found: "xr.Dataset") -> list[str]:
-    """For some contractions, a line for each attractor."""
+    """Lines of text for some contractions, one for each attractor."""
     parameter = str(found.orbits.dims[0])
     values = found[parameter].values
     shown = [f"{parameter:<11}orbits  period  nu_plus               nu_minus"]

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verification.app.cli import DONE, FAILED, Output, json_option, write_whole
+from numeric.lowering.files import write_whole
+from verification.app.cli import DONE, FAILED, Output, Whole, json_option
 from verification.paper.claims.claim import seconds
 from verification.paper.report import report
 from verification.paper.report.report import codes
@@ -29,11 +30,11 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from verification.measure.work.row import Diagram
+    from verification.measure.work.row import WorkDiagram
     from verification.paper.claims.claim import Claim
     from verification.paper.claims.folder import Paper
-    from verification.paper.figures.catalogue import Picture as Figure
-    from verification.paper.report.page import Picture
+    from verification.paper.figures.catalogue import PaperFigure as Figure
+    from verification.paper.report.page import ReportFigure
     from verification.paper.report.report import Result
 
 
@@ -80,7 +81,7 @@ def figure_command(
 
 
 def show_figure(console: "Console", known: "Mapping[str, Figure]") -> None:
-    """A line for each figure."""
+    """Prints a line for each figure."""
     for picture in known.values():
         console.print(f"{picture.name:<24}{picture.sentence}")
 
@@ -92,7 +93,7 @@ def _picture(known: "Mapping[str, Figure]", name: str | None) -> "Figure":
 
 
 def _files(chosen: "list[Figure]", out: str | None, folder: bool, drawn: bool) -> dict[str, tuple[Path, str]]:
-    """Where each figure goes, and as what; refused before anything is computed."""
+    """Path and format of each figure's file; a missing folder is refused before anything is computed."""
     from verification.paper.figures.catalogue import ending
     from verification.plots.sheet import styled
 
@@ -110,7 +111,7 @@ def _files(chosen: "list[Figure]", out: str | None, folder: bool, drawn: bool) -
 
 def _write(path: Path, image: bytes) -> None:
     try:
-        path.write_bytes(image)
+        write_whole(path, image)
     except OSError as error:
         raise ValueError(f"--out = {path} cannot be written: {error.strerror or error}") from None
 
@@ -119,7 +120,7 @@ LOOPBACK = "127.0.0.1"
 
 
 @click.command(epilog="Example: pinball explore --port 5006")
-@click.option("--port", type=click.IntRange(0, 65535), default=0, show_default=True, help="0 for any that is free.")
+@click.option("--port", type=Whole(0, 65535), default=0, show_default=True, help="0 for any that is free.")
 @click.option("--open/--no-open", "show", default=True, show_default=True, help="Open a browser.")
 @json_option
 def explore_command(port: int, show: bool, output: Output) -> int:
@@ -137,7 +138,7 @@ def explore_command(port: int, show: bool, output: Output) -> int:
 
 
 def _free(port: int) -> int:
-    """`port`, or any free one for 0; `ValueError` when it is taken."""
+    """The port, or a free one for 0; `ValueError` when it is taken."""
     with socket.socket() as probe:
         try:
             probe.bind((LOOPBACK, port))
@@ -170,11 +171,12 @@ def claims_command(what: str, folder: Path, output: Output) -> int:
 @click.option("--only", metavar="GLOB", default="*", show_default=True, help="Judge the claims whose id matches.")
 @click.option("--section", metavar="LABEL", help="Judge the claims of a section, such as 6.3, 6 or Abstract.")
 @click.option("--changed", is_flag=True, help="Judge what depends on changed code; keep the rest of the last report.")
-@click.option("--digits", type=click.IntRange(1, 10_000), default=15, show_default=True, help="Digits of the values.")
+@click.option("--digits", type=Whole(1, 10_000), default=15, show_default=True, help="Digits of the values.")
 @click.option("--report", "folder", metavar="DIR", default="report", show_default=True, help="Where the report goes.")
 @click.option("--figures/--no-figures", default=True, show_default=True, help="Draw the paper's figures in the report.")
 @click.option("--work", metavar="FILE", help="Show the diagrams of what `pinball work --json FILE` measured.")
-@click.option("--jobs", type=click.IntRange(1, 1024), help="Processes that judge and draw; one for each core.")
+@click.option("--jobs", type=Whole(1, 1024), help="Processes that judge and draw; one for each core.")
+@click.option("-v", "--verbose", is_flag=True, help="A line for each claim as it is judged; so it is in a pipe too.")
 @json_option
 def command(
     source: str | None,
@@ -186,6 +188,7 @@ def command(
     figures: bool,
     work: str | None,
     jobs: int | None,
+    verbose: bool,
     output: Output,
 ) -> int:
     """Is each claim of the paper true? Exit status 1 when one is open.
@@ -196,7 +199,7 @@ def command(
     The report does not depend on --jobs, but for the seconds in it.
     """
     from verification.paper.claims.folder import OWN, paper
-    from verification.paper.report.page import Picture, diagrams, set_claims, set_result
+    from verification.paper.report.page import ReportFigure, diagrams, set_claims, set_result
 
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy is not loaded yet; it is the judges that share the cores
     about = paper(source or OWN)
@@ -210,29 +213,35 @@ def command(
     if changed:
         output.console.print(f"{len(missing)} of {len(claims)} claims depend on code that has changed.")
     images, sections = dict(last.images), {claim.section for claim in claims}
-    wanted: list[Figure | Diagram] = [*(each for each in pictured if figures and each.section in sections), *measured]
+    wanted: list[Figure | WorkDiagram] = [
+        *(each for each in pictured if figures and each.section in sections),
+        *measured,
+    ]
     drawings = [each for each in wanted if each.name not in images] if drawable(output, wanted) else []
     report.begin(missing, drawings, jobs)
     code = codes(claims, digits, pictured)
     set_claims(claims)
+    each_line = verbose or len(claims) <= FEW or not output.console.is_terminal
     costs = {claim.id: claim.seconds for claim in claims} | {each.name: each.seconds for each in drawings}
     with (
         output.progress("Judging", seconds([*missing, *drawings])) as step,
         closing(report.answered(missing, drawings, digits, jobs)) as answers,
     ):
         for answer in answers:
-            if isinstance(answer, report.Drawn):
+            if isinstance(answer, report.DrawnPicture):
                 images[answer.name] = answer.image
-                step(f"{len(found)} of {len(claims)}: the figure {answer.name}", costs[answer.name])
+                step(f"{len(found)} of {len(claims)} sentences", costs[answer.name])
             else:
                 found[answer.id] = answer
                 set_result(answer)
-                step(f"{len(found)} of {len(claims)}: {answer.id}", costs[answer.id])
+                step(f"{len(found)} of {len(claims)} sentences", costs[answer.id])
+                if each_line:
+                    output.console.print(line_of(answer))
     results = [found[claim.id] for claim in claims]
-    shown = [Picture.of(each, images[each.name]) for each in wanted if each.name in images]
+    shown = [ReportFigure.of(each, images[each.name]) for each in wanted if each.name in images]
     write_report(directory, results, shown, code, about)
     output.write(report.document(results, about.about))
-    show(output.console, results)
+    show(output.console, results, about)
     output.console.print(
         f"The report is in {directory / 'report.html'} (and report.md, report.json, report.tex, letter.tex)."
     )
@@ -241,14 +250,14 @@ def command(
 
 @dataclass(frozen=True)
 class Last:
-    """What of the last report still stands: the results and the images whose code is what it was."""
+    """Results and images of the last report that still hold, since their code has not changed."""
 
     results: "Mapping[str, Result]"
     images: "Mapping[str, bytes]"
 
     @classmethod
     def read(cls, directory: Path, claims: "Sequence[Claim]", digits: int, figures: "Sequence[Figure]" = ()) -> "Last":
-        """From the report in a directory; nothing where there is none."""
+        """The results and images that still hold in the report of a directory; none where there is no report."""
         path = directory / "report.json"
         if not path.is_file():
             return cls({}, {})
@@ -271,7 +280,7 @@ IMAGE = re.compile(r'<img src="data:image/[^;]*;base64,([^"]*)" data-figure="([^
 
 
 def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
-    """The claims that are asked for; `ValueError` with the nearest ids or the sections there are when none is."""
+    """The claims that --only and --section select; `ValueError` with the nearest ids or the sections if none is."""
     claims = list(about.claims)
     if section is not None:
         known = dict.fromkeys(claim.section for claim in claims)
@@ -285,7 +294,7 @@ def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
 
 
 def within(name: str, section: str) -> bool:
-    """Is the section of that name the one asked for, or a part of it?
+    """True if the section called `name` is `section`, or a part of it.
 
     >>> within("6.3 Period-2 orbits", "6"), within("10 End", "1"), within("Abstract", "abstract")
     (True, False, True)
@@ -295,7 +304,7 @@ def within(name: str, section: str) -> bool:
 
 
 def label(name: str) -> str:
-    """The number of a section; the whole name of one that has none.
+    """The number at the start of a section's name; the whole name where it has none.
 
     >>> label("6.3 Period-2 orbits"), label("Abstract"), label("Of the square")
     ('6.3', 'Abstract', 'Of the square')
@@ -317,7 +326,7 @@ def matching(only: str, ids: Sequence[str]) -> list[str]:
 
 
 def prepared(folder: str) -> Path:
-    """The report's directory, made; refused before any work is done for it."""
+    """The report's directory, made if missing; refused before any work where it cannot be written."""
     directory = Path(folder)
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -329,7 +338,7 @@ def prepared(folder: str) -> Path:
 
 
 def drawable(output: Output, wanted: "Sequence[object]") -> bool:
-    """Is Matplotlib there? Where pictures are wanted and it is not, that is said."""
+    """True if Matplotlib is installed; prints a line where pictures are wanted and it is not."""
     if not wanted or find_spec("matplotlib") is not None:
         return True
     output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
@@ -339,11 +348,11 @@ def drawable(output: Output, wanted: "Sequence[object]") -> bool:
 def write_report(
     directory: Path,
     results: Sequence["Result"],
-    pictures: "Sequence[Picture]" = (),
+    pictures: "Sequence[ReportFigure]" = (),
     code: "Mapping[str, str] | None" = None,
     about: "Paper | None" = None,
 ) -> None:
-    """Writes the report as `report.html`, `report.md`, `report.json`, `report.tex` and `letter.tex`, each at once.
+    """Writes `report.html`, `report.md`, `report.json`, `report.tex` and `letter.tex`, each replaced as a whole.
 
     `code` has digests of the code that the results depend on, kept for `--changed`.
     """
@@ -360,14 +369,23 @@ def write_report(
     write_whole(directory / "report.json", json.dumps(whole, indent=2) + "\n")
 
 
-def show(console: "Console", results: Sequence["Result"]) -> None:
-    """A table of the verdicts, and a line for each claim that is not confirmed."""
-    from rich.table import Table
+FEW = 12  # up to so many claims, each has a line
+SHOWN = 6  # substantial corrections on the terminal
 
-    table = Table("verdict", "claims", "meaning")
-    for verdict, number in report.counts(results).items():
-        table.add_row(verdict, str(number), report.VERDICTS[verdict])
-    console.print(table)
-    for result in results:
-        if result.verdict.value != "confirmed":
-            console.print(f"{result.verdict.value:9}  {result.id}: {result.erratum or result.method}")
+
+def line_of(result: "Result") -> str:
+    """The line for a claim: its verdict, and what is wrong or why it is not proved."""
+    said = "" if result.verdict.value == "confirmed" else f": {result.erratum or result.method}"
+    return f"{result.verdict.value:9}  {result.id}{said}"
+
+
+def show(console: "Console", results: Sequence["Result"], about: "Paper") -> None:
+    """Prints how many claims have each verdict, and the first substantial corrections as sentences."""
+    from verification.paper.report.findings import graded
+
+    console.print(report.summary(results))
+    grave = [each.text for each in graded(results, about)["substantial"]] if len(results) > FEW else []
+    for text in grave[:SHOWN]:
+        console.print(f"- {text}")
+    if len(grave) > SHOWN:
+        console.print(f"- and {len(grave) - SHOWN} more substantial corrections")

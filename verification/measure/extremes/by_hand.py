@@ -1,9 +1,9 @@
-"""First hits on tables of sides and arcs the slow way: every piece tried in 80 bits, nothing shared with the kernels.
+"""First hits on tables of sides and arcs by trying every piece in 80 bits, with no code in common with the kernels.
 
-The judge of tests and of `benchmarks/adversarial.py`. It takes the particles as the doubles that a kernel is given and
-the table's numbers to 64 bits. No sign of a corner chooses a piece; a landing is what is nearest of all that lies
-ahead, and on the arc that a particle leaves it is the other point where its line meets the ellipse. It also says how
-closely each line passes a corner or a tangent on its way, as a share of the numbers from which its ends are added up.
+The reference of tests and of `benchmarks/adversarial.py`. It takes the particles as the doubles that a kernel is given
+and the table's numbers to 64 bits. A landing is the nearest point of all pieces ahead; on the arc that a particle
+leaves it is the other point where its line meets the ellipse. It also says how closely each line passes a corner or a
+tangent on its way, relative to the numbers from which its ends are added up.
 """
 
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ import numpy as np
 from sympy import Rational, cos, pi, sin
 
 from numeric import PinballMap
-from numeric.flights.corners import CIRCLE, ELLIPSE, FOCAL, LINE, Piece, piece_of
+from numeric.flights.corners import CIRCLE, ELLIPSE, FOCAL, LINE, PieceNumbers, piece_of
 from numeric.flights.pieces import Pieces
 from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import phase_starts
@@ -23,10 +23,10 @@ from symbolic.tables.table import Table, theta
 from verification.measure.extremes.kernels import Wide
 
 WIDE = np.longdouble
-START = WIDE(2.0**-58)  # as a share of the table: of another piece, what is nearer is rounding
-NEARBY = WIDE(2.0**-40)  # the same: of corners and tangents, what may lie behind the start
-ROUGHLY = 2.0**-30  # the same: a line that passes a piece by more has nothing to do with it
-SKEW = WIDE(2.0**-20)  # the same: by so much a tangent lies beyond the landing of a line that all but touches
+START = WIDE(2.0**-58)  # share of the table: a hit on another piece nearer than this is rounding
+NEARBY = WIDE(2.0**-40)  # the same: so far behind the start, corners and tangents still count
+ROUGHLY = 2.0**-30  # the same: a line that passes a piece at more cannot meet it
+SKEW = WIDE(2.0**-20)  # the same: so far beyond the landing, a tangent still counts
 
 
 def spikes(count: int) -> Table:
@@ -41,14 +41,14 @@ def spikes(count: int) -> Table:
 
 
 def comet() -> Table:
-    """An arc of an ellipse of eccentricity 0.999 with the far tip, by its radius about the focus, and a chord."""
+    """An arc of an ellipse of eccentricity 0.999 with its far tip, about the focus, closed by a chord."""
     rho = 1 / (1 + Rational(999, 1000) * cos(theta))
     arc = tables.arc("arc", rho * cos(theta), rho * sin(theta), pi / 2, 3 * pi / 2)
     return tables.piecewise(arc, tables.arc("chord", 0, theta, -1, 1), name="comet")
 
 
 def discs(count: int) -> Table:
-    """The unit square with a row and as many columns of so many discs in it."""
+    """The unit square with `count` rows and columns of discs in it."""
     step = Rational(1, count)
     holes = [
         tables.disc(f"disc{i}.{j}", (step * (i + Rational(1, 2)), step * (j + Rational(1, 2))), step / 4)
@@ -78,8 +78,8 @@ class Hit(NamedTuple):
     size: Any  # sum of the moduli of the numbers from which the two ends are added up
 
 
-def pieces(family: Pieces, shape: Any) -> list[Piece[Any]]:
-    """The numbers of every piece in 80 bits, nothing looked up."""
+def pieces(family: Pieces, shape: Any) -> list[PieceNumbers[Any]]:
+    """Every piece of a table in 80 bits, computed from its program."""
     ops: Any = Wide()
     wide = [WIDE(float(x)) for x in shape]
     return [
@@ -88,16 +88,16 @@ def pieces(family: Pieces, shape: Any) -> list[Piece[Any]]:
     ]
 
 
-def centred(piece: Piece[Any]) -> Piece[Any]:
-    """The same piece from the centre of its ellipse, where it is an arc about a focus."""
+def centred(piece: PieceNumbers[Any]) -> PieceNumbers[Any]:
+    """The same piece described from the centre of its ellipse, where it is an arc about a focus."""
     if piece.kind != FOCAL:
         return piece
     e = WIDE(1) - piece.radius
     return piece._replace(kind=ELLIPSE, origin=(-e * piece.A[0], -e * piece.A[1]))
 
 
-def placed(known: list[Piece[Any]], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
-    """Point, unit direction and `size` of the states that the fields of particles say."""
+def placed(known: list[PieceNumbers[Any]], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
+    """Point, unit direction and `size` (as in `Hit`) of the particles with these kernel fields."""
     at, p, q = own[0].astype(int), own[1].astype(WIDE), own[2].astype(WIDE)
     line = np.array([kind == LINE for kind in family.kinds])[at]
     length = np.where(line, 1, np.hypot(p, q))
@@ -121,7 +121,7 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
     count = z.shape[1]
     best, where = np.full(count, np.inf, dtype=WIDE), np.full(count, -1)
     straight, weight = np.zeros(count, dtype=WIDE), np.zeros(count, dtype=WIDE)
-    near: list[tuple[Any, ...]] = []  # of whom, how far ahead, how far aside, size
+    near: list[tuple[Any, ...]] = []  # particles, distance ahead, distance aside, size
     roughly = z.astype(float), v.astype(float)
     with np.errstate(all="ignore"):
         for j, piece in enumerate(known):
@@ -147,8 +147,8 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
     return Hit(best, where, x, y, aside.astype(float), straight.astype(float), (size + weight).astype(float))
 
 
-def _may_meet(piece: Piece[Any], start: Any, z: Any, v: Any, table: float) -> Any:
-    """Which lines may meet a piece, or pass it by `ROUGHLY` of the table: in doubles, which err by much less."""
+def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float) -> Any:
+    """Which lines may meet a piece, or pass it within `ROUGHLY` of the table, in doubles, which err by much less."""
     least = ROUGHLY * table
     if piece.kind == LINE:  # both ends on one side
         one, two = (_cross(v, [float(end[i]) - z[i] for i in (0, 1)]) for end in (piece.start, start))
@@ -160,8 +160,10 @@ def _may_meet(piece: Piece[Any], start: Any, z: Any, v: Any, table: float) -> An
     return ~(abs(m) > np.hypot(a, b) + least)
 
 
-def _near(family: Pieces, known: list[Piece[Any]], j: int, z: Any, v: Any, size: Any) -> Iterator[tuple[Any, Any, Any]]:
-    """How far ahead and aside of lines the corner at which a piece begins and its tangent are, and the size there."""
+def _near(
+    family: Pieces, known: list[PieceNumbers[Any]], j: int, z: Any, v: Any, size: Any
+) -> Iterator[tuple[Any, Any, Any]]:
+    """Distances ahead and aside of the corner where a piece begins, and of its tangent, and `size` there, for lines."""
     piece = known[j]
     if not family.closed[j]:
         corner = [piece.start[i] - z[i] for i in (0, 1)]
@@ -171,8 +173,8 @@ def _near(family: Pieces, known: list[Piece[Any]], j: int, z: Any, v: Any, size:
         yield _tangent(piece, family.closed[j], z, v, size)
 
 
-def _added_up(piece: Piece[Any], point: Any) -> Any:
-    """The moduli of the numbers from which a piece adds up a point of its own: its origin, and the way from there."""
+def _added_up(piece: PieceNumbers[Any], point: Any) -> Any:
+    """Sum of moduli of the numbers from which a point of a piece is added up: its origin, and the way from there."""
     return sum(abs(piece.origin[i]) + abs(point[i] - piece.origin[i]) for i in (0, 1))
 
 
@@ -180,8 +182,8 @@ def _cross(v: Any, w: Any) -> Any:
     return v[0] * w[1] - v[1] * w[0]
 
 
-def _met(piece: Piece[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
-    """Where a line meets a piece's curve: length, `p`, `q`, cosine of the incidence, and whether it is on the piece."""
+def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
+    """Intersections of lines with a piece's curve: length, coordinates `p`, `q`, cosine of incidence, on the piece?"""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     if piece.kind == LINE:
@@ -200,8 +202,8 @@ def _met(piece: Piece[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any)
     return found
 
 
-def _within(piece: Piece[Any], closed: bool, p: Any, q: Any) -> Any:
-    """Is `(p, q)` on the arc? By the angle from its middle."""
+def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
+    """Is `(p, q)` on the arc, by the angle from its middle?"""
     if closed:
         return np.isfinite(p)
     c = piece.middle[0] * p + piece.middle[1] * q
@@ -209,8 +211,8 @@ def _within(piece: Piece[Any], closed: bool, p: Any, q: Any) -> Any:
     return np.abs(np.arctan2(s, c)) <= np.arctan2(piece.half[0], piece.half[1])
 
 
-def _tangent(piece: Piece[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
-    """How far ahead, and how far aside, the tangent of a piece along the line is; infinite where there is none."""
+def _tangent(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
+    """Distances ahead and aside of the tangent to a piece along the line, and `size`; infinite aside without one."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     root = np.hypot(a, b)
@@ -222,19 +224,19 @@ def _tangent(piece: Piece[Any], closed: bool, z: Any, v: Any, size: Any) -> tupl
 
 
 Starts = tuple[Any, Any, Any]  # component, parameter, exit angle
-STRAIGHT = 1.5707  # exit angles beyond are no aim
+STRAIGHT = 1.5707  # exit angles beyond are left out
 
 
 def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
-    """Particles by what makes their flights hard, about `count` of each kind that the table has."""
+    """Particles with hard flights, by kind, about `count` of each kind that the table has."""
     rng, family = np.random.default_rng(seed), map.family
     assert isinstance(family, Pieces)
     known = family.known
     starts = phase_starts(map, count, seed=seed)
     where, at = starts.component, starts.theta
-    frame = map.states.frame(where, at)
+    frame = map.family.frame(where, at)
     side = rng.choice([-1, 1], count)
-    ulps = rng.integers(0, 40, count) * 2.0**-53  # about the roundings of an angle, or more
+    ulps = rng.integers(0, 40, count) * 2.0**-53  # a few roundings of an angle
     off = side * np.where(rng.random(count) < 0.5, ulps, 10 ** rng.uniform(-15, -3, count))
     goals = np.array([piece.start for j, piece in enumerate(known) if not family.closed[j]])
     goal = goals[rng.integers(0, len(goals), count)]
@@ -257,20 +259,20 @@ def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
 
 
 def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
-    """Those of the particles that can fly in the direction `away`, turned by `off`."""
-    frame = map.states.frame(starts.component, starts.theta)
+    """The particles that can fly in the direction `away`, turned by `off`."""
+    frame = map.family.frame(starts.component, starts.theta)
     phi = frame.angle(map.states.ops, np.cos(away), np.sin(away)) + off
-    good = np.abs(phi) < STRAIGHT  # not where there is no such direction either
+    good = np.abs(phi) < STRAIGHT  # false also where there is no such direction
     return starts.component[good], starts.theta[good], phi[good]
 
 
 def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
-    """From one end of a piece, or beside it, to the other: nowhere else can a flight run along a side or a chord."""
+    """Particles from one end of a piece, or beside it, to the other end: along a side or the chord of an arc."""
     where = starts.component
     ends = np.array(map.states.ends)[where]
     at = np.where(off > 0, ends[:, 0], ends[:, 1])
     at = at + (ends.sum(axis=1) / 2 - at) * np.abs(off)
-    here, there = (map.states.frame(where, theta) for theta in (at, ends.sum(axis=1) - at))
+    here, there = (map.family.frame(where, theta) for theta in (at, ends.sum(axis=1) - at))
     away = np.arctan2(there.y - here.y, there.x - here.x)
     phi = here.angle(map.states.ops, np.cos(away), np.sin(away))
     phi = np.clip(phi + off[::-1], -np.pi / 2 + 1e-14, np.pi / 2 - 1e-14)
@@ -278,7 +280,7 @@ def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
 
 
 def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
-    """Fields before and after one bounce, and the code of the outcome."""
+    """Kernel fields before and after one bounce, and the code of the status."""
     component, theta, phi = starts
     own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
     lam = np.full(theta.size, float(map.lam))
@@ -287,31 +289,38 @@ def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
     return own, result.record[0], result.rows["code"]
 
 
-class Verdict(NamedTuple):
-    """Of one bounce of many particles: which stopped, which landed on a wrong piece, errors to the side of the line."""
+class BounceErrors(NamedTuple):
+    """One bounce of many particles: which stopped, which landed on a wrong piece, errors across the line."""
 
     stopped: Any
     wrong: Any
     error: Any  # in units of 2**-52 of `size`; 0 where a particle stopped
-    reason: Any  # of those that stopped: how closely the line passes a corner or a tangent, in the same units
+    reason: Any  # for those that stopped: distance of the line from a corner or a tangent, same units
 
 
-def judged(map: PinballMap, starts: Starts) -> Verdict:
-    """What the kernel made of particles, against every piece tried by hand."""
+def judged(map: PinballMap, starts: Starts) -> BounceErrors:
+    """The verdict on a kernel's bounce of particles, against the first hits by hand."""
     own, after, code = bounced(map, starts)
     truth = hits(map, own)
     assert isinstance(map.family, Pieces)
     there = [*after[:3], 0 * after[0], 1 + 0 * after[0]]
     landed, _, _ = placed(pieces(map.family, map.shape), map.family, there)
     stopped = code != 0
-    wrong = ~stopped & (after[0] != truth.piece)
+    wrong = ~stopped & ~_one_place(map.family, after[0].astype(int), truth.piece)
     with np.errstate(invalid="ignore"):
         aside = np.hypot(landed[0] - truth.x, landed[1] - truth.y).astype(float) * truth.straight / truth.size
-    return Verdict(stopped, wrong, np.where(stopped, 0, aside / 2.0**-52), np.where(stopped, truth.aside, 0))
+    return BounceErrors(stopped, wrong, np.where(stopped, 0, aside / 2.0**-52), np.where(stopped, truth.aside, 0))
+
+
+def _one_place(family: Pieces, one: Any, other: Any) -> Any:
+    """Are two pieces the same, or smooth neighbours, so that either may have a point near both?"""
+    smooth = np.array([not end for _, end in family.corners])
+    after = np.array(family.following)
+    return (one == other) | (smooth[one] & (after[one] == other)) | (smooth[other] & (after[other] == one))
 
 
 class CubicHit(NamedTuple):
-    """First hits on a boundary of cubics; where all that lies ahead is in doubt by rounding, `sure` is false."""
+    """First hits on a boundary of cubics; `sure` is false where rounding leaves the hit in doubt."""
 
     x: Any
     y: Any
@@ -320,9 +329,9 @@ class CubicHit(NamedTuple):
 
 
 def cubic_hits(map: PinballMap, fields: list[Any]) -> CubicHit:
-    """Of particles on pieces cubic in `theta` from 0 to 1: every zero of every cubic, halved to its last bit in 80.
+    """First hits by all zeros of the cubics of each piece, bisected to the last of 80 bits, for each particle.
 
-    Of the cubic from which a particle leaves the known zero is divided out. `sure` is false where a line passes an end
+    The known zero is divided out of the cubic from which a particle leaves. `sure` is false where a line passes an end
     of a piece or a tangent by less than `2**-44` of the table, before the hit or at it.
     """
     ops: Any = Wide()
@@ -340,7 +349,7 @@ def cubic_hits(map: PinballMap, fields: list[Any]) -> CubicHit:
         plain = [np.array([row[i] + nought, row[i + 4] + nought]) for i in range(4)]
         plain[0] = plain[0] - z
         second, first = plain[2] + 3 * theta * plain[3], plain[1] + (2 * plain[2] + 3 * theta * plain[3]) * theta
-        moved = [first, second, plain[3], 0 * plain[3]]  # by the way from `theta`, the known zero divided out
+        moved = [first, second, plain[3], 0 * plain[3]]  # in the distance from `theta`, with the known zero divided out
         terms = [np.where(leaves, a, b) for a, b in zip(moved, plain, strict=True)]
         low, high = np.where(leaves, -theta, 0), np.where(leaves, 1 - theta, 1)
         p = [_cross(v, term) for term in terms]
@@ -382,6 +391,6 @@ def _value(p: list[Any], x: Any) -> Any:
 
 
 def _length(v: Any, terms: list[Any], x: Any, leaves: Any) -> Any:
-    """How far along the line a point of a cubic lies, whose terms come with the known zero divided out or not."""
+    """Distance along the line of a point of a cubic; where `leaves`, the terms have the known zero divided out."""
     along = _value([v[0] * term[0] + v[1] * term[1] for term in terms], x)
     return np.where(leaves, along * x, along)

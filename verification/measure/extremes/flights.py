@@ -1,11 +1,11 @@
 """The extreme flights, as data: a scene, its contraction, and the starts.
 
-A start is `(component, theta, phi)`. On a table with joins the parameter may be an `Ulps`: so many
-units in the last place inside the end of a component; and the angle an `Aim`: at a join, and then so many ulps off.
+A start is `(component, theta, phi)`. On a table with joins the parameter may be an `Ulps`: so many units in the last
+place inside the end of a component; and the angle an `Aim`: at a join, and then so many ulps off.
 
 Errors and condition number of one bounce are measured against a proved enclosure of the truth with a hundred digits.
-Data and result are `(theta, psi)`, the parameter and the direction of flight in the plane: turning with the boundary,
-which `phi` does, would count the curvature twice. A shape that no double is counts as rounded data too.
+Data and result are `(theta, psi)`, the parameter and the direction of flight in the plane: `phi`, which turns with the
+boundary, would count the curvature twice. A shape that is not a double counts as rounded data too.
 """
 
 from copy import copy
@@ -22,8 +22,8 @@ from numeric import PinballMap, Status
 from verification.arithmetic.balls import as_ball, bits_of
 from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.maps.exact import Bounce, ExactMap, exact_bounce
-from verification.measure.extremes.kernels import GOES_ON, KERNELS, TEXTBOOK, Kernel
-from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured, Stability
+from verification.measure.extremes.kernels import GOES_ON, KERNELS, TEXTBOOK, TestedKernel
+from verification.measure.extremes.near import DOUBLE, WRONG, Errors, Finding, StabilityVerdict
 
 JOIN = 2 * pi / 3
 HALF_HEIGHT = 3**0.5 / 4
@@ -34,7 +34,7 @@ THETA_STAR = 0.2545268713206783425  # the orbit's bounce on the arc, by `verific
 
 @dataclass(frozen=True)
 class Ulps:
-    """A parameter this many ulps inside the upper (`side = 1`) or lower (-1) end of its component."""
+    """A parameter this many ulps inside the upper (`side = 1`) or lower (`side = -1`) end of its component."""
 
     count: int
     side: int = 1
@@ -42,7 +42,7 @@ class Ulps:
 
 @dataclass(frozen=True)
 class Aim:
-    """The exit angle to the wall's end on one side, and then so many ulps of the angle up, or (negative) down."""
+    """The exit angle towards the wall's end on one side, plus so many ulps of the angle."""
 
     count: int
     side: int = 1
@@ -52,8 +52,8 @@ Start = tuple[int, Any, Any]
 
 
 @dataclass(frozen=True)
-class Case:
-    """One bounce asked of every kernel, for each start; `exact` is the shape, where no double is it."""
+class KernelCase:
+    """A test case: one bounce by every kernel from each start; `shape` is exact, also where it is not a double."""
 
     name: str
     group: str
@@ -64,7 +64,7 @@ class Case:
 
     @property
     def shapes(self) -> dict[str, Any]:
-        """The shape as keywords."""
+        """The shape parameters as keywords."""
         return dict(self.shape)
 
 
@@ -80,28 +80,28 @@ ALONG: tuple[Start, ...] = ((0, 0.3, 0.0), (0, -1.1, 0.0), (0, 1.9, 0.0))
 TIP: tuple[Start, ...] = ((0, 1e-3, 0.2), (0, 1e-8, -0.4), (0, -1e-12, 1.2))
 
 
-def _grazing(scene: str) -> Case:
+def _grazing(scene: str) -> KernelCase:
     gaps = (1e-3, 1e-6, 1e-9, 1e-12, 1e-15)
     starts = tuple((0, (0.4, -1.7)[i % 2], (1, -1)[i % 2] * (pi / 2 - gap)) for i, gap in enumerate(gaps))
-    return Case(f"{scene}: exits grazing to 1e-3 ... 1e-15", "Grazing exits", scene, starts, shape=TABLES[scene])
+    return KernelCase(f"{scene}: exits grazing to 1e-3 ... 1e-15", "Grazing exits", scene, starts, shape=TABLES[scene])
 
 
-def _cusp() -> tuple[Case, ...]:
+def _cusp() -> tuple[KernelCase, ...]:
     gaps = (1e-2, 1e-5, 1e-8, 1e-11, 1e-14)
     near = tuple((0, (1, -1)[i % 2] * (pi - gap), (0.7, -1.2)[i % 2]) for i, gap in enumerate(gaps))
     aimed = tuple((0, theta, theta / 2 + miss) for theta in (1.0, -2.2) for miss in (1e-3, 1e-6, -1e-9, 1e-12))
     hit = ((0, 1.0, 0.5), (0, -2.0, -1.0))
     return (
-        Case("start 1e-2 ... 1e-14 from the cusp", "The cusp of the cardioid", "cardioid", near),
-        Case("aimed past the cusp by 1e-3 ... 1e-12", "The cusp of the cardioid", "cardioid", aimed),
-        Case("aimed at the cusp", "The cusp of the cardioid", "cardioid", hit),
+        KernelCase("start 1e-2 ... 1e-14 from the cusp", "The cusp of the cardioid", "cardioid", near),
+        KernelCase("aimed past the cusp by 1e-3 ... 1e-12", "The cusp of the cardioid", "cardioid", aimed),
+        KernelCase("aimed at the cusp", "The cusp of the cardioid", "cardioid", hit),
     )
 
 
-def _ellipses() -> tuple[Case, ...]:
+def _ellipses() -> tuple[KernelCase, ...]:
     group = "Axis of the ellipse"
     return tuple(
-        Case(f"a = {label}{where}", group, "ellipse", starts, shape=(("a", a),))
+        KernelCase(f"a = {label}{where}", group, "ellipse", starts, shape=(("a", a),))
         for label, a, where, starts in (
             ("1", Fraction(1), "", USUAL),
             ("1 + 2^-52", 1 + Fraction(1, 2**52), "", USUAL),
@@ -115,12 +115,12 @@ def _ellipses() -> tuple[Case, ...]:
     )
 
 
-def _eggs() -> tuple[Case, ...]:
+def _eggs() -> tuple[KernelCase, ...]:
     group, flat = "Bulge of the egg", pi / 3
     gaps = (0.0, 1e-12, 1e-6)
     leaving = tuple((0, flat + gap, phi) for gap in gaps for phi in (0.3, -1.5, pi / 2 - 1e-6))
     return tuple(
-        Case(f"alpha = {label}", group, "egg", starts, shape=(("alpha", alpha),))
+        KernelCase(f"alpha = {label}", group, "egg", starts, shape=(("alpha", alpha),))
         for label, alpha, starts in (
             ("0", Fraction(0), USUAL),
             ("1e-300", Fraction(1, 10**300), USUAL),
@@ -131,43 +131,47 @@ def _eggs() -> tuple[Case, ...]:
     )
 
 
-def _contractions() -> tuple[Case, ...]:
+def _contractions() -> tuple[KernelCase, ...]:
     return tuple(
-        Case(f"{scene}, lam = {lam}", "Ends of the contraction", scene, ALONG if lam == 0 else USUAL, lam, shape)
+        KernelCase(f"{scene}, lam = {lam}", "Ends of the contraction", scene, ALONG if lam == 0 else USUAL, lam, shape)
         for scene, shape in TABLES.items()
         for lam in (0, 1e-300, 1e-8, 1 - 1e-12, 1)
     )
 
 
-def _joins() -> tuple[Case, ...]:
+def _joins() -> tuple[KernelCase, ...]:
     group, made = "Joins of the cuspless table", []
     for count in (0, 1, 2, 1000):
         sides = (1, -1)
         arc = tuple((0, Ulps(count, side), side * phi) for side in sides for phi in (0.4, -0.9))
         wall = tuple((1, Ulps(count, side), side * phi) for side in sides for phi in (0.4, -0.9))
-        made.append(Case(f"start on the arc, {count} ulp from a join", group, "cuspless", arc))
-        made.append(Case(f"start on the wall, {count} ulp from a join", group, "cuspless", wall))
+        made.append(KernelCase(f"start on the arc, {count} ulp from a join", group, "cuspless", arc))
+        made.append(KernelCase(f"start on the wall, {count} ulp from a join", group, "cuspless", wall))
     for count in (0, 1, -1, 2, -2, 1000, -1000):
         aimed = tuple((0, theta, Aim(count, side)) for side in (1, -1) for theta in (0.5, -1.3))
-        made.append(Case(f"aimed at a join, the angle {count:+d} ulp", group, "cuspless", aimed))
+        made.append(KernelCase(f"aimed at a join, the angle {count:+d} ulp", group, "cuspless", aimed))
     return tuple(made)
 
 
-def _corner_orbit() -> tuple[Case, ...]:
-    """The orbit of period 4 through both joins: its flights from a join, from next to it, to it, and to next to it."""
+def _corner_orbit() -> tuple[KernelCase, ...]:
+    """The orbit of period 4 through both joins: flights from a join, from beside it, to it, and to beside it."""
     group, made = "The orbit through both joins, at lambda*", []
     for count in (0, 1, 2, 1000):
         arc = tuple((0, Ulps(count, side), side * PHI_STAR) for side in (1, -1))
         wall = tuple((1, Ulps(count, -side), side * PHI_STAR) for side in (1, -1))
-        made.append(Case(f"from the join, {count} ulp on the side of the arc", group, "cuspless", arc, LAMBDA_STAR))
-        made.append(Case(f"from the join, {count} ulp on the side of the wall", group, "cuspless", wall, LAMBDA_STAR))
+        made.append(
+            KernelCase(f"from the join, {count} ulp on the side of the arc", group, "cuspless", arc, LAMBDA_STAR)
+        )
+        made.append(
+            KernelCase(f"from the join, {count} ulp on the side of the wall", group, "cuspless", wall, LAMBDA_STAR)
+        )
     for count in (0, 1, -1, 2, -2, 1000, -1000):
         to = tuple((0, side * THETA_STAR, Aim(-side * count, -side)) for side in (1, -1))
-        made.append(Case(f"to the join, the angle {count:+d} ulp", group, "cuspless", to, LAMBDA_STAR))
+        made.append(KernelCase(f"to the join, the angle {count:+d} ulp", group, "cuspless", to, LAMBDA_STAR))
     return tuple(made)
 
 
-CASES: tuple[Case, ...] = (
+CASES: tuple[KernelCase, ...] = (
     *(_grazing(scene) for scene in TABLES),
     *_cusp(),
     *_ellipses(),
@@ -184,9 +188,9 @@ SMALLER = mpmath.mpf(10) ** -35  # step of the difference quotients: 30 digits a
 
 
 class Truth:
-    """The map of a case's exact table, in balls and where they refuse in mpmath numbers."""
+    """The map of a case's exact table: in balls, and in mpmath numbers where these fail."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: KernelCase) -> None:
         self.map = PinballMap(case.scene, lam=case.lam, **case.shapes)
         self.lam = Fraction(float(self.map.lam.flat[0]))
         exact = copy(self.map)
@@ -194,13 +198,12 @@ class Truth:
         self.exact = ExactMap(exact, DIGITS, self.lam)
         self.mp = self.exact.context
         self.balls = EnclosedMap(exact, self.lam, bits_of(DIGITS + 20))
-        self.rounded = [
-            value != Fraction(shown) for value, shown in zip(exact.exact_shape, self.map.shape, strict=True)
-        ]
+        shown = self.map.shape or exact.exact_shape  # of a table in a unit of its own numbers are exact
+        self.rounded = [value != Fraction(near) for value, near in zip(exact.exact_shape, shown, strict=True)]
         self.nearby = self._nearby(exact) if any(self.rounded) else None
 
-    def starts(self, case: Case) -> list[list[Any]]:
-        """The kernels' fields of every start."""
+    def starts(self, case: KernelCase) -> list[list[Any]]:
+        """The kernels' fields for every start."""
         states = self.map.states
         made = []
         for component, theta, phi in case.starts:
@@ -217,12 +220,12 @@ class Truth:
         return made
 
     def bounce(self, here: Bounce, balls: EnclosedMap | None = None) -> Bounce:
-        """The landing: enclosed and proved the first hit, or by the definition with a hundred digits."""
+        """The landing: enclosed and proved to be the first hit, or by the map in mpmath with a hundred digits."""
         balls = balls or self.balls
         found = balls.bounce(balls.start(as_ball(here.theta), as_ball(here.phi), here.component))
         if isinstance(found, Refusal):
             return self.exact.bounce(here)
-        if found.code == Status.JOIN.code:  # a landing all the same, only one that may be on either part
+        if found.code == Status.JOIN.code:  # a landing, though on either of two parts
             return replace(self.exact.bounce(here), code=0)
         if found.code:
             return found
@@ -230,7 +233,7 @@ class Truth:
         return self.exact.start(middle(found.theta), middle(found.phi), found.component)
 
     def derivative(self, here: Bounce, landed: Bounce) -> Any:
-        """The matrix of `(theta, psi)` by `(theta, psi)`, and by the logarithm of a rounded shape."""
+        """The derivative of the landed `(theta, psi)` by that of the start, and by the logarithm of a rounded shape."""
         mp, exact = self.mp, self.exact
         columns = []
         if self.map.law == "slap":
@@ -247,7 +250,7 @@ class Truth:
         return mp.matrix(columns).T
 
     def gap(self, one: Bounce, other: Bounce) -> list[Any]:
-        """`one - other` in `(theta, psi)`; of a slap only the parameter. Between parts, their distance in the plane."""
+        """`one - other` in `(theta, psi)`, at `lam = 0` in `theta`; between parts the distance replaces `theta`."""
         mp = self.mp
         theta = one.theta - other.theta
         if one.component != other.component:
@@ -266,8 +269,8 @@ class Truth:
         return EnclosedMap(other, self.lam, bits_of(DIGITS + 20))
 
 
-class Asked:
-    """A state that kernels hold, with its true landing and the derivative there, computed once."""
+class ReferenceState:
+    """A start as kernels hold it, with its true landing and the derivative there, computed once."""
 
     def __init__(self, truth: Truth, state: list[Any]) -> None:
         self.truth, self.state = truth, state
@@ -276,11 +279,11 @@ class Asked:
         if self.landed.code:
             return
         mp, matrix = truth.mp, truth.derivative(here, self.landed)
-        self.spread = matrix * matrix.T + mp.eye(matrix.rows)  # of what one unit in data and result can do
+        self.spread = matrix * matrix.T + mp.eye(matrix.rows)  # effect of one unit in data and result
         self.condition = mp.sqrt(max(mp.eigsy(self.spread, eigvals_only=True)))
 
     def why(self, status: str) -> tuple[float, str]:
-        """What the truth has to say of the outcome that a kernel named: how far it is from that, and in words."""
+        """Distance of the true flight from the outcome that a kernel reported (a join, a grazing one), and in words."""
         mp, landed, (vx, vy) = self.truth.mp, self.landed, self.here.v
         if status == Status.JOIN.name:
             x, height = -mp.mpf(1) / 4 - self.here.x, mp.sqrt(3) / 4
@@ -291,26 +294,26 @@ class Asked:
             return cosine, f"the true cos(eta) is {cosine:.2g}, the border 2^-50"
         return (0.0, "the truth stops there too") if landed.code else (1.0, "the truth goes on")
 
-    def measured(self, fields: list[Any], unit: float) -> Measured:
-        """What a kernel made of it."""
+    def measured(self, fields: list[Any], unit: float) -> Errors:
+        """The errors of a kernel's fields, and the condition number."""
         truth, mp = self.truth, self.truth.mp
         if self.landed.code or not all(np.isfinite(float(field)) for field in fields):
             return WRONG
         found = exact_bounce(truth.map, truth.exact, fields)
         gap = mp.matrix(truth.gap(found, self.landed))
         backward = mp.sqrt((gap.T * mp.lu_solve(self.spread, gap))[0])
-        return Measured(*(float(x) for x in (mp.norm(gap) / unit, backward / unit, self.condition)))
+        return Errors(*(float(x) for x in (mp.norm(gap) / unit, backward / unit, self.condition)))
 
 
-def findings(case: Case, starts: int | None = None) -> list[Finding]:
-    """Every kernel on a case: its worst start."""
+def findings(case: KernelCase, starts: int | None = None) -> list[Finding]:
+    """For each kernel, the finding on its worst start."""
     truth = Truth(case)
-    asked = [Asked(truth, state) for state in truth.starts(case)[:starts]]
+    asked = [ReferenceState(truth, state) for state in truth.starts(case)[:starts]]
     return [_finding(case, truth, kernel, asked) for kernel in (*KERNELS, TEXTBOOK) if kernel.runs(truth.map)]
 
 
-def _finding(case: Case, truth: Truth, kernel: Kernel, asked: list[Asked]) -> Finding:
-    worst: Measured | None = None
+def _finding(case: KernelCase, truth: Truth, kernel: TestedKernel, asked: list[ReferenceState]) -> Finding:
+    worst: Errors | None = None
     stopped: dict[str, list[tuple[float, str]]] = {}
     for one in asked:
         fields, status = kernel.bounce(truth.map, one.state, truth.shape)
@@ -320,13 +323,13 @@ def _finding(case: Case, truth: Truth, kernel: Kernel, asked: list[Asked]) -> Fi
         found = one.measured(fields, kernel.unit)
         worst = found if worst is None or found.backward > worst.backward else worst
     said = [max(stopped[status])[1] for status in sorted(stopped)]
-    if worst is not None and worst.stability is Stability.UNSTABLE:
+    if worst is not None and worst.stability is StabilityVerdict.UNSTABLE:
         said.append(CANCELS if kernel is TEXTBOOK else "the backward error")
     return Finding(case.name, kernel.name, worst, ", ".join(sorted(stopped)), reason="; ".join(said))
 
 
 def _ulps(end: float, count: int) -> float:
-    """The double so many ulps above (or, negative, below) another one."""
+    """The double `count` ulps above `end`, below it for negative `count`."""
     for _ in range(abs(count)):
         end = float(np.nextafter(end, inf if count > 0 else -inf))
     return end

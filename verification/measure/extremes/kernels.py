@@ -2,16 +2,14 @@
 
 On 80-bit arrays the step of `numeric/flights` has 64 bits of mantissa, 11 more than the doubles that it judges.
 
-What `numeric.backends.scalars` has for 53 bits is put aside here, word by word, as `numeric.backends.scalars` does
-it: sines and arctangents are the C library's, and a zero is sharpened until its correction is below the unit or
-ceases to shrink. Splitting for exact products, and the outcomes that stop a particle, remain as they are.
-
-All four run the same step; `TEXTBOOK` is the quadratic formula that one would write first, kept to show that the
-measure tells it apart.
+Functions made for 53 bits are replaced: sines and arctangents are the C library's, and a zero is sharpened until its
+correction is below the unit or ceases to shrink. Splitting for exact products, and the outcomes that stop a particle,
+remain as they are. All four run the same step; `TEXTBOOK` is the plain quadratic formula, kept to show that the
+measure finds its errors.
 
 Products of many derivative matrices and the exponents they give are tested for underflow, overflow, and sums of
-logarithms. The number asked for is the growth a bounce. Its condition number is the largest effect of rounding every
-bounce of the orbit at random, found by doing so a million times too strongly, and one for the rounding of the result.
+logarithms. The number sought is the growth a bounce. Its condition number is the largest effect of rounding every
+bounce of the orbit at random, found with roundings a million times too strong, plus one for the result's rounding.
 """
 
 import math
@@ -37,7 +35,7 @@ from symbolic.expressions.text import kernel, load
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, K1, a, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic.balls import ARRAYS, Arithmetic, multiprecision
-from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured, Stability
+from verification.measure.extremes.near import DOUBLE, WRONG, Errors, Finding, StabilityVerdict
 
 WIDE = 2.0**-63  # the unit of rounding
 PI = np.longdouble("3.14159265358979323846264338327950288")
@@ -47,7 +45,7 @@ Slope = Callable[[Any], tuple[Any, Any]]
 
 
 class Wide(ArrayBackend):
-    """80-bit arrays. Masks are boolean arrays."""
+    """Arithmetic of 80-bit NumPy arrays; masks are boolean arrays."""
 
     splitter = 2.0**32 + 1  # halves a mantissa of 64 bits
 
@@ -66,18 +64,18 @@ class Wide(ArrayBackend):
 
     @property
     def pi_low(self) -> Any:
-        """What that number lacks."""
+        """Pi less the 80-bit number nearest to it."""
         return PI_LOW
 
     def angle(self, y: Any, x: Any) -> Any:
-        """`atan2(y, x)`."""
+        """The angle `atan2(y, x)`."""
         return np.arctan2(y, x)
 
     def turn(self, x: Any, quarters: int = 2) -> tuple[Any, Any]:
-        """`(cos x, sin x)`."""
+        """Cosine and sine of `x`, in radians; `quarters`, the bound of `abs(x)` in quarter turns, is not needed."""
         return np.cos(x), np.sin(x)
 
-    # the library's functions, of 64 bits: those of arrays are of doubles
+    # the library's functions, of 64 bits: those of `ArrayBackend` are for doubles
     atan2, exp, log, atan = (staticmethod(cast(Any, f)) for f in (np.arctan2, np.exp, np.log, np.arctan))
     sinh, cosh, tanh = (staticmethod(cast(Any, f)) for f in (np.sinh, np.cosh, np.tanh))
     root = staticmethod(cast(Any, lambda x, n: x ** (np.longdouble(1) / n)))
@@ -93,13 +91,13 @@ class Wide(ArrayBackend):
         wanted: Any = None,
         accepts: Callable[[Any], Any] | None = None,
     ) -> Any:
-        """As `bracketed_zero`, to the last bits."""
+        """A zero as by `bracketed_zero`, sharpened to the last bits."""
         found = roots.bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
         return sharpened(function, found, scale, wanted)
 
 
 def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
-    """Newton's steps from a zero known to 53 bits, each lane until its correction is below the unit or grows.
+    """A zero known to 53 bits after Newton's steps, in each lane until the correction is below the unit or grows.
 
     >>> root = sharpened(lambda x: (x * x - 2, 2 * x), np.array([np.longdouble(2.0**0.5)]), np.longdouble(1))
     >>> bool(abs(root[0] - np.sqrt(np.longdouble(2))) <= 2 * np.finfo(np.longdouble).eps)
@@ -120,7 +118,7 @@ def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
 
 
 def made_unit(family: Family, state: list[Any]) -> list[Any]:
-    """An 80-bit state, of arrays, whose pairs have length one again: as doubles they have it to 53 bits only.
+    """An 80-bit state whose pairs are scaled to length one: as doubles they have that length to 53 bits only.
 
     >>> from numeric import PinballMap
     >>> u, v = made_unit(PinballMap("cardioid").family, [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])
@@ -132,7 +130,7 @@ def made_unit(family: Family, state: list[Any]) -> list[Any]:
         if i + 1 < len(state):
             x, y = state[i : i + 2]
             size = np.hypot(x, y)
-            if i == 1:  # on a wall the first of them is a height and no pair
+            if i == 1:  # on a wall this is a height and no pair
                 size = np.where(state[0] > 0.5, 1, size)
             made[i], made[i + 1] = x / size, y / size
     return made
@@ -142,22 +140,22 @@ GOES_ON = Status.REGULAR.name
 
 
 @dataclass(frozen=True)
-class Kernel:
-    """A way to bounce, under the name of the tables, with its unit of rounding."""
+class TestedKernel:
+    """A way to compute a bounce, with the name that tables show, and its unit of rounding."""
 
     name: str
     unit: float = DOUBLE
 
     def runs(self, map: PinballMap) -> bool:
-        """Is it made for this table?"""
+        """Is it available for this table?"""
         if self is TEXTBOOK:
             return isinstance(map.family, Ellipse) and map.law != "slap"
         return self is not LONGDOUBLE or np.finfo(np.longdouble).nmant >= 63
 
     def bounce(self, map: PinballMap, state: list[Any], exact: Sequence[Any] = ()) -> tuple[list[Any], str]:
-        """The fields after one bounce, and the outcome that the kernel itself names.
+        """The fields after one bounce, and the outcome that the kernel itself reports.
 
-        `exact` is the shape where no double is it: what has 80 bits rounds it for itself.
+        `exact` is the exact shape, where it is not a double: an 80-bit kernel rounds that.
         """
         if self in (LLVM, NUMPY):
             return _compiled(map, state, self is LLVM)
@@ -166,7 +164,8 @@ class Kernel:
         lam = float(map.lam.flat[0])
         if self is LONGDOUBLE:
             own = made_unit(map.family, [np.array([np.longdouble(x)]) for x in state])
-            shape = [np.longdouble(str(N(x, 25))) for x in exact or map.exact_shape]
+            letters = (exact or map.exact_shape) if map.shape else ()  # none after scaling
+            shape = [np.longdouble(str(N(x, 25))) for x in letters]
             with np.errstate(all="ignore"):
                 fields, code = map.family.bounce(Wide(), map.law, shape, np.array([np.longdouble(lam)]), own)
             return [field[0] for field in fields], _status(code)
@@ -181,17 +180,17 @@ class Kernel:
         return fields, _status(code)
 
 
-LLVM = Kernel("llvm")
-NUMPY = Kernel("numpy")
-LONGDOUBLE = Kernel("longdouble", WIDE)
-MPMATH = Kernel("mpmath, 16 digits")
-TEXTBOOK = Kernel("textbook discriminant")
+LLVM = TestedKernel("llvm")
+NUMPY = TestedKernel("numpy")
+LONGDOUBLE = TestedKernel("longdouble", WIDE)
+MPMATH = TestedKernel("mpmath, 16 digits")
+TEXTBOOK = TestedKernel("textbook discriminant")
 KERNELS = LLVM, NUMPY, LONGDOUBLE, MPMATH
 
 
 def textbook(map: PinballMap, state: list[float]) -> list[Any]:
-    """One bounce in the ellipse by the quadratic formula, with nothing divided out and the angles as they come."""
-    a, lam = map.shape[0], float(map.lam.flat[0])
+    """One bounce in the ellipse by the plain quadratic formula: no known zero is divided out."""
+    a, lam = float(map.exact_shape[0]), float(map.lam.flat[0])
     ux, uy, vx, vy = state
     x, y = a * ux, uy
     p, q, r = vx * vx / a / a + vy * vy, x * vx / a / a + y * vy, x * x / a / a + y * y - 1
@@ -205,7 +204,7 @@ def textbook(map: PinballMap, state: list[float]) -> list[Any]:
 
 
 def _compiled(map: PinballMap, state: list[Any], kernels: bool) -> tuple[list[Any], str]:
-    """A bounce by the engine, on LLVM lanes or on NumPy arrays."""
+    """Fields and outcome after a bounce by the engine, on LLVM lanes or on NumPy arrays."""
     engine = map.engine._replace(kernels=kernels)
     own = [np.array([float(x)]) for x in state]
     result = engine.run(KernelSpec(map.law, record=True), own, np.full(1, float(map.lam)), map.shape, 1)
@@ -239,7 +238,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Resting:
-    """A cycle with known multipliers, watched for so many bounces: the short axis of the ellipse `a = 3/2`."""
+    """A cycle with known multipliers, followed for so many bounces: the short axis of the ellipse `a = 3/2`."""
 
     name: str
     lam: float
@@ -247,7 +246,7 @@ class Resting:
 
 
 def findings(asked: Product | Resting) -> list[Finding]:
-    """The engine's exponent and the textbook's, the logarithm of a product."""
+    """The exponents by the engine and by a plain product of matrices, with errors."""
     return _of_product(asked) if isinstance(asked, Product) else _of_rest(asked)
 
 
@@ -273,7 +272,7 @@ def _of_product(asked: Product) -> list[Finding]:
 
 
 def _of_rest(asked: Resting) -> list[Finding]:
-    """Both exponents; the second is where the determinant underflows."""
+    """Both exponents; for the second one the determinant underflows."""
     context = mpmath.MPContext()
     context.dps = DIGITS
     at = {a: Rational(3, 2), lam: Rational(asked.lam)}
@@ -303,14 +302,14 @@ def _of_rest(asked: Resting) -> list[Finding]:
 
 def _finding(case: str, name: str, found: float, truth: Any, condition: float) -> Finding:
     error = float(abs(found - truth)) / DOUBLE if np.isfinite(found) else inf
-    measured = Measured(error, error / condition, condition) if error < inf else WRONG
-    if name != NAIVE or measured.stability is Stability.STABLE:
+    measured = Errors(error, error / condition, condition) if error < inf else WRONG
+    if name != NAIVE or measured.stability is StabilityVerdict.STABLE:
         return Finding(case, name, measured)
     return Finding(case, name, measured, "", LOGARITHMS, reason=CANCELLED if error < inf else BEYOND)
 
 
 def naive(matrices: Any) -> float:
-    """The logarithm of the length of the product applied to a vector, a bounce, with nothing scaled on the way."""
+    """The growth a bounce by the product of the matrices applied to a vector, with no scaling on the way."""
     vector = np.array(GENERIC)
     with np.errstate(all="ignore"):
         for matrix in matrices:
@@ -319,7 +318,7 @@ def naive(matrices: Any) -> float:
 
 
 def growth_of(matrices: Any, context: Any) -> Any:
-    """The same in multiprecision, where nothing overflows."""
+    """The growth rate per bounce of a vector in multiprecision, where nothing overflows."""
     x, y = (context.mpf(component) for component in GENERIC)
     count = 0
     for p, q, r, s in matrices:
@@ -334,7 +333,7 @@ def _entries(arithmetic: Arithmetic) -> Any:
 
 
 def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
-    """The paper's matrix of every bounce of a recorded orbit, whose doubles are taken exactly."""
+    """The paper's matrix of every bounce of a recorded orbit, whose doubles are taken as exact."""
     from numeric.backends.scalars import ScalarBackend
 
     ops, of, contraction = ScalarBackend(context), _entries(multiprecision(context)), context.mpf(float(map.lam))
@@ -348,7 +347,7 @@ def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
 
 
 def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = None) -> Any:
-    """The same in float64, from an orbit whose numbers are off by so much at random."""
+    """The matrices in float64, for an orbit whose numbers are changed at random by `strength`."""
     from numeric.backends.scalars import ArrayBackend
 
     theta, phi, eta = (field + (strength * rng.choice([-1, 1], field.shape) if rng is not None else 0)
@@ -360,14 +359,14 @@ def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = Non
 
 
 def _placed(curve: Any, root: Any) -> Any:
-    """Point and curvature, negative where the boundary focuses."""
+    """Point and curvature of a curve, the curvature negative where the boundary focuses."""
     x, y, dx, dy, ddx, ddy = curve
     square = dx * dx + dy * dy
     return x, y, -(dx * ddy - dy * ddx) / (square * root(square))
 
 
 def _chain(matrices: Any) -> float:
-    """The growth a bounce in float64, scaled at every bounce."""
+    """The growth rate per bounce in float64 of a vector that is scaled to length 1 at every bounce."""
     vector, total = np.array(GENERIC), 0.0
     for matrix in matrices:
         vector = matrix @ vector

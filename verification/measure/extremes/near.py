@@ -1,9 +1,9 @@
-"""What is measured of an answer, and the verdict on whoever gave it.
+"""Errors, condition number and verdict of a computed answer; cycles for which they are extreme.
 
 With data `x`, truth `f(x)` and answer `y`, the *forward error* is `|y - f(x)|`. The *backward error* is the smallest
 `(dx, dy)` with `y + dy = f(x + dx)`, to first order: what the data and the result would have to be off by for the
-answer to be right ([Higham2002], section 1.5, calls this the mixed error).
-The *condition number* is the largest factor between the two. Errors are absolute, in units of rounding of one.
+answer to be right ([Higham2002], section 1.5, calls this the mixed error). The *condition number* is the largest
+factor between the two. Errors are absolute, in units of the rounding of 1.
 
 The cases are cycles next to a bifurcation and very long ones, where the chord system is nearly singular. The backward
 error is the residual of the collision rule, the largest of the angles at the bounces, as the forward error
@@ -44,12 +44,12 @@ from verification.cycles.recurrence import BifurcationKind
 
 DOUBLE = 2.0**-52  # the unit of rounding
 
-SMALL = ROUNDINGS  # units: a dozen roundings, each of them explained by the data
+SMALL = ROUNDINGS  # units of rounding: up to this, the backward error is explained by the data
 UNIT, DIGITS = 2.0**-52, 15  # of a float64
 
 
-class Stability(Enum):
-    """The verdict; the value says what it means for whoever asks."""
+class StabilityVerdict(Enum):
+    """The verdict; the value says what it means for a user."""
 
     STABLE = "as right as rounded data allow"
     SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
@@ -58,7 +58,7 @@ class Stability(Enum):
 
 
 @dataclass(frozen=True)
-class Measured:
+class Errors:
     """Forward and backward error in units of rounding, and the condition number between them."""
 
     forward: float
@@ -67,56 +67,56 @@ class Measured:
 
     @property
     def ratio(self) -> float:
-        """`error / (cond * eps)`; at most 1 means that one rounding of the data would have done as much."""
+        """`error / (cond * eps)`; at most 1 means that one rounding of the data has as large an effect."""
         return self.forward / self.condition if isfinite(self.condition) else 0.0
 
     @property
-    def stability(self) -> Stability:
-        """The verdict.
+    def stability(self) -> StabilityVerdict:
+        """The verdict from backward error and condition number.
 
-        >>> Measured(forward=4e3, backward=2, condition=1e4).stability.name
+        >>> Errors(forward=4e3, backward=2, condition=1e4).stability.name
         'STABLE'
-        >>> Measured(forward=4e3, backward=2e3, condition=2).stability.name
+        >>> Errors(forward=4e3, backward=2e3, condition=2).stability.name
         'UNSTABLE'
         """
         if not self.backward <= SMALL:
-            return Stability.UNSTABLE
-        return Stability.SENSITIVE if costs_half(self.condition, UNIT, DIGITS) else Stability.STABLE
+            return StabilityVerdict.UNSTABLE
+        return StabilityVerdict.SENSITIVE if costs_half(self.condition, UNIT, DIGITS) else StabilityVerdict.STABLE
 
 
-WRONG = Measured(inf, inf, 1.0)  # another component, or no number at all
+WRONG = Errors(inf, inf, 1.0)  # another component, or no number at all
 
 
 @dataclass(frozen=True)
 class Finding:
     """One kernel on one case: the worst answer of all starts, what stopped, and what to do instead.
 
-    `named` is what the kernel itself says of its condition number, where it says anything; `reason` is what the
-    verdict is due to, where it is not plainly stable.
+    `named` is the kernel's own verdict on its condition number, where it has one; `reason` explains a verdict that is
+    not plainly stable.
     """
 
     case: str
     kernel: str
-    measured: Measured | None
+    measured: Errors | None
     status: str = ""
     instead: str = ""
     named: Conditioning | None = None
     reason: str = ""
 
     @property
-    def stability(self) -> Stability:
+    def stability(self) -> StabilityVerdict:
         """The verdict on the worst start; a kernel that gave no number at all has stopped.
 
-        How sensitive the answer is is taken from what the kernel names, not from what was measured of it.
+        The sensitivity of the answer is taken from the kernel's own verdict, not from what was measured.
 
-        >>> Finding("fold", "Newton", Measured(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
+        >>> Finding("fold", "Newton", Errors(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
         'SENSITIVE'
         """
         if self.measured is None:
-            return Stability.STOPPED
-        if self.named is None or self.measured.stability is Stability.UNSTABLE:
+            return StabilityVerdict.STOPPED
+        if self.named is None or self.measured.stability is StabilityVerdict.UNSTABLE:
             return self.measured.stability
-        return Stability.STABLE if self.named is Conditioning.SOUND else Stability.SENSITIVE
+        return StabilityVerdict.STABLE if self.named is Conditioning.SOUND else StabilityVerdict.SENSITIVE
 
 
 NEAR_DIGITS = 100
@@ -124,8 +124,8 @@ Sought = tuple[Problem, list[float]]
 
 
 @dataclass(frozen=True)
-class Cycle:
-    """A system of the chord method with a start for Newton's method."""
+class ChordSystem:
+    """A cycle that is hard to solve for: its equations with a start for Newton's method."""
 
     name: str
     group: str
@@ -133,7 +133,7 @@ class Cycle:
 
 
 def nearly_round(gap: Expr) -> Sought:
-    """The short axis of the ellipse `a = 1 + gap`: in the circle every diameter is a cycle, and a multiplier is 1."""
+    """The short axis of the ellipse `a = 1 + gap`; in the circle each diameter is a cycle and has a multiplier 1."""
     return Problem(tables.ellipse.at(a=1 + gap), (0, 0), lam=Rational(1, 3)), [1.5707963, -1.5707964]
 
 
@@ -146,7 +146,7 @@ def nearly_flipped(gap: Expr, twice: bool) -> Sought:
 
 
 def folded(ulps: int | None) -> Sought:
-    """The egg's triangle, `ulps` doubles above the contraction where it is born, or (None) that contraction itself."""
+    """The egg's triangle `ulps` doubles above the contraction at which it is born; for None, that contraction."""
     shape = Rational(2, 25)
     table = tables.egg(3).at(alpha=shape)
     exact = float(N(polygons.saddle_node().subs(alpha_symbol, shape), 30))
@@ -160,7 +160,7 @@ def folded(ulps: int | None) -> Sought:
 
 
 def touching(gap: Expr) -> Sought:
-    """The egg's triangle at a contraction that is a double, the shape such that its fold lies `gap` below."""
+    """The egg's triangle at a contraction that is a double, and a shape whose fold lies `gap` below it."""
     lam = Rational(float(N(polygons.saddle_node().subs(alpha_symbol, Rational(2, 25)), 30)))
     tilt = pi / 6 * (1 - lam + gap) / (1 + lam - gap)  # the closed form of the fold, solved for the shape
     shape = Rational(str(N(tan(tilt) / sqrt(9 + tan(tilt) ** 2), 60)))
@@ -181,8 +181,8 @@ UNSETTLED = "did not settle"
 FLOAT64, SIXTEEN = "Newton, float64", "Newton, mpmath, 16 digits"
 
 
-def findings(cycle: Cycle) -> list[Finding]:
-    """Both arithmetics on a cycle: the forward error, the residual, and the condition number."""
+def findings(cycle: ChordSystem) -> list[Finding]:
+    """Errors, residual and condition number of a cycle in both arithmetics."""
     problem, start = cycle.sought()
     truth = solution(problem, start)
     context = mpmath.MPContext()
@@ -200,7 +200,7 @@ def findings(cycle: Cycle) -> list[Finding]:
         z = [context.mpf(x) for x in found.z]
         residual = max(abs(x) for x in problem.value(wide, z))
         forward = max(abs(one - two) for one, two in zip(z, truth, strict=True))
-        sizes = Measured(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
+        sizes = Errors(*(float(x) for x in (forward / DOUBLE, residual / DOUBLE, condition)))
         measured = None if stopped else sizes if sizes.forward < 1 / DOUBLE else WRONG
         why = f"condition number {found.condition:.2g}, {found.digits_sure} digits sure" if found.advice else ""
         made.append(Finding(cycle.name, kernel, measured, ", ".join(status), found.advice, said, why))
@@ -208,7 +208,7 @@ def findings(cycle: Cycle) -> list[Finding]:
 
 
 def solution(problem: Problem, start: list[float]) -> list[Any]:
-    """The truth: by doubling the digits, or where the float64 start does not settle with all digits at once."""
+    """The solution with `NEAR_DIGITS` digits: by doubling the digits, or with all at once if float64 diverges."""
     try:
         return refined(problem, start, NEAR_DIGITS).z
     except ValueError:
@@ -216,7 +216,7 @@ def solution(problem: Problem, start: list[float]) -> list[Any]:
 
 
 def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
-    """Newton's method in mpmath, by default with the bits of a float64, until the corrections shrink no more."""
+    """Newton's method in mpmath with `bits` bits, by default those of a float64, until corrections shrink no more."""
     context = mpmath.MPContext()
     context.prec = bits
     newton = partial(problem.newton, multiprecision(context))
@@ -228,19 +228,19 @@ ONE, MINUS, LONG = "Multipliers next to +1", "Multipliers next to -1", "Long cyc
 COARSE_GAP, FINE_GAP = Rational(1, 10**6), Rational(1, 2 * 10**13)
 FLIP_GAP, FOLD_GAP = Rational(1, 10**14), Rational(1, 10**27)
 CYCLES = (
-    Cycle("short axis, a = 1 + 1e-6: 1.6e-5 from +1", ONE, lambda: nearly_round(COARSE_GAP)),
-    Cycle("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP)),
-    Cycle("triangle, 1e6 ulp above its fold", ONE, lambda: folded(10**6)),
-    Cycle("triangle, 4 ulp above its fold", ONE, lambda: folded(4)),
-    Cycle("triangle, lam 1e-27 above its fold: 9e-13 from +1", ONE, lambda: touching(FOLD_GAP)),
-    Cycle("the fold itself, lam unknown", ONE, lambda: folded(None)),
-    Cycle(
+    ChordSystem("short axis, a = 1 + 1e-6: 1.6e-5 from +1", ONE, lambda: nearly_round(COARSE_GAP)),
+    ChordSystem("short axis, a = 1 + 5e-14: 8e-13 from +1", ONE, lambda: nearly_round(FINE_GAP)),
+    ChordSystem("triangle, 1e6 ulp above its fold", ONE, lambda: folded(10**6)),
+    ChordSystem("triangle, 4 ulp above its fold", ONE, lambda: folded(4)),
+    ChordSystem("triangle, lam 1e-27 above its fold: 9e-13 from +1", ONE, lambda: touching(FOLD_GAP)),
+    ChordSystem("the fold itself, lam unknown", ONE, lambda: folded(None)),
+    ChordSystem(
         "egg's diameter, alpha 1e-14 from its flip: 8e-13 from -1", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=False)
     ),
-    Cycle("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True)),
-    Cycle("period 2^4 of the egg's cascade", LONG, lambda: in_the_cascade(4)),
+    ChordSystem("the same run twice, as period 4", MINUS, lambda: nearly_flipped(FLIP_GAP, twice=True)),
+    ChordSystem("period 2^4 of the egg's cascade", LONG, lambda: in_the_cascade(4)),
 )
 LONGER = (
-    Cycle("period 2^8 of the egg's cascade", LONG, lambda: in_the_cascade(8)),
-    Cycle("period 2^12 of the egg's cascade", LONG, lambda: in_the_cascade(12)),
+    ChordSystem("period 2^8 of the egg's cascade", LONG, lambda: in_the_cascade(8)),
+    ChordSystem("period 2^12 of the egg's cascade", LONG, lambda: in_the_cascade(12)),
 )

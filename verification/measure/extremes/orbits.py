@@ -1,14 +1,14 @@
-"""Extreme orbits, and where their truth comes from: very long ones, and particles that are hard on a map.
+"""Extreme orbits with known truth: very long ones, and particles whose bounce is numerically hard.
 
-Of a very long orbit a truth must exist, whatever chaos has done to the digits of the start. An invariant of the
-elastic ellipse, to which each bounce adds one rounding: `n` of them that know nothing of one another amount to
-`sqrt(n)`, and a drift would be of order `n`. The elastic circle, where `theta` after `n` bounces is known, with the
-`2*n` roundings of `phi` that it adds up. A cycle that attracts, enclosed in balls. Chaotic orbits: two that start as
-mirror images and must stay so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to which time
-averages tend because the elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard errors. (That
-its exponents are not 0 was known before [Wojtkowski1986].)
+A very long orbit is tested by a quantity that is known although chaos has erased the digits of the start. An invariant
+of the elastic ellipse, to which each bounce adds one rounding: `n` independent ones amount to `sqrt(n)`, and a drift
+would be of order `n`. The elastic circle, where `theta` after `n` bounces is known, with the `2*n` roundings of `phi`
+that it adds up. An attracting cycle, enclosed in balls. Chaotic orbits: two that start as mirror images and must stay
+so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to which time averages tend because the
+elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard errors. (That its exponents are not 0
+was known before [Wojtkowski1986].)
 
-Particles that are hard on a map have names: grazing, next to a cusp or a join, flat points, long tables.
+The hard particles have names: grazing, next to a cusp or a join, flat points, long tables.
 
 `pinball bench` prints the errors of a few against 50 digits, `benchmarks/adversarial.py` those of millions against
 80-bit floats. Bounds are 4 units of 2**-52 for the position and 8 for the direction, or 8 condition numbers:
@@ -32,7 +32,7 @@ from verification.cycles.newton import floats, given
 from verification.cycles.problem import Problem
 from verification.maps.exact import ExactMap, errors
 from verification.measure.extremes.kernels import made_unit
-from verification.measure.extremes.near import DOUBLE, WRONG, Finding, Measured
+from verification.measure.extremes.near import DOUBLE, WRONG, Errors, Finding
 from verification.named.attractors import certificate
 
 Array = NDArray[np.float64]
@@ -44,25 +44,25 @@ MEAN = "more particles or longer orbits: a mean is known to its standard error a
 
 @dataclass(frozen=True)
 class Long:
-    """So many particles for so many bounces each."""
+    """A test with so many particles, each for so many bounces."""
 
     name: str
     measure: Callable[["Long"], list[Finding]]
     particles: int
     bounces: int
 
-    def found(self, what: str, measured: Measured | None, status: str, reason: str = "", instead: str = "") -> Finding:
-        """What the engine's kernels made of it."""
+    def found(self, what: str, measured: Errors | None, status: str, reason: str = "", instead: str = "") -> Finding:
+        """A finding on this test with the engine's kernels: `what` is added to its name."""
         return Finding(f"{self.name}{what}", "llvm", measured, status, instead, reason=reason)
 
 
 def findings(asked: Long) -> list[Finding]:
-    """The engine on the case."""
+    """The findings of a long test."""
     return asked.measure(asked)
 
 
 def orbits(collisions: int = SHORT, particles: int = PARTICLES) -> tuple[Long, ...]:
-    """Every long orbit, so many collisions of all particles together."""
+    """Every long test, with so many collisions of all particles together."""
     each = max(1, collisions // particles)
     kinds: tuple[tuple[str, Callable[[Long], list[Finding]]], ...] = (
         ("elastic ellipse a = 3/2", lambda asked: invariant(asked, "3/2")),
@@ -83,12 +83,12 @@ def starts(particles: int) -> tuple[Array, Array]:
 
 
 def entered(map: PinballMap, theta: Array, phi: Array) -> list[Array]:
-    """The rows of particles on the first component."""
+    """Kernel fields of particles on the first component."""
     return [np.asarray(row) for row in map.states.enter(np.zeros(theta.size, dtype=np.int64), theta, phi, map.law)]
 
 
 def advanced(map: PinballMap, rows: list[Array], bounces: int) -> tuple[list[Array], str]:
-    """The rows after so many bounces, and what went wrong on the way: a stop by its name, or a number that is none."""
+    """The fields after so many bounces, and what went wrong, if anything: a particle stopped, a number not finite."""
     own, said = rows, ""
     for done in range(0, bounces, PART):
         lam = np.full(own[0].size, float(map.lam))
@@ -102,30 +102,30 @@ def advanced(map: PinballMap, rows: list[Array], bounces: int) -> tuple[list[Arr
 
 
 def root_mean_square(x: Any) -> float:
-    """Of an array in any kind of number."""
+    """Root mean square of an array, in any kind of number."""
     return float(np.sqrt(np.mean(x * x)))
 
 
 def invariant(asked: Long, a: str) -> list[Finding]:
-    """The product of the angular momenta about the foci of the elastic ellipse."""
+    """Drift of the product of the angular momenta about the foci of the elastic ellipse."""
     map = PinballMap("ellipse", lam=1, a=a)
     rows = entered(map, *starts(asked.particles))
     after, said = advanced(map, rows, asked.bounces)
     error = root_mean_square(momenta(map, after) - momenta(map, rows)) / DOUBLE
     condition = float(np.sqrt(asked.bounces)) + 1
-    return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said)]
+    return [asked.found("", WRONG if said else Errors(error, error / condition, condition), said)]
 
 
 def momenta(map: PinballMap, rows: list[Any]) -> Any:
-    """The product of the angular momenta about both foci, in 80 bits, of the exact particles behind rounded rows."""
+    """The product of angular momenta about both foci in 80 bits, of the exact particles behind rounded fields."""
     ux, uy, vx, vy = made_unit(map.family, [row.astype(np.longdouble) for row in rows])
-    a = np.longdouble(map.shape[0])
+    a = np.longdouble(float(map.exact_shape[0]))
     momentum = a * ux * vy - uy * vx
     return momentum * momentum - (a * a - 1) * vy * vy
 
 
 def turning(asked: Long) -> list[Finding]:
-    """`theta + n*(pi - 2*phi)` in the elastic circle, of the exact doubles, with 50 digits."""
+    """Error of the engine's `theta` after `n` bounces in the elastic circle: `theta + n*(pi - 2*phi)` in 50 digits."""
     map = PinballMap("circle", lam=1)
     rows = entered(map, *starts(asked.particles))
     (theta, phi), said = advanced(map, rows, asked.bounces)
@@ -143,11 +143,11 @@ def turning(asked: Long) -> list[Finding]:
         said = "phi changed"
     error, condition = root_mean_square(np.array(gaps)) / DOUBLE, 2.0 * asked.bounces + 1
     reason = f"theta adds up 2*n = {2 * asked.bounces:.0e} roundings of phi"
-    return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said, reason)]
+    return [asked.found("", WRONG if said else Errors(error, error / condition, condition), said, reason)]
 
 
 def attracted(asked: Long) -> list[Finding]:
-    """The distance of particles from the attracting triangles of the egg, which are proved."""
+    """Errors of particles near the attracting triangles of the egg, whose place is proved."""
     table, lam = tables.egg(3).at(alpha="2/25"), Rational(7, 10)
     map = PinballMap("egg", alpha="2/25", lam="7/10")
     problem = Problem(table, (0, 0, 0), lam=lam)
@@ -167,11 +167,11 @@ def attracted(asked: Long) -> list[Finding]:
         away = [here - one - 2 * context.pi * context.nint((here - one) / (2 * context.pi)) for one in exact]
         gaps.append(float(min(away, key=abs)))
     error, condition = float(np.max(np.abs(gaps))) / DOUBLE, given(problem, triangle).condition
-    return [asked.found("", WRONG if said else Measured(error, error / condition, condition), said)]
+    return [asked.found("", WRONG if said else Errors(error, error / condition, condition), said)]
 
 
 def mirrored(asked: Long) -> list[Finding]:
-    """The largest gap between chaotic orbits and the mirror images of those that started as their mirror images."""
+    """The largest gap between chaotic orbits and the mirror images of orbits that started as mirror images."""
     map = PinballMap("cardioid", lam="4/5")
     theta, phi = starts(asked.particles // 2)
     both = np.concatenate([theta, -theta]), np.concatenate([phi, -phi])
@@ -179,11 +179,11 @@ def mirrored(asked: Long) -> list[Finding]:
     half, gap = theta.size, 0.0
     for row, sign in ((p, 1), (q, -1), (c, 1), (s, -1)):
         gap = max(gap, float(np.max(np.abs(row[:half] - sign * row[half:]))))
-    return [asked.found("", WRONG if said else Measured(gap / DOUBLE, gap / DOUBLE, 1.0), said)]
+    return [asked.found("", WRONG if said else Errors(gap / DOUBLE, gap / DOUBLE, 1.0), said)]
 
 
 def ergodic(asked: Long) -> list[Finding]:
-    """Means over chaotic orbits: `cos(phi)` is pi/4, and `sin(theta/2)**2`, a share of the length squared, 1/3."""
+    """Errors of means over chaotic orbits: `cos(phi)`, whose mean is pi/4, and `sin(theta/2)**2`, whose mean is 1/3."""
     map = PinballMap("cardioid", lam=1)
     rows, said, sums = entered(map, *starts(asked.particles)), "", np.zeros((2, asked.particles))
     for done in range(0, asked.bounces, BLOCK):
@@ -203,7 +203,7 @@ def ergodic(asked: Long) -> list[Finding]:
         error = abs(float(np.mean(mean)) - truth) / DOUBLE
         doubt = float(np.std(mean, ddof=1) / np.sqrt(asked.particles)) / DOUBLE
         reason = f"{error / doubt:.1f} standard errors of {doubt * DOUBLE:.1e}"
-        made.append(asked.found(what, WRONG if said else Measured(error, error / doubt, doubt), said, reason, MEAN))
+        made.append(asked.found(what, WRONG if said else Errors(error, error / doubt, doubt), said, reason, MEAN))
     return made
 
 
@@ -214,14 +214,14 @@ SCENES: dict[str, dict[str, Any]] = {
     "cuspless": {},
     "egg": {"alpha": "2/25"},
 }
-RADII = {  # of tables that are not the paper's
+RADII = {  # tables that are not the paper's
     "limacon": "1 + 3*cos(theta)/5",
     "star": "1 + cos(5*theta)/4",
     "peanut": "exp(cos(2*theta)/4)",
     "conic": "1/(2 + cos(theta)/2)",
     "waves": "1 + cos(40*theta)/2000",
 }
-LONG_RADII = RADII | {  # with ellipses whose far tip is 2000 times as far from the origin as the near one
+LONG_RADII = RADII | {  # and ellipses whose far tip is 2000 times as far from the origin as the near one
     "comet": "1/(1 + 999*cos(theta)/1000)",
     "turned comet": "2/(1 - 999*cos(theta - pi/3)/1000)",
 }
@@ -252,7 +252,7 @@ class Accuracy(NamedTuple):
 
 
 def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` particles of every kind; the first word of a label is the table."""
+    """Cases of `count` particles of every kind on the paper's tables; the first word of a label is the table."""
     rng = np.random.default_rng(seed)
     side = np.where(rng.integers(0, 2, count) == 0, 1, -1)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -282,14 +282,14 @@ def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
 
 
 def scene(name: str, lam: Any = LAM) -> PinballMap:
-    """The map of a table by name, at the shape that is measured."""
+    """The map of a table by name, at the shape that is used for measuring."""
     if name in SCENES:
         return PinballMap(name, lam=lam, **SCENES[name])
     return PinballMap(tables.polar(LONG_RADII[name], name=name), lam=lam)
 
 
 def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` particles of every kind on a table of `LONG_RADII`."""
+    """Cases of `count` particles of every kind on a table of `LONG_RADII`."""
     rng, map = np.random.default_rng(seed), scene(name)
     side, zero = rng.choice([-1, 1], count), np.zeros(count, dtype=np.int64)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -320,7 +320,7 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
 
 
 def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """`count` particles of every kind on a table of pieces cubic in `theta` from 0 to 1."""
+    """Cases of `count` particles of every kind, on a table of pieces cubic in `theta` from 0 to 1."""
     rng, parts = np.random.default_rng(seed), len(map.ir.parts)
     side, tiny = rng.choice([-1, 1], count), 10.0 ** rng.uniform(-12, -1, count)
     at, theta = rng.integers(0, parts, count), rng.uniform(0, 1, count)
@@ -373,7 +373,7 @@ def conditions(case: Case) -> tuple[Array, Array]:
 
 
 def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
-    """The kernel's fields before and after one bounce, and which particles go on."""
+    """The kernel's fields before and after one bounce, and a mask of the particles that do not stop."""
     map = case.map
     own = map.states.enter(case.component, case.theta, case.phi, map.law)
     lam = np.full(case.theta.size, float(map.lam))
@@ -384,7 +384,7 @@ def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
 
 
 def accuracy(name: str, particles: int = LABELLED) -> Iterator[Accuracy]:
-    """The errors of every case of a table, against the exact map of the rounded state."""
+    """The largest errors of every case of a table, against the exact map of the rounded state."""
     for case in cases(particles) if name in SCENES else own_cases(name, particles // 3):
         if case.label.split(",")[0] == name:
             own, after, going = bounced(case)

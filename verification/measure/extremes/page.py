@@ -1,8 +1,7 @@
-"""All extreme cases in their groups, run one by one; the record of what they gave, and the page made from it.
+"""All extreme cases in their groups, run one by one; the record of their results, and the page made from it.
 
-The tests hold the kernels to the record, and `docs/extremes.md` is written from it, with what to do where a verdict
-is not `STABLE`. Writing the page measures nothing: the record has every number, verdict and reason, so the page can
-be written again at any time.
+Tests compare the kernels with the record, and `docs/extremes.md` is written from it, with advice where a verdict is
+not `STABLE`. The record has every number, verdict and reason, so the page can be written again without measuring.
 """
 
 import json
@@ -17,12 +16,12 @@ from verification.measure.extremes import flights, near
 from verification.measure.extremes import kernels as products
 from verification.measure.extremes.flights import CASES
 from verification.measure.extremes.kernels import KERNELS, TEXTBOOK
-from verification.measure.extremes.near import SMALL, Finding, Stability
+from verification.measure.extremes.near import SMALL, Finding, StabilityVerdict
 from verification.measure.extremes.orbits import SHORT, orbits
 from verification.measure.extremes.orbits import findings as of_orbit
 
 ADVICE = {
-    (TEXTBOOK.name, Stability.UNSTABLE): "PinballMap: the root that is known is divided out",
+    (TEXTBOOK.name, StabilityVerdict.UNSTABLE): "PinballMap: the root that is known is divided out",
 }
 STOPPED = {
     "JOIN": "`verification.proofs.corner.corner`: both reflections are followed",
@@ -34,7 +33,7 @@ Group = tuple[str, str, list[Finding]]
 
 
 def rows(longer: bool = False, collisions: int = SHORT) -> Iterator[Group]:
-    """Group, case and findings; with `longer`, what takes minutes too."""
+    """Group, case and findings; with `longer`, also cases that take minutes."""
     for case in CASES:
         yield case.group, case.name, [advised(found) for found in flights.findings(case)]
     for cycle in (*near.CYCLES, *(near.LONGER if longer else ())):
@@ -46,7 +45,7 @@ def rows(longer: bool = False, collisions: int = SHORT) -> Iterator[Group]:
 
 
 def advised(found: Finding) -> Finding:
-    """With what to use in its place, where the kernel is not stable or stopped a particle."""
+    """The finding, with advice where the kernel is not stable or stopped a particle."""
     advice = ADVICE.get((found.kernel, found.stability), "")
     said = [STOPPED[status] for status in found.status.split(", ") if status in STOPPED]
     return replace(found, instead="; ".join(text for text in (advice, *said) if text))
@@ -59,12 +58,12 @@ NUMBERS = ("forward", "backward", "condition", "ratio")
 
 @dataclass(frozen=True)
 class Line:
-    """A finding as the record has it; numbers are None where there is no answer."""
+    """A finding as a line of the record; numbers are None where there is no answer."""
 
     group: str
     case: str
     kernel: str
-    verdict: Stability
+    verdict: StabilityVerdict
     stopped_by: str
     instead: str
     reason: str
@@ -76,13 +75,13 @@ class Line:
 
     @property
     def why(self) -> str:
-        """The verdict, with the outcome that the kernel names and the reason."""
+        """The verdict, with the outcome that the kernel reports and the reason."""
         named = f" ({self.stopped_by})" if self.stopped_by else ""
         return self.verdict.name.lower() + named + (f": {self.reason}" if self.reason else "")
 
 
 def record(rows: Iterable[Group]) -> list[dict[str, Any]]:
-    """Every finding as data: numbers with three digits, and strings where there is none."""
+    """Every finding as JSON: numbers with three digits, texts for infinite ones."""
     return [
         {
             "group": group,
@@ -100,18 +99,18 @@ def record(rows: Iterable[Group]) -> list[dict[str, Any]]:
 
 
 def lines(path: Path) -> list[Line]:
-    """A record that was kept; nothing where there is none yet."""
+    """The lines of a record file; none where there is no file."""
     made: list[Line] = []
     if not path.exists():
         return made
     for one in json.loads(path.read_text()):
         numbers = {name: float(one[name]) if name in one else None for name in NUMBERS}
-        made.append(Line(**(one | numbers | {"verdict": Stability[one["verdict"]]})))
+        made.append(Line(**(one | numbers | {"verdict": StabilityVerdict[one["verdict"]]})))
     return made
 
 
 def page(found: Sequence[Line], long: Sequence[Line]) -> str:
-    """The whole page: the words on top, then the verdicts, then a table for each group, then what takes an hour."""
+    """The whole page: an introduction, the verdicts, a table for each group, then tests that take an hour."""
     parts = [WORDS, _verdicts(found), _exceptions(found)]
     for group, members in groupby(found, key=lambda line: line.group):
         several = list(members)
@@ -131,22 +130,22 @@ def _numbers(found: Finding) -> dict[str, Any]:
 
 
 def _verdicts(found: Sequence[Line]) -> str:
-    rows = ["## Verdicts\n", "| method | cases | " + " | ".join(s.name.lower() for s in Stability)
+    rows = ["## Verdicts\n", "| method | cases | " + " | ".join(s.name.lower() for s in StabilityVerdict)
             + " | largest backward error |", "|---" * 7 + "|"]  # fmt: skip
     for kernel in dict.fromkeys(one.kernel for one in found):
         own = [one for one in found if one.kernel == kernel]
-        counts = [str(sum(one.verdict is verdict for one in own) or "") for verdict in Stability]
+        counts = [str(sum(one.verdict is verdict for one in own) or "") for verdict in StabilityVerdict]
         worst = max((one.backward for one in own if one.backward is not None), default=0.0)
         rows.append(f"| {kernel} | {len(own)} | " + " | ".join(counts) + f" | {worst:.2g} |")
-    meanings = "\n".join(f"- **{verdict.name.lower()}**: {verdict.value}." for verdict in Stability)
+    meanings = "\n".join(f"- **{verdict.name.lower()}**: {verdict.value}." for verdict in StabilityVerdict)
     return "\n".join(rows) + f"\n\n{meanings}\n"
 
 
 def _exceptions(found: Sequence[Line]) -> str:
-    """Who is not stable or stops particles, how often, and what to use."""
+    """A table of methods that are not stable or stop particles, how often, and what to use instead."""
     kept: dict[tuple[str, str], list[Line]] = {}
     for one in found:
-        if one.verdict is not Stability.STABLE or one.stopped_by:
+        if one.verdict is not StabilityVerdict.STABLE or one.stopped_by:
             what = one.verdict.name.lower() + (f" ({one.stopped_by})" if one.stopped_by else "")
             kept.setdefault((what, one.instead), []).append(one)
     rows = ["## What a method cannot do well, and what to use in its place\n",
@@ -156,12 +155,12 @@ def _exceptions(found: Sequence[Line]) -> str:
         names = list(dict.fromkeys(one.case for one in several))
         cases = names[0] + (f", and {len(names) - 1} more" if len(names) > 1 else "")
         rows.append(f"| {what} | {methods} | {cases} | {instead} |")
-    rows.append("\nA status beside `stable` names particles of the case that stopped; the others were right.")
+    rows.append("\nA status beside `stable` means that some particles of the case stopped; the others are accurate.")
     return "\n".join(rows) + "\n"
 
 
 def _of_flights(found: Sequence[Line]) -> str:
-    """One line a case: all four numbers of the LLVM kernel, the backward errors of the others, verdict and reason."""
+    """A table with a line for each case: all four numbers of the LLVM kernel, others' backward errors, verdict."""
     others = [*FLIGHTS[1:], TEXTBOOK.name]
     rows = ["| case | condition | forward | error/(cond*eps) | backward: llvm | " + " | ".join(others)
             + " | verdict |", "|---" * (6 + len(others)) + "|"]  # fmt: skip
@@ -175,18 +174,18 @@ def _of_flights(found: Sequence[Line]) -> str:
 
 
 def _of_all(several: Iterable[Line]) -> str:
-    """The verdicts on all kernels: who they are is said only where they differ.
+    """The verdicts on all kernels; kernels are named only where they differ.
 
-    >>> made = [Line("", "", name, Stability.STABLE, "", "", "") for name in ("llvm", "numpy")]
+    >>> made = [Line("", "", name, StabilityVerdict.STABLE, "", "", "") for name in ("llvm", "numpy")]
     >>> _of_all(made)
     'stable'
-    >>> _of_all([*made, Line("", "", "textbook", Stability.UNSTABLE, "", "", "cancellation")])
+    >>> _of_all([*made, Line("", "", "textbook", StabilityVerdict.UNSTABLE, "", "", "cancellation")])
     'stable; textbook unstable: cancellation'
     """
     kept: dict[str, list[str]] = {}
     for one in several:
         kept.setdefault(one.why, []).append(one.kernel)
-    plain = Stability.STABLE.name.lower()
+    plain = StabilityVerdict.STABLE.name.lower()
     if len(kept) == 1:
         return next(iter(kept))
     first = [plain] if plain in kept else []
@@ -207,11 +206,11 @@ def _backward(found: Line | None) -> str:
     if found.backward is None:
         return "stopped"
     text = _short(found.backward)
-    return f"**{text}**" if found.verdict is Stability.UNSTABLE else text
+    return f"**{text}**" if found.verdict is StabilityVerdict.UNSTABLE else text
 
 
 def _short(x: float | None) -> str:
-    """Two digits.
+    """A number with two digits.
 
     >>> _short(0.4567), _short(3.4e16), _short(None)
     ('0.46', '3.4e+16', '')
@@ -219,56 +218,46 @@ def _short(x: float | None) -> str:
     return "" if x is None else f"{x:.2g}"
 
 
-WORDS = f"""# Stiff and extreme cases
+WORDS = rf"""# Stiff and extreme cases
 
-Every case below is a labelled fixture (`verification/measure/extremes/`), run by every kernel from the same
-rounded state and held against a truth with 100 digits: a ball proved to enclose the first hit, or where balls refuse
-the definition of the map in mpmath. `python benchmarks/extremes.py --longer` measures it and writes this page;
-`tests/verification/measure/test_extremes.py` holds every verdict to its record.
+How the arithmetic behaves where it is hard. Every kernel runs every labelled case (`verification/measure/extremes/`)
+from the same rounded state, and is compared with a truth of 100 digits: a ball proved to enclose the first hit or,
+where balls cannot decide, the definition of the map in mpmath. `python benchmarks/extremes.py --longer` measures it
+and writes this page; `tests/verification/measure/test_extremes.py` compares every verdict with its record.
 
-With data `x`, truth `f(x)` and answer `y`: the **forward error** is `|y - f(x)|`; the **backward error** is the
-smallest `(dx, dy)` with `y + dy = f(x + dx)`, to first order (the mixed error of {{cite:p}}`Higham2002`); the
-**condition number** is the largest factor between them, from difference quotients of the truth. Errors are
-absolute, in units of 2^-52 (80-bit floats: 2^-63), of the landing's parameter and the direction of flight. A
-method is called stable when no backward error is above {SMALL}, sensitive when such an error costs half of 15 digits
-besides: from a condition number of 9e+06 on. Each line shows the worst start of its case. `llvm`, `numpy`,
-`longdouble` and `mpmath, 16 digits` run the same step; `textbook discriminant` is the quadratic formula with
-nothing divided out.
+With data $x$, truth $f(x)$ and answer $y$: the **forward error** is $\lvert y - f(x) \rvert$; the **backward error**
+is the smallest $(\delta x, \delta y)$ with $y + \delta y = f(x + \delta x)$, to first order (the mixed error of
+{{cite:p}}`Higham2002`). The **condition number** is the largest factor between them, from difference quotients of the
+truth. Errors are absolute, in units of $2^{{-52}}$ (80-bit floats: $2^{{-63}}$), of the landing's parameter and the
+direction of flight. A method is called stable when no backward error is above {SMALL}. It is called sensitive when
+such an error costs half of 15 digits besides, from a condition number of 9e+06 on. Each line shows the worst start of
+its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run the same step; `textbook discriminant` is the
+quadratic formula with nothing divided out.
 
 **What kernels say of themselves.** Where a flight cannot go on, the kernel names the reason
 (`PinballMap.step(...).status`). A cycle found by Newton's method is a `Solution` with its `condition` number (an
-estimate of the largest row sum of the inverse {{cite:p}}`Higham2002`, from the factors, in 0.2 ms when it is asked
-for), the `digits_sure` that it leaves and a `conditioning`: SOUND, SENSITIVE next to a fold or a flip, REPEATED
-for a shorter cycle run through several times; where float64 does not settle the error carries the same. `pinball
-cycles` prints it. The verdicts of cycles below are read from there; a test holds them to what 100 digits measure.
-`pinball follow` needs no such word: it goes by arc length, in a system that is regular at a fold. A contraction
-that is a double comes no nearer to the triangle's fold than a few 1e-8 in the multiplier; nearer ones are reached
-by the shape, given exactly.
+estimate of the largest row sum of the inverse {{cite:p}}`Higham2002`) and the `digits_sure` that it leaves. Its
+`conditioning`, which `pinball cycles` prints, is SOUND, SENSITIVE next to a fold or a flip, or REPEATED for a shorter
+cycle run through several times. `pinball follow` goes by arc length, in a system that is regular at a fold.
 
-**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** JOIN where the line passes a join so
-closely that rounding hides its side: the landing's distance from the join, times `cos(eta)`, is below 2^-50 of the way
-from the start to there, twice the sine of half the difference of the parameters. (On the arc the distance itself
-serves where it is the larger factor: the arc bends away from the line. A flight from the wall, which lands on the arc
-wherever it goes, has to land within 4 units of tan(theta/2).) A computed line is off by 1.2 units of 2^-52. Next to
-that border kernels may disagree, and the verdict column says how far off the true flight passes the join: both answers
-are right for data that are off by a rounding.
+**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** The outcome is JOIN where the line
+passes a join so closely that rounding hides its side: the landing's distance from the join, times $\cos\eta$, is
+below $2^{{-50}}$ of the way from the start to there. (On the arc, which bends away from the line, the distance itself
+serves where it is the larger factor. A flight from the wall has to land within 4 units of $\tan(\theta/2)$.) Next to
+that border kernels may disagree: both answers are right for data that are off by a rounding. The verdict column says
+how far off the true flight passes the join.
 
-**80 bits.** The step on 80-bit floats used to be called unstable at 24 cases. Which of its operations were to blame
-was found by exchanging them one by one: 20 were due to sines and arctangents that are polynomials for 53 bits, 3 to
-zeros that end at a correction below 2^-27, 1 to a shape (`sqrt(2)`) that reached it as a double. With the C library's
-functions, zeros sharpened to the last bit (`verification/measure/extremes/kernels.py`) and the shape rounded to 80
-bits its worst
-backward error is the one in the table. It judges `benchmarks/adversarial.py` too, which says how far the judge itself
-moves when its state is rounded once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp, of
-which 80 bits cannot judge the last bits; there 50 digits say at most 4 and 8.
+**80 bits.** `longdouble` is the step on 80-bit floats, with the C library's functions and zeros sharpened to the last
+bit. It judges `benchmarks/adversarial.py` too, which says how far the judge itself moves when its state is rounded
+once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp, where 50 digits judge instead.
 
-**Exponents** are held against the product of the matrices along the kernel's own orbit. Along another orbit from the
-same start the product is another number: on the cardioid at lam = 1e-2 the orbits in float64 and in 50 digits are 5e-10
-apart after 40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many bounces differ by 2e-12, 6e-6 and 6e-3.
+**Exponents** are compared with the product of the matrices along the kernel's own orbit. Along another orbit from the
+same start the product is another number. On the cardioid at $\lambda = 0.01$ the orbits in float64 and in 50 digits
+are 5e-10 apart after 40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many bounces differ by 2e-12,
+6e-6 and 6e-3.
 
 **Long orbits** end the page: invariants, closed forms, an attracting cycle proved in balls, mirror images, and means
 over the elastic cardioid, which is ergodic {{cite:p}}`Szasz1992,Markarian1993`. Nothing drifts: the root mean square
-change of the ellipse's invariant is 0.48, 0.48 and 0.47 units
-times the root of the number of bounces, after 10^4, 4*10^6 and 10^9 of them.
-Orbits of 10^9 collisions on every table are in [kernels](kernels.md) (`benchmarks/soak.py`).
+change of the ellipse's invariant is 0.48, 0.48 and 0.47 units times $\sqrt n$, after $n = 10^4$, $4 \cdot 10^6$ and
+$10^9$ bounces. Orbits of $10^9$ collisions on every table are in [kernels](kernels.md).
 """

@@ -1,11 +1,8 @@
-"""What `pinball bench` measures: error and time of every arithmetic and every kernel, and what a kernel leaves out.
+"""The measurements of `pinball bench`: error and time of every arithmetic and every kernel, with baselines.
 
-The baselines of the benchmark folder: naive NumPy + lambdify, scalar numba, and the paper's own ways.
-
-They are written as one would write them first and are no part of the installed package: they need a checkout, or the
-source distribution. Elsewhere, or without numba, the benchmark goes on with its own rows only, and says so.
-
-A diagram of errors against times, in text: from float64 to a thousand digits on one page.
+The baselines of the benchmark folder are naive NumPy + lambdify, scalar numba, and the paper's own ways, written as one
+would write them first. They are no part of the installed package: they need a checkout, or the source distribution.
+Elsewhere, or without numba, the benchmark goes on with its own rows only, and says so.
 """
 
 import importlib.util
@@ -38,21 +35,21 @@ from verification.measure.extremes.orbits import DIGITS, RADII, SCENES, scene
 
 Array = NDArray[np.float64]
 LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
-FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # laws of a user's own: a polynomial, and one sine
+FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # two further laws: a polynomial, and one sine
 PARTICLES, RUNS = 4096, 5
-WORTH_A_THREAD = 0.2  # seconds of work; less of it stays on one core
+WORTH_A_THREAD = 0.2  # seconds of work below which a second thread does not pay
 CHECKED = 24  # particles whose errors are measured
-FEW = 8  # in multiprecision
-MORE = 30  # digits of the truth, beyond those that are checked
-SMALLEST = Decimal("1e-300")  # of the errors written as floats
+FEW = 8  # particles in multiprecision
+MORE = 30  # extra digits of the reference
+SMALLEST = Decimal("1e-300")  # smallest error written as a float
 UNIT = "2**-52, largest of position and direction"
 
 
 @dataclass(frozen=True)
-class Row:
+class SceneTiming:
     """One way to bounce one scene: its largest error over random particles, and its time for one bounce.
 
-    Errors span a thousand decades, which no float does. `lam` is not among the data: `kernel` says it where it differs.
+    Errors span a thousand decades, which no float does. `lam` is not in the JSON: `kernel` names it where it differs.
     """
 
     scene: str
@@ -64,7 +61,7 @@ class Row:
     lam: Any = LAWS["pinball"]
 
     def as_data(self) -> dict[str, Any]:
-        """The row as contract.md has it; an error that no float holds is a decimal string."""
+        """The row as JSON; an error that no float holds is a decimal string."""
         small = self.error is not None and 0 < self.error < SMALLEST
         error = None if self.error is None else str(self.error) if small else float(self.error)
         names = ("scene", "arithmetic", "kernel", "seconds_per_bounce", "runs")
@@ -72,7 +69,7 @@ class Row:
 
 
 def machine_facts() -> dict[str, str]:
-    """The machine and the versions, for a footer."""
+    """The machine and the versions of packages, by name."""
     import llvmlite
     import scipy
 
@@ -91,17 +88,17 @@ def machine_facts() -> dict[str, str]:
 
 
 def best(action: Callable[[], object], runs: int = RUNS, clock: Callable[[], float] = time.process_time) -> float:
-    """The fewest seconds that an action took: the processor's, which other work on the machine hardly lengthens."""
+    """The least processor time in seconds of some runs of an action; other work on the machine hardly affects it."""
     times = []
     for _ in range(runs):
         start = clock()
         action()
         times.append(clock() - start)
-    return max(min(times), 1e-9)  # a clock that has not moved
+    return max(min(times), 1e-9)  # for a clock that did not advance
 
 
-def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
-    """LLVM kernels, with and without exponents and with two threads, and the same step on NumPy arrays."""
+def kernel_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
+    """Rows for LLVM kernels, with and without exponents and with two threads, and for the same step on NumPy."""
     for kernels, kernel, particles, bounces in ((True, "llvm", PARTICLES, 1000), (False, "numpy", PARTICLES, 10)):
         map = PinballMap(name, lam=LAWS["pinball"], kernels=kernels, **_shape(name))
         own = attracted(map, particles)
@@ -126,33 +123,35 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
 
         nought = np.zeros(particles)
         alone = run(KernelSpec(map.law))
-        yield Row(name, "float64", kernel, error, alone, runs)
+        yield SceneTiming(name, "float64", kernel, error, alone, runs)
         if kernels:
             copies = 1 + int(WORTH_A_THREAD / (alone * particles * bounces))  # not more bounces, which would underflow
             many = [np.tile(field, copies) for field in own]
             tangent = tuple(starting(nought + 1, nought, nought + 1))
-            yield Row(
+            yield SceneTiming(
                 name, "float64", "llvm, exponents", error, run(KernelSpec(map.law, exponents=True), tangent), runs
             )
             both = run(KernelSpec(map.law), threads=2, own=many, lam=np.tile(lam, copies), clock=time.perf_counter)
-            yield Row(name, "float64", "llvm, 2 threads", error, both, runs)
+            yield SceneTiming(name, "float64", "llvm, 2 threads", error, both, runs)
             recorded = run(KernelSpec(map.law, record=True), bounces=100)
-            yield Row(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
-            yield Row(name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs)
+            yield SceneTiming(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
+            yield SceneTiming(
+                name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs
+            )
     for law in ("slap", "elastic"):
         map = PinballMap(name, lam=LAWS[law], **_shape(name))
         own, lam = attracted(map, PARTICLES, 1), np.full(PARTICLES, float(map.lam))
         alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
-        yield Row(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
+        yield SceneTiming(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
     for formula in FORMULAS if name == "egg" else ():
         map = PinballMap(name, lam=LAWS["pinball"], law=formula, **_shape(name))
         own, lam = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam))
         alone = run(KernelSpec(map.law), map=map, own=own, lam=lam, bounces=1000)
-        yield Row(name, "float64", f"llvm, phi = {formula}", worst(map, own), alone, runs)
+        yield SceneTiming(name, "float64", f"llvm, phi = {formula}", worst(map, own), alone, runs)
 
 
-def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
-    """A table that is not the paper's: kernels with and without exponents, and scalar numba as one writes it first."""
+def own_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
+    """Rows for a table that is not the paper's: kernels with and without exponents."""
     map = scene(name)
     own, lam, nought = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam)), np.zeros(PARTICLES)
     error = worst(map, own)
@@ -163,11 +162,11 @@ def own_rows(name: str, runs: int = RUNS) -> Iterable[Row]:
             return map.engine.run(spec, own, lam, map.shape, 300, tangent, 1)
 
         once()
-        yield Row(name, "float64", kernel, error, best(once, runs) / 300 / PARTICLES, runs)
+        yield SceneTiming(name, "float64", kernel, error, best(once, runs) / 300 / PARTICLES, runs)
 
 
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
-    """Seconds for one bounce of an orbit that is told in full."""
+    """Seconds for one bounce of an orbit that is returned in full."""
     component, theta = map.states.place(own)
     phi = map.states.exit(component, theta, own, map.law)
 
@@ -178,8 +177,8 @@ def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
     return best(once, runs) / bounces / theta.size
 
 
-def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[Row]:
-    """mpmath and balls, rounded to their digits, against a proved enclosure with 30 digits more."""
+def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[SceneTiming]:
+    """Rows for mpmath and balls, rounded to their digits, against a proved enclosure with 30 digits more."""
     map, lam = PinballMap(name, lam=LAWS["pinball"], **_shape(name)), Fraction(str(LAWS["pinball"]))
     component, theta, phi, *_ = phase_starts(map, FEW, seed=3)
     particles = [(float(t), float(p), int(c)) for c, t, p in zip(component, theta, phi, strict=True)]
@@ -195,11 +194,11 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
             def all_of_them(way: Any = way, starts: Any = starts) -> object:
                 return [way.bounce(start) for start in starts]
 
-            yield Row(name, arithmetic, f"{wanted} digits", error, best(all_of_them, runs) / FEW, runs)
+            yield SceneTiming(name, arithmetic, f"{wanted} digits", error, best(all_of_them, runs) / FEW, runs)
 
 
 def distance(found: Any, truth: Any, digits: int) -> Decimal:
-    """How far parameter and exit angle, written with these digits, may be from enclosed ones, in units of 2**-52."""
+    """The largest error of parameter and exit angle, rounded to these digits, in units of 2**-52; `truth`: balls."""
     largest = arb(0)
     with working(bits_of(digits + 2 * MORE)):
         for one, two in ((found.theta, truth.theta), (found.phi, truth.phi)):
@@ -209,7 +208,7 @@ def distance(found: Any, truth: Any, digits: int) -> Decimal:
 
 
 def attracted(map: PinballMap, particles: int, transient: int = 100) -> list[Array]:
-    """Fields of random particles after some bounces."""
+    """Kernel fields of random particles after some bounces."""
     starts = phase_starts(map, particles, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
     rows = map.engine.run(KernelSpec(map.law), own, np.full(particles, float(map.lam)), map.shape, transient).rows
@@ -226,10 +225,10 @@ def worst(map: PinballMap, own: list[Array]) -> Decimal:
     return Decimal(f"{max(position.max(), direction.max()):.3g}")
 
 
-def frontier(rows: list[Row]) -> set[int]:
-    """The rows that no other way to do the same beats in both error and time: the Pareto front.
+def frontier(rows: list[SceneTiming]) -> set[int]:
+    """Indices of the rows on the Pareto front: no other row at the same contraction has less error and time.
 
-    >>> row = lambda error, seconds: Row("s", "a", "k", Decimal(error), seconds, 1)
+    >>> row = lambda error, seconds: SceneTiming("s", "a", "k", Decimal(error), seconds, 1)
     >>> sorted(frontier([row(1, 1.0), row(2, 2.0), row(0, 3.0)]))
     [0, 2]
     """
@@ -276,18 +275,18 @@ def _shape(name: str) -> dict[str, Any]:
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "benchmarks"
 MISSING = "The baselines need a checkout, or the source distribution: benchmarks/ is no part of the installed package."
-MEASURED = 24  # whose errors are measured
+MEASURED = 24  # particles whose errors are measured
 LAM = 0.95
 SCALAR = "numba, one particle at a time"
 
 
 def is_checkout() -> bool:
-    """Whether the package runs from its source tree: what lies beside an installed one is somebody else's."""
+    """Does the package run from its source tree, so that the folder beside it is its own?"""
     return (ROOT / "pyproject.toml").is_file() and FOLDER.is_dir()
 
 
 def module(name: str) -> ModuleType | None:
-    """A module of the benchmark folder, or None when it cannot be had."""
+    """A module of the benchmark folder, or None when it is missing or cannot be imported."""
     path = FOLDER / f"{name}.py"
     if not is_checkout() or not path.exists():
         return None
@@ -303,9 +302,9 @@ def module(name: str) -> ModuleType | None:
 
 
 def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., tuple[Any, Any, Any]]:
-    """Component, parameter and exit angle after so many bounces in scalar numba.
+    """A function for component, parameter and exit angle after some bounces in scalar numba.
 
-    A table that has no function of its name there is one of sides, arcs and cubics.
+    A table without a function of its name there is one of sides, arcs and cubics.
     """
     own, lam = getattr(scalar, name, None), float(map.lam)
     given = float(map.shape[0]) if map.shape else 0.0
@@ -322,8 +321,8 @@ def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., 
     return run
 
 
-def baseline_rows(name: str, runs: int) -> Iterable[Row]:
-    """The three baselines on a scene; of a table that is not the paper's the first."""
+def baseline_rows(name: str, runs: int) -> Iterable[SceneTiming]:
+    """Rows of the three baselines on a scene; only the first for a table that is not the paper's."""
     rng = np.random.default_rng(2)
     shape: dict[str, Any] = dict(SCENES.get(name, {}))
     map = scene(name)
@@ -338,7 +337,7 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
 
         _, at, out = compiled(theta[:MEASURED], phi[:MEASURED], nought[:MEASURED], 1)
         error = _error(map, theta, phi, at, out)
-        yield Row(name, "float64", SCALAR, error, best(looped, runs) / 512 / 300, runs)
+        yield SceneTiming(name, "float64", SCALAR, error, best(looped, runs) / 512 / 300, runs)
     if name in RADII:
         return
     arrays = module("arrays_lambdify")
@@ -352,7 +351,9 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
                 for _ in range(10):
                     at, out = naive.bounce(at, out, LAM)
 
-            yield Row(name, "float64", "numpy + lambdify", error, best(lambdified, runs) / theta.size / 10, runs)
+            yield SceneTiming(
+                name, "float64", "numpy + lambdify", error, best(lambdified, runs) / theta.size / 10, runs
+            )
     ways = module("paper_ways")
     if ways is not None:
         way = getattr(ways, name)
@@ -365,7 +366,7 @@ def baseline_rows(name: str, runs: int) -> Iterable[Row]:
 
         _, at, out = (np.array(column, dtype=float) for column in zip(*papers(), strict=True))
         error = _error(map, theta, phi, at, out)
-        yield Row(name, "float64", "the paper's way, in Python", error, best(papers, runs) / MEASURED, runs)
+        yield SceneTiming(name, "float64", "the paper's way, in Python", error, best(papers, runs) / MEASURED, runs)
 
 
 def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:

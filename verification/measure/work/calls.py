@@ -1,9 +1,7 @@
-"""Whole calls, as users make them, beside the kernel that does their work, and tables beside the egg.
+"""Times of whole calls, as users make them, relative to the kernel that does their work; and of tables, to the egg.
 
-They are ratios, each with a bar.
-
-Seconds differ between machines, ratios hardly: the two times of a ratio are the best of runs that take turns, in
-seconds of the processor, which other work on the machine does not lengthen. All of it runs on one thread.
+Each ratio has a bar that it should not pass. Seconds differ between machines, ratios hardly: the two times of a ratio
+are the best of runs that take turns, in processor time, which other work does not lengthen. All run on one thread.
 """
 
 from collections.abc import Callable, Iterable
@@ -19,16 +17,26 @@ from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from verification.measure.extremes.by_hand import discs, outline, spikes
 from verification.measure.extremes.orbits import SCENES, scene
-from verification.measure.work.bench import FORMULAS, LAWS, PARTICLES, SCALAR, Row, attracted, best, module, scalar_way
+from verification.measure.work.bench import (
+    FORMULAS,
+    LAWS,
+    PARTICLES,
+    SCALAR,
+    SceneTiming,
+    attracted,
+    best,
+    module,
+    scalar_way,
+)
 
 LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
 REST = 512, 1_000, 100_000  # particles at rest: how many, bounces of a short run, of a long one
-FEW_AT_REST = 64, 4_000, 40_000  # where a bounce takes ten times as long
+FEW_AT_REST = 64, 4_000, 40_000  # the same, where a bounce takes ten times as long
 
 WANDERING = "999999/1000000"
 KERNEL = "llvm, lam = 0.999999"
-IN_TURN, SCALAR_PARTICLES = 50, 512  # bounces of a run that takes turns with others, and particles of it in numba
-BARS: dict[str, tuple[str, float | None]] = {  # what a bounce on a table is compared with, and the largest ratio
+IN_TURN, SCALAR_PARTICLES = 50, 512  # bounces of one of the alternating runs, and its particles in numba
+BARS: dict[str, tuple[str, float | None]] = {  # table: the one that its bounce is compared with, and the largest ratio
     "egg": ("egg", None),
     "square": ("egg", 0.6),
     "triangle": ("egg", 0.6),
@@ -51,7 +59,7 @@ BARS: dict[str, tuple[str, float | None]] = {  # what a bounce on a table is com
 
 
 class Call(NamedTuple):
-    """A call and what it is compared with, in seconds for one bounce; `bar` is the largest ratio that is accepted."""
+    """A call and its reference, in seconds for one bounce; `bar` is the largest ratio that is accepted."""
 
     scene: str
     call: str
@@ -62,7 +70,7 @@ class Call(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """How many times the reference.
+        """The time of the call over that of its reference.
 
         >>> Call("egg", "a call", 3e-9, "the kernel", 2e-9, 2.0).ratio
         1.5
@@ -70,7 +78,7 @@ class Call(NamedTuple):
         return self.seconds / self.reference
 
     def as_data(self) -> dict[str, Any]:
-        """The row for the JSON document."""
+        """The row as JSON."""
         return self._asdict() | {"ratio": self.ratio}
 
 
@@ -81,7 +89,7 @@ def taking_turns(one: Callable[[], object], other: Callable[[], object], runs: i
 
 
 def call_rows(name: str, runs: int) -> Iterable[Call]:
-    """The calls on one of the paper's tables; of one given by its radius, what particles at rest cost."""
+    """The calls on one of the paper's tables; on a table given by its radius, only particles at rest."""
     if name not in SCENES:
         yield at_rest(name, min(runs, 3), FEW_AT_REST)
         return
@@ -91,7 +99,7 @@ def call_rows(name: str, runs: int) -> Iterable[Call]:
 
 
 def single_rows(name: str, runs: int) -> Iterable[Call]:
-    """Calls for one particle, in microseconds, and its orbit beside the kernel's latency."""
+    """Times of calls for one particle in microseconds, and of its orbit relative to the kernel."""
     map = made(name)
     starts = phase_starts(map, 1, seed=1)
     one = float(starts.theta[0]), float(starts.phi[0]), int(starts.component[0])
@@ -100,7 +108,7 @@ def single_rows(name: str, runs: int) -> Iterable[Call]:
         seconds = best(lambda action=action: [action(*one) for _ in range(LOOP)], 20 * runs) / LOOP  # type: ignore[misc]
         yield Call(name, f"{call} of one, in a Python loop", seconds, "a microsecond", 1e-6, bar)
     yield Call(name, "PinballMap, made again", best(lambda: made(name), 5 * runs), "a millisecond", 1e-3, 1.0)
-    if name == "circle":  # a bounce of two sums and a product: angles and points cost more than it, whoever tells them
+    if name == "circle":  # a bounce is two sums and a product: angles and points cost more
         return
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
     lam = np.full(1, float(map.lam))
@@ -117,7 +125,7 @@ def single_rows(name: str, runs: int) -> Iterable[Call]:
 
 
 def batch_rows(name: str, runs: int) -> Iterable[Call]:
-    """Calls for many particles, beside the kernel; the circle's takes less time than any number to be written."""
+    """Calls for many particles, relative to the kernel; on the circle only `step`, since its bounce is so cheap."""
     map = made(name)
     starts = phase_starts(map, MANY, seed=1)
     at, phi, where = starts.theta, starts.phi, starts.component
@@ -151,18 +159,18 @@ def batch_rows(name: str, runs: int) -> Iterable[Call]:
 
 
 def made(name: str) -> PinballMap:
-    """The map of a table at the contraction of the benchmark."""
+    """The map of one of the paper's tables at the contraction of the benchmark."""
     return PinballMap(name, lam=LAWS["pinball"], **dict(SCENES[name]))
 
 
 def pieces_at_rest(runs: int) -> Iterable[Call]:
-    """The same on tables of straight sides and discs."""
+    """The calls for particles at rest on tables of straight sides and discs."""
     for table in (tables.square(), tables.regular(6), discs(6)):
         yield at_rest(table.name, runs, FEW_AT_REST, PinballMap(table, lam="9/10"))
 
 
 def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: PinballMap | None = None) -> Call:
-    """Exponents of particles of which many come to rest, where subnormal numbers would be: a bounce costs the same."""
+    """Times a bounce of particles that come to rest, in a long run against a short one: no subnormal numbers occur."""
     count, short, long = sizes
     map = map or scene(name, "9/10")
     starts = phase_starts(map, count, seed=1)
@@ -179,7 +187,7 @@ def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: Pinba
 
 
 def compared(name: str, lam: Any = WANDERING) -> PinballMap:
-    """The map of a row of the table of ratios.
+    """The map of the table, and for `egg_...` of the law, that a key of `BARS` names.
 
     >>> compared("sinai").ir.table, compared("egg_sine").law
     ('sinai', 'formula')
@@ -203,11 +211,11 @@ def compared(name: str, lam: Any = WANDERING) -> PinballMap:
     return PinballMap(own[name](), lam=lam) if name in own else scene(name, lam)
 
 
-def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[Row]:
-    """A bounce on every table of `BARS`, by a kernel and in scalar numba: all measured in turn, at one contraction.
+def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[SceneTiming]:
+    """A bounce on every table of `BARS`, by a kernel and in scalar numba: measured in turn, at one contraction.
 
-    It is close to 1: at a smaller one particles settle between parallel walls, and never meet what is between.
-    Without numba only the kernels have rows.
+    It is close to 1: at a smaller one particles settle between parallel walls, and never meet anything between them.
+    Without numba there are rows for the kernels only.
     """
     scalar, ways = module("scalar_numba") if baselines else None, dict[tuple[str, str], Callable[[], object]]()
     for name in names:
@@ -222,4 +230,4 @@ def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(B
         for way, once in ways.items():
             times[way].append(best(once, 1) / IN_TURN / (PARTICLES if way[1] == KERNEL else SCALAR_PARTICLES))
     for (name, kernel), spent in times.items():
-        yield Row(name, "float64", kernel, None, min(spent[1:]), runs, WANDERING)
+        yield SceneTiming(name, "float64", kernel, None, min(spent[1:]), runs, WANDERING)

@@ -1,12 +1,12 @@
-"""What measured run times are used for: the cheapest arithmetic for a number of digits, and a comparison of two runs.
+"""Uses of measured run times: the cheapest arithmetic for a number of digits, and a comparison of two runs.
 
 The table is `measured.json` beside this file, written by `benchmarks/work_precision.py`. A way counts for as many
-digits as it promises, and only if it kept its promise where its answer was held against a certified ball. Seconds
-are those of one machine; what carries over to others are their ratios.
+digits as it promises, and only if it kept its promise where its answer was compared with a certified ball. Seconds
+are those of one machine; their ratios carry over to others.
 
-An orbit is followed in float64 while enough of its digits survive, and beyond that by what the table says. A bounce
-loses digits, as many as the decimal logarithm of what its derivative stretches by. The kernels say how many
-an orbit loses; float64 keeps the rest of what one bounce promises.
+An orbit is followed in float64 while enough of its digits survive, and else as the table says. A bounce loses as many
+digits as the decimal logarithm of the factor by which its derivative stretches. The kernels say how many an orbit
+loses; float64 keeps the rest of what one bounce promises.
 
 Two runs are compared by ratios of times within each, so that machines and their load cancel. How much longer a run
 took is the median over the rows of a question, and over the questions; reported is what differs from that. Lower
@@ -30,17 +30,17 @@ from numeric import PinballMap
 from numeric.pinball.sampling import Growth
 from symbolic.tables import cardioid
 from verification.measure.work.question import Question
-from verification.measure.work.row import Row, duration, short, timed
+from verification.measure.work.row import MethodResult, duration, short, timed
 
-MOVED = 1.5  # the factor from which on a change is told
-WORSE = 10  # times the error is told as well
-Rows = dict[tuple[str, str], Row]
+MOVED = 1.5  # from this factor on a change of time is reported
+WORSE = 10  # from this factor on a growth of an error is reported
+Rows = dict[tuple[str, str], MethodResult]
 
 
-def moved(before: Sequence[Row], after: Sequence[Row]) -> list[str]:
-    """A sentence for each row, or question as a whole, whose time changed by more than a factor 1.5 beside the others.
+def moved(before: Sequence[MethodResult], after: Sequence[MethodResult]) -> list[str]:
+    """A sentence for each row, or whole question, whose time changed by more than a factor 1.5 relative to the others.
 
-    Changes within the quartiles of both runs are not told; errors that grew tenfold, and answers lost, are.
+    Changes within the quartiles of both runs are not reported; errors that grew tenfold, and lost answers, are.
     """
     pairs = {name: (_of(before, name), _of(after, name)) for name in dict.fromkeys(row.question for row in after)}
     units = {name: _unit(old, new) for name, (old, new) in pairs.items()}
@@ -55,8 +55,8 @@ def moved(before: Sequence[Row], after: Sequence[Row]) -> list[str]:
     return sorted(said)
 
 
-def changes(old: Row, new: Row, unit: float) -> list[str]:
-    """What changed in a row, when everything took `unit` times as long."""
+def changes(old: MethodResult, new: MethodResult, unit: float) -> list[str]:
+    """Sentences on the changes of a row, when everything took `unit` times as long."""
     if old.error is not None and new.error is None:
         return [f"has no answer any more: {new.failure}"]
     told = []
@@ -74,18 +74,18 @@ def _ways(factor: float) -> list[str]:
     return [f"{max(factor, 1 / factor):.2g} times {'slower' if factor > 1 else 'quicker'}"]
 
 
-def _of(rows: Sequence[Row], name: str) -> Rows:
+def _of(rows: Sequence[MethodResult], name: str) -> Rows:
     return {(row.method, row.setting): row for row in rows if row.question == name}
 
 
 def _unit(old: Rows, new: Rows) -> float:
-    """How many times as long the rows took that both have, in the median."""
+    """The median factor by which the times of the rows changed that both runs have."""
     ratios = [new[key].quartiles[0] / old[key].quartiles[0] for key in new if key in old and old[key].quartiles[0]]
     return median(ratios) if ratios else 1.0
 
 
-def of_bench(rows: Iterable[Mapping[str, Any]]) -> list[Row]:
-    """The rows of a document of `pinball bench`: a question for each table, a method for each way to bounce."""
+def of_bench(rows: Iterable[Mapping[str, Any]]) -> list[MethodResult]:
+    """The rows in a JSON document of `pinball bench`: a question for each table, a method for each way to bounce."""
     return [
         timed(
             row["scene"],
@@ -97,8 +97,8 @@ def of_bench(rows: Iterable[Mapping[str, Any]]) -> list[Row]:
     ]
 
 
-def earlier(path: Path) -> list[Row]:
-    """The rows of a document that `pinball bench --json` wrote before."""
+def earlier(path: Path) -> list[MethodResult]:
+    """The rows in a JSON file of `pinball bench`."""
     try:
         return of_bench(json.loads(path.read_text(encoding="utf-8"))["rows"])
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError) as why:
@@ -134,7 +134,7 @@ QUESTIONS: Mapping[str, Callable[[], Question]] = {
 
 
 def question(name: str) -> Question:
-    """The question called `name`.
+    """The benchmark question of this name.
 
     >>> question("lambda-star").name
     'lambda-star'
@@ -148,7 +148,7 @@ TABLE = Path(__file__).with_name("measured.json")
 
 
 @dataclass(frozen=True)
-class Entry:
+class MeasuredWay:
     """A way that kept its promise: the digits that it promises, and its seconds for one answer."""
 
     method: str
@@ -160,8 +160,8 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Choice:
-    """What was picked for a number of digits, and why."""
+class ArithmeticChoice:
+    """The way chosen for a number of digits, and the reason."""
 
     arithmetic: str
     method: str
@@ -171,18 +171,18 @@ class Choice:
     why: str
 
 
-def entries(rows: Iterable[Row]) -> list[Entry]:
-    """The ways among some rows that can be picked: no textbook ones, none that was not held against the truth."""
+def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
+    """The ways among some rows that can be chosen: no textbook ones, and none that was not compared with the truth."""
     made = []
     for row in rows:
         if row.kept and row.promise and not row.textbook and row.method != "mpmath, no gmpy2":
             digits = row.digits or max(0, math.floor(-float(row.promise.log10())))
-            made.append(Entry(row.method, row.arithmetic, row.setting, digits, row.seconds, row.proved))
+            made.append(MeasuredWay(row.method, row.arithmetic, row.setting, digits, row.seconds, row.proved))
     return made
 
 
-def written(rows: Iterable[Row], machine: Mapping[str, str]) -> str:
-    """The table of some rows as a file has it."""
+def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
+    """The table of some rows as the text of a file."""
     kept: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
         kept.setdefault(row.question, []).extend(
@@ -196,19 +196,21 @@ def written(rows: Iterable[Row], machine: Mapping[str, str]) -> str:
 
 
 @cache
-def table() -> Mapping[str, tuple[Entry, ...]]:
-    """The table as it was measured."""
+def table() -> Mapping[str, tuple[MeasuredWay, ...]]:
+    """The table that was measured: for each question, the ways that kept their promise."""
     document = json.loads(TABLE.read_text(encoding="utf-8"))
-    return {name: tuple(Entry(**each) for each in found) for name, found in document["questions"].items()}
+    return {name: tuple(MeasuredWay(**each) for each in found) for name, found in document["questions"].items()}
 
 
-def cheapest(question: str, digits: int, proof: bool = False, measured: Iterable[Entry] | None = None) -> Choice:
+def cheapest(
+    question: str, digits: int, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
+) -> ArithmeticChoice:
     """The cheapest way to answer `question` to `digits` decimal digits; with `proof` only ways that prove it.
 
-    More digits than the table has are answered by what is cheapest at the most that it has.
+    Beyond the digits of the table, it is the cheapest at the most that the table has.
 
-    >>> kernel = Entry("kernel", "float64", "4 particles", 14, 1e-6, False)
-    >>> ball = Entry("balls", "arb", "100 digits", 100, 1e-3, True)
+    >>> kernel = MeasuredWay("kernel", "float64", "4 particles", 14, 1e-6, False)
+    >>> ball = MeasuredWay("balls", "arb", "100 digits", 100, 1e-3, True)
     >>> cheapest("step-egg", 12, measured=[kernel, ball]).why
     'kernel promises 14 digits in 1 us; next is balls, 1e+03 times as long'
     >>> cheapest("step-egg", 12, proof=True, measured=[kernel, ball]).arithmetic
@@ -219,7 +221,7 @@ def cheapest(question: str, digits: int, proof: bool = False, measured: Iterable
     known = _known(question) if measured is None else measured
     usable = [entry for entry in known if entry.proved or not proof]
     if not usable:
-        raise ValueError(f"{question}: no way of the table has a proof; ask without")
+        raise ValueError(f"{question}: no method in the table is proved; ask without a proof")
     most = max(entry.digits for entry in usable)
     enough = sorted((e for e in usable if e.digits >= min(digits, most)), key=lambda e: e.seconds)
     best = enough[0]
@@ -233,14 +235,16 @@ def cheapest(question: str, digits: int, proof: bool = False, measured: Iterable
         why += f"; {quick.method} is quicker and ends at {reach} digits"
     if digits > most:
         why += f"; the table ends at {most} digits"
-    return Choice(best.arithmetic, best.method, best.setting, best.digits, best.seconds, why)
+    return ArithmeticChoice(best.arithmetic, best.method, best.setting, best.digits, best.seconds, why)
 
 
-def crossovers(question: str, proof: bool = False, measured: Iterable[Entry] | None = None) -> list[tuple[int, Choice]]:
-    """From how many digits on each way is the cheapest: pairs of digits and what is picked from there on."""
+def crossovers(
+    question: str, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
+) -> list[tuple[int, ArithmeticChoice]]:
+    """The quickest methods: pairs of a number of digits and the method from there on."""
     known = tuple(_known(question) if measured is None else measured)
     edges = sorted({1, *(entry.digits + 1 for entry in known)})
-    most, found = max(entry.digits for entry in known), list[tuple[int, Choice]]()
+    most, found = max(entry.digits for entry in known), list[tuple[int, ArithmeticChoice]]()
     for digits in edges:
         if digits > most:
             break
@@ -250,22 +254,22 @@ def crossovers(question: str, proof: bool = False, measured: Iterable[Entry] | N
     return found
 
 
-def _known(question: str) -> tuple[Entry, ...]:
+def _known(question: str) -> tuple[MeasuredWay, ...]:
     if question not in table():
         raise ValueError(f"question = {question!r} was not measured; accepted: {', '.join(table())}")
     return table()[question]
 
 
-WAYS = ("compiled kernel", "arb, certified")  # that say how many digits an orbit has left: mpmath's does not
-LOOKS = 1000  # at an orbit
+WAYS = ("compiled kernel", "arb, certified")  # they show how many digits an orbit has left; mpmath does not
+LOOKS = 1000  # at most so many samples of the growth along an orbit
 MOST_DIGITS = 10_000
-HOPELESS = 400.0  # digits: an orbit that loses more is not followed to say how many
+HOPELESS = 400.0  # digits: an orbit that loses more counts as losing all
 
 
 def for_orbit(
     map: PinballMap, start: tuple[float, float, int], bounces: int, digits: int, proof: bool = False
-) -> Choice:
-    """What to follow the particle from `start` (parameter, exit angle, component) with, to have `digits` at its end.
+) -> ArithmeticChoice:
+    """The way to follow a particle from `start` (parameter, exit angle, component) that leaves `digits` at its end.
 
     >>> circle = PinballMap("circle", lam="0.5")
     >>> for_orbit(circle, (0.3, 0.2, 0), 10, 10).arithmetic, for_orbit(circle, (0.3, 0.2, 0), 10, 20).arithmetic
@@ -274,7 +278,7 @@ def for_orbit(
     if bounces < 1:
         raise ValueError(f"bounces = {bounces} is out of range; accepted: at least 1")
     arc = cardioid.components[0].point
-    name = "step-cardioid" if any(part.point == arc for part in map.table.components) else "step-egg"  # the most alike
+    name = "step-cardioid" if any(part.point == arc for part in map.table.components) else "step-egg"  # the more alike
     lost = digits_lost(map, start, bounces)
     known = [entry for entry in table()[name] if entry.method in WAYS]
     if math.isinf(lost):
@@ -287,9 +291,9 @@ def for_orbit(
 
 
 def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) -> float:
-    """The decimal digits that a rounding error grows by on an orbit, wherever it is made; all when the orbit stops.
+    """Decimal digits by which a rounding error on an orbit grows, wherever it is made; infinite if the orbit stops.
 
-    It is the largest rise of the logarithm of a tangent vector's length, looked at so often and no oftener.
+    It is the largest rise of the logarithm of a tangent vector's length, sampled at most `LOOKS` times.
     """
     growth = Growth(map, *start)
     sizes, block = [0.0], max(1, bounces // LOOKS)
@@ -303,7 +307,7 @@ def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) 
 
 
 def digits_for(tolerance: Decimal | float | str) -> int:
-    """The decimal digits that keep an error below a tolerance.
+    """The number of decimal digits that keeps an error below a tolerance.
 
     >>> digits_for(1e-12), digits_for(Decimal("3e-1000"))
     (12, 1000)
@@ -317,5 +321,5 @@ def digits_for(tolerance: Decimal | float | str) -> int:
     return max(1, -given.adjusted())
 
 
-def _saying(choice: Choice, more: str) -> Choice:
+def _saying(choice: ArithmeticChoice, more: str) -> ArithmeticChoice:
     return replace(choice, why=f"{choice.why}; {more}")

@@ -1,6 +1,7 @@
-"""Cycles of period 2, 3 and 64, and where they are born or double: the chord system against shooting and watching."""
+"""Benchmarks on cycles of period 2, 3 and 64, a fold, doublings: the chord system against shooting and iteration."""
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from functools import cache, partial
@@ -23,55 +24,67 @@ from verification.cycles.recurrence import BifurcationKind
 from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question
 from verification.measure.work.sought import DIGITS, Sought, last, to_digits
-from verification.named.locate import certify, closed_form
-from verification.proofs.periodic.bifurcation import Proof
+from verification.named.locate import proof_near
+from verification.proofs.periodic.cycle_in_box import UniqueCycle, closed_form
 
 ALPHA = Rational(2, 25)
 HALF = Rational(1, 2)
 EGG = tables.egg(3).at(alpha=ALPHA)
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
-FIRST, HIGHEST = 3, 6  # the n of the doublings, as in section 6.6
+FIRST, HIGHEST = 3, 6  # n of the doublings `lambda_n`, as in section 6.6
 FAR = Rational(41, 100)  # a contraction at which the cycle of period 64 has multipliers of some 10**5
-STRIDE = 0.2  # of the way back to its birth, in the contraction
+STRIDE = 0.2  # step, over the distance in the contraction from its birth
 
 
 def cycle(
     name: str, title: str, table: Table, at: Rational, start: tuple[float, ...], own: PinballMap, settles: bool
 ) -> Question:
-    """The bounces of one cycle; `own` is its map, and `settles` says whether particles reach it."""
+    """Benchmark on the bounces of a cycle at `lam = at`; `own` is its map, `settles` says if particles reach it."""
     problem = Problem(table, (0,) * len(start), lam=at)
-    sought = Sought(problem, start)
+    usual = textbook_cycle(own, (start[0], first_exit(problem, start)), len(start), settles)
+    what = f"a cycle of period {len(start)} of the {table.name}, lam = {at}"
+    return cycle_question(name, title, what, problem, start, usual)
+
+
+def cycle_question(
+    name: str,
+    title: str,
+    what: str,
+    problem: Problem,
+    start: tuple[float, ...],
+    usual: Sequence[Method],
+    here: bool = False,
+) -> Question:
+    """Benchmark on the bounces of a cycle in every arithmetic and by `usual` ways; with `here`, in this process."""
 
     def certified(digits: int) -> list[arb]:
-        return whole(certify(problem, list(start), digits)).enclosure.zero
+        return list(whole(proof_near(problem, list(start), digits)).enclosure.zero)
 
-    landed = first_exit(problem, start)
-    return Question(
-        name,
-        title,
-        f"the boundary parameters of a cycle of period {len(start)} of the {table.name}, lam = {at}",
-        "radians",
-        certified,
-        (*sought.methods(certified), *textbook_cycle(own, (start[0], landed), len(start), settles)),
-    )
+    ours = Sought(problem, start).methods(certified)
+    methods = (*(here_alone(ours) if here else ours), *usual)
+    return Question(name, title, f"the boundary parameters of {what}", "radians", certified, methods)
 
 
-def whole(proof: Proof) -> Proof:
-    """A proof whose checklist is complete."""
-    if not proof.certified:
-        missing = ", ".join(name for name, value in proof.checks.items() if value is not True)
-        raise ValueError(f"{proof.claim.problem.label}: not proved: {missing}")
+def here_alone(methods: Iterable[Method]) -> list[Method]:
+    """The methods that do not need another process."""
+    return [method for method in methods if not method.elsewhere]
+
+
+def whole(proof: UniqueCycle) -> UniqueCycle:
+    """The proof itself; `ValueError` where its checklist is not complete."""
+    if not proof.proved:
+        raise ValueError(f"{proof.label}: not proved: {', '.join(proof.open)}")
     return proof
 
 
 def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
-    """The exit angle at the first bounce, to three decimals."""
+    """The exit angle at the first bounce of a cycle, to three decimals; to nine for long cycles."""
     out, _ = problem.ring.angles(np.array(floats(problem, start)), {"lam": float(problem.lam)})
     return round(float(out[0]), 3 if problem.period < 10 else 9)
 
 
 def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, settles: bool) -> list[Method]:
-    """Single shooting on the compiled step, and for an attracting cycle a particle that settles on it."""
+    """The methods of single shooting on the compiled step, and for an attracting cycle of iterating a particle."""
     book = module("textbook")
     if book is None:
         return []
@@ -94,38 +107,38 @@ def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, 
 
 
 def period_2() -> Question:
-    """The vertical cycle of the cardioid, between `pi/3` and `-pi/3`: unstable."""
+    """Benchmark: the vertical cycle of the cardioid, between `pi/3` and `-pi/3`: unstable."""
     own = PinballMap("cardioid", lam="1/2")
     return cycle("cycle-2", "A cycle of period 2, cardioid", tables.cardioid, HALF, (1.05, -1.05), own, False)
 
 
 def period_3() -> Question:
-    """The attracting triangle of the egg, which turns as `lam` falls from 1 to the fold."""
+    """Benchmark: the attracting triangle of the egg, which turns as `lam` falls from 1 to the fold."""
     own = PinballMap("egg", lam="1/2", alpha="2/25")
     return cycle("cycle-3", "A cycle of period 3, egg", EGG, HALF, triangle_start(), own, True)
 
 
 def triangle_start() -> tuple[float, ...]:
-    """Its bounces at `lam = 1/2`, to three decimals."""
+    """The bounces of the triangle at `lam = 1/2`, to three decimals."""
     first = float(N(polygons.near_flat().subs({lam: HALF, alpha_symbol: ALPHA})))
     return tuple(round(math.remainder(first + k * math.tau / 3, math.tau), 3) for k in range(3))
 
 
 def period_64() -> Question:
-    """The cycle of period 64 of the cascade, far from where it is born: strongly unstable."""
+    """Benchmark: the cycle of period 64 of the cascade, far from where it is born: strongly unstable."""
     own = PinballMap("egg", lam=str(FAR), alpha="2/25")
     return cycle("cycle-64", "A cycle of period 64, egg", EGG, FAR, far_cycle(), own, False)
 
 
 @cache
 def members() -> tuple[Doubling, ...]:
-    """`lambda_3` to `lambda_6` in float64."""
+    """The doublings `lambda_3` to `lambda_6` in float64."""
     return tuple(islice(cascade(ALPHA), HIGHEST - FIRST + 1))
 
 
 @cache
 def far_cycle() -> tuple[float, ...]:
-    """The cycle of period 64, followed in the contraction from its birth, to six decimals."""
+    """The bounces of the cycle of period 64, followed in the contraction from its birth, to six decimals."""
     birth, below = members()[-1], members()[-2]
     here, lam = doubled(birth.problem, birth.start, 0.06 * (birth.lam - below.lam))
     before, last_step = here, 1.0
@@ -138,7 +151,7 @@ def far_cycle() -> tuple[float, ...]:
 
 
 def fold() -> Question:
-    """The fold at which the egg's triangles are born. Paper: section 6.4."""
+    """Benchmark: the fold at which the egg's triangles are born. Paper: section 6.4."""
     exact = polygons.saddle_node().subs(alpha_symbol, ALPHA)
     turn = -float(N(acos(-ALPHA))) / 3
     start = (*(round(turn + math.tau / 3 * k, 3) for k in range(3)), round(float(N(exact)), 3))
@@ -153,7 +166,7 @@ def fold() -> Question:
         "in lam",
         lambda digits: [closed_form(exact, digits)],
         (
-            *Sought(problem, start, last).methods(lambda d: [whole(certify(problem, list(start), d)).value]),
+            *Sought(problem, start, last).methods(lambda d: [whole(proof_near(problem, list(start), d)).value]),
             formula,
             *textbook_fold(),
         ),
@@ -161,7 +174,7 @@ def fold() -> Question:
 
 
 def textbook_fold() -> list[Method]:
-    """Bisection on whether shooting still finds the cycle."""
+    """Bisection on whether shooting still finds the cycle, as a method."""
     book = module("textbook")
     if book is None:
         return []
@@ -177,11 +190,11 @@ def textbook_fold() -> list[Method]:
 
 
 def doublings() -> Question:
-    """The doublings `lambda_3` to `lambda_6` of the egg's cascade. Paper: section 6.6."""
+    """Benchmark: the doublings `lambda_3` to `lambda_6` of the egg's cascade. Paper: section 6.6."""
     starts = [tuple(round(x, 5 if each.n < HIGHEST else 6) for x in each.start) for each in members()]
 
     def certified(problem: Problem, start: tuple[float, ...], digits: int) -> list[arb]:
-        return [whole(certify(problem, list(start), digits)).value]
+        return [whole(proof_near(problem, list(start), digits)).value]
 
     singly = [
         Sought(each.problem, start, last).methods(partial(certified, each.problem, start))
@@ -193,13 +206,13 @@ def doublings() -> Question:
         "The doubling cascade, egg",
         f"lambda_{FIRST} to lambda_{HIGHEST}, where periods 4 to 32 double, alpha = {ALPHA}",
         "in lam",
-        lambda d: [whole(certify(r.problem, list(s), d)).value for r, s in zip(members(), starts, strict=True)],
+        lambda d: [whole(proof_near(r.problem, list(s), d)).value for r, s in zip(members(), starts, strict=True)],
         (*together, *textbook_doublings()),
     )
 
 
 def _together(methods: tuple[Method, ...]) -> Method:
-    """One way for several questions at once; its promise is the weakest."""
+    """One method for several questions at once; its promise is the weakest."""
 
     def call(setting: Any) -> list[Any]:
         return [x for method in methods for x in method.call(setting)]
@@ -212,7 +225,7 @@ def _together(methods: tuple[Method, ...]) -> Method:
 
 
 def textbook_doublings() -> list[Method]:
-    """brentq on the multiplier of a cycle found by shooting, and periods read off settled particles."""
+    """The methods of brentq on the multiplier of a cycle found by shooting, and of periods after a transient."""
     book = module("textbook")
     if book is None:
         return []

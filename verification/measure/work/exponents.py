@@ -3,6 +3,7 @@
 Arc length is that of the egg, and its inverse: the parameter at a given arc length.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cache
@@ -14,9 +15,9 @@ from flint import acb, arb, ctx
 from sympy import Rational
 
 from numeric import PinballMap
-from numeric.dynamics.exponents import ALIGNED, Count
+from numeric.dynamics.estimator import Count
 from numeric.dynamics.statistics import Estimate, estimate
-from numeric.pinball.sampling import Growth, interior_starts
+from numeric.pinball.sampling import ALIGNED, Growth, interior_starts
 from symbolic import tables
 from symbolic.expressions.text import Kernel, kernel, load
 from symbolic.tables.geometry import speed
@@ -31,34 +32,24 @@ from verification.measure.work.question import Claimed, Method, Question, availa
 from verification.measure.work.row import WITHOUT
 from verification.measure.work.sought import DIGITS, Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
-from verification.named.locate import certify
+from verification.named.locate import proof_near
 from verification.proofs.manifolds.enclosed import complex_balls
 from verification.proofs.slap_map.exponent import slap_exponent
 
 FEW, MANY = (30, 300, 3_000), (100, 10_000, 1_000_000)
 ORBITS = 64
-EARLY = 1_000  # bounces before anything is counted
-SHARP = 20  # digits of the density behind the proved exponent of chaos
+EARLY = 1_000  # bounces before the count
+SHARP = 20  # digits of the density for the proved exponent of chaos
 PROOFS = (4, 8, 12, 16)
 
 
 def of_a_cycle() -> Question:
-    """The larger exponent of the egg's attracting triangle."""
+    """Benchmark: the larger exponent of the egg's attracting triangle."""
     start = triangle_start()
     problem = Problem(EGG, (0, 0, 0), lam=HALF)
     map = PinballMap("egg", lam="1/2", alpha="2/25")
     particle = start[0], first_exit(problem, start)
-
-    def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
-        trace, determinant = trace_and_determinant(Linearised(problem, arithmetic, z).terms.rows)
-        return [larger(arithmetic, trace, determinant, 3)]
-
-    def certified(digits: int) -> list[arb]:
-        proof = whole(certify(problem, list(start), digits + 5))
-        bits = bits_of(digits, 64)
-        with working(bits):
-            pair = trace_and_determinant(Linearised(problem, balls(bits), proof.enclosure.zero).terms.rows)
-            return [enclosed_exponents(*pair, 3)[0]]
+    read, certified = read_off(problem, start)
 
     def counted(bounces: int) -> list[float]:
         return [float(map.exponents(*particle, bounces).nu_plus)]
@@ -74,6 +65,25 @@ def of_a_cycle() -> Question:
     )
 
 
+def read_off(
+    problem: Problem, start: tuple[float, ...]
+) -> tuple[Callable[[Arithmetic, Vector], list[Any]], Callable[[int], list[arb]]]:
+    """Functions for the larger exponent of a cycle: from a solution of its equations, and proved to so many digits."""
+
+    def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
+        trace, determinant = trace_and_determinant(Linearised(problem, arithmetic, z).terms.rows)
+        return [larger(arithmetic, trace, determinant, problem.period)]
+
+    def certified(digits: int) -> list[arb]:
+        proof = whole(proof_near(problem, list(start), digits + 5))
+        bits = bits_of(digits, 64)
+        with working(bits):
+            pair = trace_and_determinant(Linearised(problem, balls(bits), proof.enclosure.zero).terms.rows)
+            return [enclosed_exponents(*pair, problem.period)[0]]
+
+    return read, certified
+
+
 def larger(arithmetic: Arithmetic, trace: Any, determinant: Any, period: int) -> Any:
     """The larger exponent per bounce of a cycle, in any arithmetic."""
     gap = trace * trace - 4 * determinant
@@ -83,15 +93,15 @@ def larger(arithmetic: Arithmetic, trace: Any, determinant: Any, period: int) ->
 
 
 def of_chaos() -> Question:
-    """The exponent of the cardioid at `lam = 0`, whose chaotic attractor has a proved natural measure.
+    """Benchmark: the exponent of the cardioid at `lam = 0`, whose chaotic attractor has a proved natural measure.
 
-    The radius of the reference is below 1e-18, however many digits are asked for.
+    The radius of the reference is below 1e-18, for any number of digits.
     """
     map = PinballMap("cardioid", lam=0)
 
     def counted(bounces: int) -> Claimed:
         found = run(map, ORBITS, max(bounces // ORBITS, 8))
-        return Claimed([found.mean], found.interval)
+        return Claimed([found.mean], found.reach)
 
     def plainly(bounces: int) -> list[float]:
         growth = Growth(numpy_map(map), *fixed_starts(map, ORBITS))
@@ -128,19 +138,24 @@ def proved(digits: int) -> arb:
 
 @cache
 def sharply() -> arb:
-    """The same, as sharp as the reference is."""
+    """The exponent of the cardioid at `lam = 0` to `SHARP` digits, as the reference."""
     return proved(SHARP)
 
 
 def numpy_map(map: PinballMap) -> PinballMap:
-    """The same map on NumPy arrays."""
+    """The map on NumPy arrays, without compiled kernels."""
     return PinballMap(map.ir.table, lam=float(map.lam), kernels=False)
 
 
 def run(map: PinballMap, orbits: int, bounces: int) -> Estimate:
-    """The exponent over some orbits, with the error of batch means."""
+    """The exponent over some orbits, with its error from batch means."""
     growth = Growth(map, *fixed_starts(map, orbits))
     growth.advance(ALIGNED)
+    return grown(growth, bounces)
+
+
+def grown(growth: Growth, bounces: int) -> Estimate:
+    """The exponent over so many more bounces of each orbit, with its error."""
     count = Count(growth, most=64)
     for _ in count.until(bounces):
         pass
@@ -158,12 +173,12 @@ def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
 
 
 def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
-    """Particles on the attractor: parameter, exit angle, component."""
+    """Parameter, exit angle and component of particles on the attractor."""
     return _arrived(map.ir.table, float(map.lam), orbits)
 
 
 def textbook(map: PinballMap, particle: tuple[float, float]) -> list[Method]:
-    """Two neighbouring particles, and QR of one matrix after the other."""
+    """The methods of two neighbouring particles, and of QR of one matrix after the other."""
     book = module("textbook")
     if book is None:
         return []
@@ -198,13 +213,13 @@ GUARD = 15
 
 @cache
 def speed_kernel() -> Kernel:
-    """`ds/dtheta` as a generated function."""
+    """The speed `ds/dtheta` as a generated function."""
     (component,) = tables.egg(3).at(alpha=ALPHA).components
     return kernel("speed", [theta], {"speed": speed(component)}, about="ds/dtheta of the egg")
 
 
 def length(x: Any) -> Any:
-    """Arc length from 0 to `x` in the arithmetic of `x`: by SciPy, by mpmath, or enclosed."""
+    """Arc length from 0 to `x` in the arithmetic of `x`: by SciPy, by mpmath, or enclosed in a ball."""
     if isinstance(x, arb):
         return enclosed_length(x)
     if isinstance(x, mpmath.ctx_mp_python._mpf):
@@ -217,7 +232,7 @@ def length(x: Any) -> Any:
 
 
 def enclosed_length(x: arb) -> arb:
-    """Arc length in balls, by FLINT's integral: for a ball, over its middle, and the speed times the radius."""
+    """Arc length in balls, by FLINT's integral: for a ball up to its middle, plus the speed times the radius."""
     middle = x.mid()
     whole: arb = acb.integral(analytic_speed, acb(0), acb(middle)).real
     rest: arb = (x - middle) * load(speed_kernel(), balls(bits_of(30)))(x)[0]
@@ -225,7 +240,7 @@ def enclosed_length(x: arb) -> arb:
 
 
 def analytic_speed(z: acb, analytic: bool) -> acb:
-    """The speed at a complex ball; not finite where the root might not be analytic, when that is asked."""
+    """The speed at a complex ball; with `analytic`, not finite where the root might not be analytic."""
     words = replace(complex_balls(ctx.prec), sqrt=lambda w: acb(w).sqrt(analytic=analytic))
     found: acb = load(speed_kernel(), words)(z)[0]
     return found
@@ -233,32 +248,32 @@ def analytic_speed(z: acb, analytic: bool) -> acb:
 
 @dataclass(frozen=True)
 class Inverse:
-    """The parameters at given arc lengths."""
+    """The equations for the parameters at given arc lengths."""
 
     label: str = "egg, the parameter at an arc length"
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """How far each length is from what it should be."""
+        """Each arc length less the given one."""
         return [length(x) - s for x, s in zip(z, AT, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """The corrections for a residual."""
+        """Newton's corrections for a residual `r`."""
         own = load(speed_kernel(), arithmetic)
         return [e / own(x)[0] for e, x in zip(r, z, strict=True)]
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Newton's corrections."""
+        """Newton's corrections at `z`."""
         return self.solved(arithmetic, z, self.value(arithmetic, z))
 
 
 def certified(digits: int) -> list[arb]:
-    """The lengths, enclosed."""
+    """The arc lengths, enclosed."""
     with working(bits_of(digits, 32)):
         return [enclosed_length(arb(x)) for x in AT]
 
 
 def lengths() -> Question:
-    """Arc length at some parameters."""
+    """Benchmark: arc length at some parameters."""
     map = PinballMap("egg", alpha="2/25")
     map.arclength.s(np.array(AT))
 
@@ -293,7 +308,7 @@ def lengths() -> Question:
 
 
 def parameters() -> Question:
-    """The parameters at some arc lengths."""
+    """Benchmark: the parameters at some arc lengths."""
     map = PinballMap("egg", alpha="2/25")
     start = tuple(round(float(x), 3) for x in map.arclength.theta(np.array(AT)))
     sought = Sought(Inverse(), start, per=len(AT))
@@ -328,7 +343,7 @@ def _speed(map: PinballMap) -> Any:
 
 
 def textbook_lengths(map: PinballMap) -> list[Method]:
-    """`scipy.integrate.quad`, and trapezia on a grid."""
+    """The methods `scipy.integrate.quad`, and the trapezoidal rule on a grid."""
     book, own = module("textbook"), _speed(map)
     if book is None:
         return []
@@ -339,7 +354,7 @@ def textbook_lengths(map: PinballMap) -> list[Method]:
 
 
 def textbook_parameters(map: PinballMap) -> list[Method]:
-    """brentq over quad, and interpolation in trapezia."""
+    """The methods brentq over quad, and interpolation of the trapezoidal rule."""
     book, own = module("textbook"), _speed(map)
     if book is None:
         return []

@@ -1,7 +1,7 @@
 """The work-precision diagram of a question: error against seconds, one line for each method.
 
 Errors run from 1 down to 1e-1000 and beyond: where they do, the upward scale is the logarithm of the number of
-digits, so that float64 and a thousand digits are told apart on one page. Marks and dashes differ, not only colours.
+digits, so that float64 and a thousand digits fit on one page. Marks and dashes differ, not only colours.
 Sentences made from the same rows say which method wins where, what a proof costs, and what the usual methods lose.
 """
 
@@ -9,8 +9,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from verification.measure.work.row import WITHOUT, Row, duration, footer, front, short
-from verification.plots.sheet import BLACK, DARK, MIDDLE, SMALL, WIDTH, encoded, styled
+from verification.measure.work.row import WITHOUT, MethodResult, duration, footer, front, short
+from verification.plots.sheet import BLACK, DARK, MIDDLE, SMALL, WIDTH, encoded, figure_of, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 HEIGHT = 4.3  # inches
-WIDE = -40.0  # the decimal logarithm of an error from which on the scale is that of digits
-LEAST = 0.5  # digits that the upper end of that scale stands for
+WIDE = -40.0  # decimal logarithm of an error: below this, the scale is that of digits
+LEAST = 0.5  # digits at the upper end of that scale
 TICKS = (1, 2, 4, 8, 16, 30, 100, 300, 1000, 3000)
 MARKS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "h", "p", "*")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 1.2)), (0, (1.2, 1)), (0, (5, 1.2, 1, 1.2)))
@@ -30,38 +30,49 @@ KNOWN = (
     WITHOUT,
     "arb, no proof",
     "arb, certified",
-)  # alike in all diagrams
+)  # these look the same in all diagrams
 
 
-def drawn(title: str, unit: str, rows: Sequence[Row], known: dict[str, str]) -> "Figure":
+def drawn(
+    title: str, unit: str, rows: Sequence[MethodResult], known: dict[str, str], axes: "Axes | None" = None
+) -> "Figure":
     """The diagram of some rows; full marks are on the Pareto front, crossed ones break their claim.
 
-    Where no error is below what a float holds by far, the error that an answer claims is a bar above its mark.
+    Where errors are within the range of floats, the error that an answer claims is a bar above its mark. On given axes
+    the footer with the machine is left out.
     """
     from matplotlib.figure import Figure
 
-    from verification.plots.layout import PAD, Grid, plain_minor_ticks
+    from verification.plots.layout import PAD, GridLayout, plain_minor_ticks
 
+    if axes is not None:
+        _diagram(axes, title, unit, rows)
+        return figure_of(axes)
     with styled():
-        figure = Figure(figsize=(WIDTH, HEIGHT), layout=Grid())
-        axes = figure.add_subplot()
-        shown = [row for row in rows if row.error]
-        wide = min((row.magnitude for row in shown), default=0.0) < WIDE
-        for name, look in looks(shown).items():
-            _line(axes, [row for row in shown if row.method == name], front(rows), wide, look)
-        _front(axes, [row for row in front(rows) if row.error], wide)
-        axes.set_xscale("log")
-        axes.set_xlabel("seconds of one core for one answer, median and quartiles")
-        axes.set_ylabel(f"error, {unit}")
-        _scale(axes, shown, wide)
-        axes.set_title(title, loc="left", y=1.0)
-        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), handlelength=2.6)
+        figure = Figure(figsize=(WIDTH, HEIGHT), layout=GridLayout())
+        own = figure.add_subplot()
+        _diagram(own, title, unit, rows)
         figure.text(0.01, PAD / HEIGHT, _folded(footer(known)), fontsize=5.5, color="0.35", va="bottom")
-        plain_minor_ticks(axes)
+        plain_minor_ticks(own)
     return figure
 
 
-def looks(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+def _diagram(axes: "Axes", title: str, unit: str, rows: Sequence[MethodResult]) -> None:
+    """Draws lines, front, scales and legend on one pair of axes."""
+    shown = [row for row in rows if row.error]
+    wide = min((row.magnitude for row in shown), default=0.0) < WIDE
+    for name, look in looks(shown).items():
+        _line(axes, [row for row in shown if row.method == name], front(rows), wide, look)
+    _front(axes, [row for row in front(rows) if row.error], wide)
+    axes.set_xscale("log")
+    axes.set_xlabel("seconds of one core for one answer, median and quartiles")
+    axes.set_ylabel(f"error, {unit}{'; the scale is that of the number of digits' if wide else ''}")
+    _scale(axes, shown, wide)
+    axes.set_title(title, loc="left", y=1.0)
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), handlelength=2.6)
+
+
+def looks(rows: Sequence[MethodResult]) -> dict[str, dict[str, Any]]:
     """Colour, mark and dashes of each method: the usual ways in orange, float64 in black, more digits in blue."""
     names = {row.method: row for row in rows}
     others = [name for name in names if name not in KNOWN]
@@ -74,13 +85,13 @@ def looks(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
 
 
 def image(figure: "Figure", ending: str = "svg") -> bytes:
-    """A figure as the bytes of a file, the same for the same figure; small ones for a page, as WebP."""
+    """A figure as the bytes of a file, the same for the same figure; WebP files are small, for a page."""
     with styled():
         return encoded(figure, f".{ending}", **({"dpi": 110, **SMALL} if ending == "webp" else {}))
 
 
 def height(magnitude: float, wide: bool) -> float:
-    """Where an error with that decimal logarithm stands.
+    """Height in the diagram of an error with this decimal logarithm.
 
     >>> height(-16.0, wide=False), height(-100.0, wide=True)
     (-16.0, -2.0)
@@ -88,7 +99,9 @@ def height(magnitude: float, wide: bool) -> float:
     return -math.log10(max(-magnitude, LEAST)) if wide else magnitude
 
 
-def _line(axes: "Axes", rows: list[Row], best: tuple[Row, ...], wide: bool, look: dict[str, Any]) -> None:
+def _line(
+    axes: "Axes", rows: list[MethodResult], best: tuple[MethodResult, ...], wide: bool, look: dict[str, Any]
+) -> None:
     x, y = [row.seconds for row in rows], [height(row.magnitude, wide) for row in rows]
     spread = [
         [max(row.seconds - row.quartiles[0], 0.0) for row in rows],
@@ -107,8 +120,8 @@ def _line(axes: "Axes", rows: list[Row], best: tuple[Row, ...], wide: bool, look
     axes.plot([x[i] for i in broken], [y[i] for i in broken], ls="", marker="x", color="0.15", ms=8, mew=0.8, zorder=5)
 
 
-def _bars(axes: "Axes", rows: list[Row], x: list[float], y: list[float]) -> None:
-    """The error that each answer claims, as a bar above its mark, and its setting beside it."""
+def _bars(axes: "Axes", rows: list[MethodResult], x: list[float], y: list[float]) -> None:
+    """Draws the error that each answer claims as a bar above its mark, and its setting beside it."""
     for row, at, here in zip(rows, x, y, strict=True):
         if row.promise:
             claim = float(row.promise.log10())
@@ -119,14 +132,14 @@ def _bars(axes: "Axes", rows: list[Row], x: list[float], y: list[float]) -> None
         axes.annotate(row.setting, (at, here), (4, -9), textcoords="offset points", fontsize=6, color="0.35")
 
 
-def _front(axes: "Axes", best: list[Row], wide: bool) -> None:
-    """The front as a staircase: what is reached within a time."""
+def _front(axes: "Axes", best: list[MethodResult], wide: bool) -> None:
+    """Draws the front as a staircase: the least error reached within a time."""
     x, y = [row.seconds for row in best], [height(row.magnitude, wide) for row in best]
     axes.step(x, y, where="post", color="0.8", lw=4, zorder=1, solid_joinstyle="round", label="Pareto front")
 
 
-def _scale(axes: "Axes", rows: list[Row], wide: bool) -> None:
-    """Ticks of the upward axis, as powers of ten."""
+def _scale(axes: "Axes", rows: list[MethodResult], wide: bool) -> None:
+    """Sets the ticks of the vertical axis, as powers of ten."""
     if wide:
         deepest = -min(row.magnitude for row in rows)
         kept = [n for n in TICKS if n <= 1.3 * deepest]
@@ -140,17 +153,17 @@ def _scale(axes: "Axes", rows: list[Row], wide: bool) -> None:
 
 
 def _folded(text: str, width: int = 150) -> str:
-    """A long line in two or three."""
+    """A long line broken into several."""
     from textwrap import fill
 
     return fill(text, width)
 
 
-PLENTY = 100  # digits at which a proof is compared with none
+PLENTY = 100  # digits at which the time of a proof is compared
 
 
-def paragraph(rows: Sequence[Row]) -> str:
-    """The sentences, each with its numbers."""
+def paragraph(rows: Sequence[MethodResult]) -> str:
+    """A list of sentences on the rows, in Markdown."""
     told = [
         quickest(rows) if not _with_bars(rows) else "",
         picked(rows),
@@ -162,99 +175,102 @@ def paragraph(rows: Sequence[Row]) -> str:
     return "\n".join(f"- {sentence}" for sentence in told if sentence)
 
 
-def quickest(rows: Sequence[Row]) -> str:
-    """The best that float64 does, in time and in error."""
+def quickest(rows: Sequence[MethodResult]) -> str:
+    """A sentence on the best float64 answer, in error and in time."""
     own = [row for row in rows if row.arithmetic == "float64" and row.error is not None]
-    if not own:
+    finest = min(own, key=lambda row: row.error or 0, default=None)
+    if finest is None or finest.error is None:
         return ""
-    finest = min(own, key=lambda row: row.error or 0)
     quick = min((row for row in own if row.magnitude < finest.magnitude + 1), key=lambda row: row.seconds)
-    said = f"Float64 ends at an error of {short(finest.error)} ({_named(finest)})" if finest.error else ""
+    said = f"The most accurate float64 answer has the error {short(finest.error)} ({_named(finest)})"
     if quick.method == finest.method:
-        return f"{said}, reached in {duration(quick.seconds)}."
-    return f"{said}; within a digit of it the quickest is {_named(quick)}, {duration(quick.seconds)}."
+        return f"{said}, in {duration(quick.seconds)}."
+    return f"{said}; the quickest within one digit of it is {_named(quick)}, in {duration(quick.seconds)}."
 
 
-def picked(rows: Sequence[Row]) -> str:
-    """Which of this package's ways is the cheapest, by digits."""
+def picked(rows: Sequence[MethodResult]) -> str:
+    """A sentence on the cheapest way of this package, by digits."""
     from verification.measure.work.choice import crossovers, entries  # which needs the map
 
     known = entries(rows)
     if not known or _with_bars(rows):
         return ""
     parts = [
-        f"from {digits} on {choice.method} ({duration(choice.seconds)} for {choice.digits})"
+        f"from {digits} {'digit' if digits == 1 else 'digits'} on {choice.method}"
+        f" ({choice.digits} digits in {duration(choice.seconds)})"
         for digits, choice in crossovers(rows[0].question, measured=known)
     ]
-    return "Cheapest of what keeps its promise, by digits: " + "; ".join(parts) + "."
+    return "The quickest method whose error is as claimed: " + "; ".join(parts) + "."
 
 
-def bars(rows: Sequence[Row]) -> str:
-    """Error bars against collisions, and the part of each that the error was."""
+def bars(rows: Sequence[MethodResult]) -> str:
+    """A sentence on the error bars by collisions, and the errors as shares of them."""
     own = [row for row in _with_bars(rows) if row.promise and row.error is not None]
     parts = [f"{short(row.promise)} after {row.setting}" for row in own if row.promise]
     shares = [f"{float(row.error / row.promise):.2f}" for row in own if row.error is not None and row.promise]
-    return f"Half the 95 % interval is {', '.join(parts)}; the errors were {', '.join(shares)} of it." if own else ""
+    if not own:
+        return ""
+    return f"Half of the 95 % interval is {', '.join(parts)}. The errors are {', '.join(shares)} of that."
 
 
-def _with_bars(rows: Sequence[Row]) -> list[Row]:
+def _with_bars(rows: Sequence[MethodResult]) -> list[MethodResult]:
     return [row for row in rows if row.promise and row.setting.split()[1:] == ["bounces"]]
 
 
-def proofs(rows: Sequence[Row]) -> str:
-    """What a certificate costs."""
+def proofs(rows: Sequence[MethodResult]) -> str:
+    """A sentence on the time of a certificate."""
     at = {row.method: row for row in rows if row.digits == PLENTY}
     if "arb, certified" not in at:
         return ""
     proof = at["arb, certified"]
     pairs = [(name, at[name]) for name in ("arb, no proof", "mpmath") if name in at]
-    compared = " and ".join(f"{times(proof.seconds / row.seconds)} times {name}" for name, row in pairs)
-    return f"With a proof {PLENTY} digits take {duration(proof.seconds)}{': ' if compared else ''}{compared}."
+    compared = " and ".join(f"{times(proof.seconds / row.seconds)} times as long as {name}" for name, row in pairs)
+    return f"{PLENTY} digits with a proof take {duration(proof.seconds)}{', ' if compared else ''}{compared}."
 
 
-def integers(rows: Sequence[Row]) -> str:
-    """What gmpy2 is worth."""
+def integers(rows: Sequence[MethodResult]) -> str:
+    """A sentence on how much slower mpmath is without gmpy2."""
     own = {row.digits: row for row in rows if row.method == "mpmath" and row.error is not None}
     bare = {row.digits: row for row in rows if row.method == WITHOUT and row.error is not None}
     both = sorted(d for d in own.keys() & bare.keys() if d)
     if not both:
         return ""
     ratios = ", ".join(f"{times(bare[d].seconds / own[d].seconds)} at {d} digits" for d in both if d in (30, 300, 1000))
-    return f"Without gmpy2 mpmath takes as many times longer: {ratios}."
+    return f"Without gmpy2 mpmath is slower by these factors: {ratios}."
 
 
-def usual(rows: Sequence[Row]) -> list[str]:
-    """What each of the usual ways reaches, against this package's quickest way to do no worse, and what it claims."""
+def usual(rows: Sequence[MethodResult]) -> list[str]:
+    """A sentence for each usual way: its error, against this package's quickest way that is as accurate."""
     names = dict.fromkeys(row.method for row in rows if row.textbook)
     own = [row for row in rows if not row.textbook]
     return [_judged(name, [row for row in rows if row.method == name], own) for name in names]
 
 
-def _judged(name: str, rows: Sequence[Row], own: Sequence[Row]) -> str:
+def _judged(name: str, rows: Sequence[MethodResult], own: Sequence[MethodResult]) -> str:
     found = [(row.error, row.seconds, row) for row in rows if row.error is not None]
     if not found:
         return f"*{name}* gives no answer: {rows[0].failure}."
     error, seconds, _ = min(found, key=lambda each: each[:2])
-    text = f"*{name}* gets to {short(error)} in {duration(seconds)}"
+    text = f"*{name}* has the error {short(error)} in {duration(seconds)}"
     rivals = [row for row in front(own) if row.error is not None and row.error <= error]
     if rivals and rivals[0].seconds < seconds:
-        text += f"; {rivals[0].method} does no worse {times(seconds / rivals[0].seconds)} times as fast"
+        text += f"; {rivals[0].method} is as accurate and {times(seconds / rivals[0].seconds)} times as fast"
     elif rivals:
         text += f", {times(rivals[0].seconds / seconds)} times as fast as {rivals[0].method}"
     else:
-        text += ", which no way of this package beats"
+        text += ", which no method of this package beats"
     broken = [(row.error / row.promise, row) for row in rows if row.kept is False and row.error and row.promise]
     if broken:
         _, worst = max(broken, key=lambda each: each[0])
-        text += f"; asked for {worst.setting} it is off by {short(worst.error or error)}"
+        text += f"; with {worst.setting} its error is {short(worst.error or error)}"
     lost = [row for row in rows if row.error is None]
     if lost:
-        text += f"; asked for {lost[-1].setting} it fails: {lost[-1].failure}"
+        text += f"; with {lost[-1].setting} it fails: {lost[-1].failure}"
     return text + "."
 
 
 def times(ratio: float) -> str:
-    """A ratio with two digits, and no power of ten.
+    """A ratio as text with two digits, without a power of ten.
 
     >>> times(1.234), times(58.3), times(14_321.0)
     ('1.2', '58', '14,000')
@@ -262,5 +278,5 @@ def times(ratio: float) -> str:
     return f"{ratio:.2g}" if ratio < 99.5 else f"{int(float(f'{ratio:.2g}')):,}"
 
 
-def _named(row: Row) -> str:
+def _named(row: MethodResult) -> str:
     return f"{row.method}, {row.setting}" if row.setting else row.method

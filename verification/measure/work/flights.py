@@ -1,4 +1,4 @@
-"""One bounce and its derivative: the flight equation solved in every arithmetic, and the readers' own ways."""
+"""Benchmarks on one bounce and its derivative: the flight equation in every arithmetic, and textbook ways."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -26,28 +26,28 @@ from verification.maps.enclosed import EnclosedMap, Refusal
 from verification.maps.exact import ExactMap
 from verification.measure.work.bench import module
 from verification.measure.work.question import Method, Question
-from verification.measure.work.sought import DIGITS, Sought, to_digits
+from verification.measure.work.sought import DIGITS, Sought, scripted, to_digits
 
 LAM = Fraction(19, 20)
 PARTICLES = ((0.3, 0.2), (-2.0, 0.9), (1.25, -1.0), (2.75, 0.5))  # parameter and exit angle, doubles taken exactly
-COUNTS = (4, 64, 4096)  # particles to a call of the kernels; from the first few on they repeat
+COUNTS = (4, 64, 4096)  # particles in a call of the kernels: the first few repeated
 EPS = 2.0**-52
-STEP = 8 * EPS  # the law that the kernels are held to, or 8 condition numbers
+STEP = 8 * EPS  # over the condition number: the error that kernels claim
 MATRIX = 64 * EPS
 TOLERANCES = (1e-4, 1e-8, 1e-12, 1e-15)
 STEPS = (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
-MARGIN = 12  # digits that the flights lose at most, of those that balls are computed with
+MARGIN = 12  # digits that the flights lose at most in balls
 
 
 @dataclass(frozen=True)
-class Flights:
-    """The landings of some particles on a convex table of one component: the chord leaves at the exit angle."""
+class ConvexFlights:
+    """Equations for the landings of `PARTICLES` on a convex table of one component: the chord has the exit angle."""
 
     table: Table
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name used in messages."""
         return f"{self.table.name}, flights"
 
     def angles(self, arithmetic: Arithmetic, z: Vector) -> list[tuple[Any, ...]]:
@@ -56,41 +56,41 @@ class Flights:
         return [chord(exactly(arithmetic, particle[0]), x) for particle, x in zip(PARTICLES, z, strict=True)]
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """How far each exit angle is from what it should be."""
+        """Exit angles of the chords to `z`, less the given ones."""
         found = self.angles(arithmetic, z)
         return [a[0] - exactly(arithmetic, particle[1]) for a, particle in zip(found, PARTICLES, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """The corrections for a residual: each particle by itself."""
+        """Newton's corrections for a residual `r`, each particle by itself."""
         return [x / a[2] for x, a in zip(r, self.angles(arithmetic, z), strict=True)]
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Newton's corrections."""
+        """Newton's corrections at `z`."""
         found = self.angles(arithmetic, z)
         return [(a[0] - exactly(arithmetic, particle[1])) / a[2] for a, particle in zip(found, PARTICLES, strict=True)]
 
     def landed(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Parameter and next exit angle of each particle."""
+        """Parameter and next exit angle of each particle that lands at `z`."""
         chord = load(chord_kernel(self.table, 0, 0, 0), arithmetic)
         lam = arithmetic.q(LAM.numerator, LAM.denominator)
         back = [-lam * chord(x, exactly(arithmetic, particle[0]))[0] for particle, x in zip(PARTICLES, z, strict=True)]
         return [value for pair in zip(z, back, strict=True) for value in pair]
 
     def turned(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """The four entries of each particle's derivative matrix."""
+        """The four entries of each particle's derivative matrix, for landings at `z`."""
         matrix = load(matrix_kernel(self.table), arithmetic)
         rows = [matrix(exactly(arithmetic, particle[0]), x) for particle, x in zip(PARTICLES, z, strict=True)]
         return [entry for row in rows for entry in row]
 
 
 def exactly(arithmetic: Arithmetic, x: float) -> Any:
-    """A double as it is, in any arithmetic."""
+    """A double, exactly, in any arithmetic."""
     return arithmetic.q(*x.as_integer_ratio())
 
 
 @cache
 def matrix_expressions(table: Table) -> dict[str, Expr]:
-    """`d(s1, phi1)/d(s0, phi0)` in the two parameters of a flight. Paper: eq. (derivative_of_map)."""
+    """The derivative `d(s1, phi1)/d(s0, phi0)` by both parameters of a flight. Paper: eq. (derivative_of_map)."""
     (component,) = table.components
     ends = []
     for at in (theta0, theta1):
@@ -108,7 +108,7 @@ def matrix_expressions(table: Table) -> dict[str, Expr]:
 
 @cache
 def matrix_kernel(table: Table) -> Kernel:
-    """These as a generated function."""
+    """The derivative matrix as a generated function."""
     return kernel("derivative", [theta0, theta1], matrix_expressions(table), about="d(s1, phi1)/d(s0, phi0)")
 
 
@@ -123,9 +123,9 @@ def scene(name: str) -> tuple[Table, PinballMap, tuple[float, ...]]:
 
 
 def steps(name: str) -> Question:
-    """One bounce of a few particles: parameter and exit angle."""
+    """Benchmark: parameter and exit angle after one bounce of a few particles."""
     table, map, starts = scene(name)
-    sought = Sought(Flights(table), starts, Flights(table).landed, len(PARTICLES))
+    sought = Sought(ConvexFlights(table), starts, ConvexFlights(table).landed, len(PARTICLES))
     bound = STEP * (1 + sought.condition())
     own = (
         running(map, bound),
@@ -144,9 +144,9 @@ def steps(name: str) -> Question:
 
 
 def jacobians() -> Question:
-    """The derivative of one bounce on the egg."""
+    """Benchmark: the derivative of one bounce on the egg."""
     table, map, starts = scene("egg")
-    system = Flights(table)
+    system = ConvexFlights(table)
     sought = Sought(system, starts, system.turned, len(PARTICLES))
 
     def certified(digits: int) -> list[arb]:
@@ -165,7 +165,7 @@ def jacobians() -> Question:
 
 
 def bounced(map: PinballMap, digits: int) -> list[arb]:
-    """The landings in balls, each proved to be the first hit."""
+    """Parameters and exit angles of the landings in balls, each proved to be the first hit."""
     enclosed = EnclosedMap(map, LAM, bits_of(digits + MARGIN, 64))
     found: list[arb] = []
     for at, phi in PARTICLES:
@@ -177,7 +177,7 @@ def bounced(map: PinballMap, digits: int) -> list[arb]:
 
 
 def bracketing(map: PinballMap) -> Method:
-    """mpmath by the definition of the map: every zero of the flight function bracketed, the first hit taken."""
+    """The method of the map's definition in mpmath: all zeros of the flight function bracketed, the first one taken."""
 
     def call(digits: int) -> list[Any]:
         exact = ExactMap(map, digits, LAM)
@@ -188,7 +188,7 @@ def bracketing(map: PinballMap) -> Method:
 
 
 def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]], bound: float) -> list[Method]:
-    """The compiled kernel and the same step on NumPy arrays, for a few particles to thousands at a time."""
+    """The methods of the compiled kernel and of the same step on NumPy arrays, for a few particles to thousands."""
     shape: dict[str, Any] = dict(zip((entry.name for entry in map.ir.shape), map.exact_shape, strict=True))
     plain = PinballMap(map.ir.table, lam=LAM, kernels=False, **shape)
     promise = Decimal(f"{bound:.3g}")
@@ -204,7 +204,7 @@ def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]]
 
 
 def running(map: PinballMap, bound: float) -> Method:
-    """The compiled kernel within a long run of many particles, where a bounce is all that a bounce costs."""
+    """The method of the compiled kernel within a long run of many particles, which has no overhead."""
     count, bounces = COUNTS[-1], 256
     starts = phase_starts(map, count, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
@@ -220,18 +220,18 @@ def running(map: PinballMap, bound: float) -> Method:
 
 
 def stepped(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """Parameter and exit angle of the first few particles after a step of all."""
+    """Parameter and exit angle of the first few particles after a step of all of them."""
     landed = map.step(theta, phi)
     return [float(x) for pair in zip(landed.theta[: len(PARTICLES)], landed.phi, strict=False) for x in pair]
 
 
 def turned(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """The matrices of the first few particles."""
+    """The derivative matrices of the first few particles."""
     return [float(x) for x in map.derivative(theta, phi)[: len(PARTICLES)].ravel()]
 
 
 def textbook_steps(map: PinballMap) -> list[Method]:
-    """What a reader of the paper would write: `numpy.roots` on the cardioid, `brentq` along the ray on the egg."""
+    """The methods that a reader of the paper would write: `numpy.roots` on the cardioid, `brentq` on the egg."""
     book, ways = module("textbook"), module("paper_ways")
     if book is None or ways is None:
         return []
@@ -255,11 +255,11 @@ def textbook_steps(map: PinballMap) -> list[Method]:
     brent = replace(
         paper, name="brentq", unit="xtol", settings=TOLERANCES, call=lambda x: followed(book.egg_by_brentq, x)
     )
-    return [paper, replace(brent, promise=lambda x: Decimal(f"{x:.3g}"))]
+    return [paper, replace(brent, promise=lambda x: Decimal(f"{x:.3g}")), *scripted(map.scene, PARTICLES, 1)]
 
 
 def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
-    """Finite differences of the step, and the formula through `sympy.lambdify`."""
+    """The methods of finite differences of the step, and of the formula through `sympy.lambdify`."""
     book = module("textbook")
     if book is None:
         return []

@@ -1,4 +1,4 @@
-"""Benchmark problems: what is asked, the methods that answer it, and rows of error and time for each.
+"""Benchmark problems: a question with its reference, the methods that answer it, rows of error and time.
 
 An answer is a list of numbers of any kind. Its error is the largest distance of one of them from the reference,
 a list of balls; the radius of the reference counts, so no error is understated. Times are processor time of one core,
@@ -11,7 +11,6 @@ as JSON.
 """
 
 import json
-import os
 import subprocess
 import sys
 import time
@@ -26,16 +25,17 @@ import mpmath
 import numpy as np
 from flint import arb, fmpq
 
+from numeric.sweeps.workers import own_command
 from verification.arithmetic.balls import as_ball, bits_of, working
-from verification.measure.work.row import Row, timed
+from verification.measure.work.row import MethodResult, timed
 
 COUNTS = ("particles", "points")  # the units of settings that say how many answers a call gives
-GUARD = 20  # digits of a reference beyond the most that are asked for
+GUARD = 20  # extra digits of a reference
 Answer = Sequence[Any]
 
 
 class Claimed(list[Any]):
-    """An answer that states its own error, as an error bar does."""
+    """An answer with the error that it claims for itself, such as an error bar."""
 
     def __init__(self, numbers: Answer, claim: float) -> None:
         super().__init__(numbers)
@@ -48,7 +48,7 @@ class Method:
 
     `unit` says what a setting is (`digits`, `xtol`, `bounces`), `promise(setting)` the largest error that the way
     claims for itself, None when it claims none. A call gives `per` answers at a time, or as many as the setting says
-    where that counts particles or points. A method that is `elsewhere` is run by another process of its own.
+    where that counts particles or points. A method that is `elsewhere` runs in a process of its own.
     """
 
     name: str
@@ -63,7 +63,7 @@ class Method:
     elsewhere: bool = False
 
     def labelled(self, setting: Any) -> str:
-        """A setting in words.
+        """A setting as text with its unit.
 
         >>> Method("m", "a", "digits", (), list).labelled(30), Method("m", "a", "xtol", (), list).labelled(1e-8)
         ('30 digits', 'xtol 1e-08')
@@ -73,11 +73,11 @@ class Method:
         return f"{setting:,} {self.unit}" if not isinstance(setting, str) else setting
 
     def answers(self, setting: Any) -> int:
-        """How many answers a call gives."""
+        """The number of answers that a call gives."""
         return int(setting) if self.unit in COUNTS else self.per
 
     def within(self, most_digits: int) -> tuple[Any, ...]:
-        """The settings that ask for no more digits than that."""
+        """The settings that need at most so many digits."""
         return tuple(s for s in self.settings if self.unit != "digits" or s <= most_digits)
 
 
@@ -85,8 +85,8 @@ class Method:
 class Question:
     """A question with its reference: `reference(digits)` are balls of radius below `10**-digits`, proved.
 
-    Where no proof is known `certified` is False, and the balls hold what was measured with its error.
-    `answers` says what the numbers are, `unit` in what the error is.
+    Where no proof is known `certified` is False, and the balls are a measured value with its error.
+    `answers` describes the numbers, `unit` is that of the error.
     """
 
     name: str
@@ -117,7 +117,7 @@ def enclosed(value: Any) -> arb:
 
 
 def distance(answer: Answer, reference: Answer, digits: int) -> tuple[Decimal | None, Decimal | None]:
-    """The largest distance of an answer from the reference: at least, and at most; None when a number is not finite.
+    """Lower and upper bound of the largest distance of an answer from the reference; None when a number is not finite.
 
     >>> distance([0.5, 1], [arb("0.5"), arb("1.25")], 10)
     (Decimal('0.2500'), Decimal('0.2500'))
@@ -135,7 +135,7 @@ def distance(answer: Answer, reference: Answer, digits: int) -> tuple[Decimal | 
 
 
 def power(exponent: float) -> Decimal:
-    """`10**exponent`, which need not be a float.
+    """The number `10**exponent`, also out of the range of floats.
 
     >>> power(-1000)
     Decimal('1E-1000')
@@ -144,25 +144,25 @@ def power(exponent: float) -> Decimal:
 
 
 RUNS = 5
-SHORTEST = 1e-3  # seconds of a sample; what takes less is repeated within it
-HOPELESS = 5.0  # seconds of a first call that is not made twice
-PATIENCE = 0.4  # seconds for all runs of one setting; what takes longer runs once
+SHORTEST = 1e-3  # seconds of a sample; a shorter call is repeated within it
+HOPELESS = 5.0  # seconds: a longer first call is not repeated
+PATIENCE = 0.4  # seconds for all runs of one setting; a longer call runs once
 Say = Callable[[str], None]
 
 
 def silent(_: str) -> None:
-    """Says nothing."""
+    """Does nothing: no progress is shown."""
 
 
-def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say: Say = silent) -> list[Row]:
-    """The rows of a question, method by method; `say` hears of each method before it runs.
+def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say: Say = silent) -> list[MethodResult]:
+    """The rows of a question, method by method; `say` is called with the name of each method before it runs.
 
     A method that raises a `ValueError` or an arithmetical error has no answer at that setting, and its row says why.
     """
     digits = min(most_digits, question.most_digits)
     say("the reference")
     reference = question.reference(digits + GUARD)
-    rows: list[Row] = []
+    rows: list[MethodResult] = []
     for method in question.methods:
         say(method.name)
         rows += _rows(question, method, method.within(digits), reference, digits, runs)
@@ -171,7 +171,7 @@ def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say:
 
 def _rows(
     question: Question, method: Method, settings: tuple[Any, ...], reference: Answer, digits: int, runs: int
-) -> Iterator[Row]:
+) -> Iterator[MethodResult]:
     if not settings:
         return
     if method.elsewhere:
@@ -201,8 +201,8 @@ def _rows(
 def sample(method: Method, setting: Any, runs: int, warm: bool = False) -> tuple[Answer | None, list[float], str]:
     """The answer at a setting, the seconds of some calls, and what went wrong; the first call warms up.
 
-    A way so slow that `runs` of it would try the patience is timed less often, at least once; when it is `warm` by
-    another setting, its first call may be that once.
+    A slow method is timed less often than `runs` times, at least once; when it is `warm` from another setting, its
+    first call may be that once.
     """
     clock = time.perf_counter(), time.process_time()
     answer, failure = None, ""
@@ -226,29 +226,20 @@ def sample(method: Method, setting: Any, runs: int, warm: bool = False) -> tuple
 
 
 PLAIN = {"MPMATH_NOGMPY": "1", "SYMPY_GROUND_TYPES": "python"}
-MORE = 10  # digits written beyond those that were asked for
+MORE = 10  # extra digits written
 Sample = tuple[Answer | None, list[float], str]
 
 
 def available() -> bool:
-    """Is gmpy2 there, so that to do without it is something else?"""
+    """Is gmpy2 installed, so that running without it makes a difference?"""
     return find_spec("gmpy2") is not None
 
 
 def sampled(question: str, method: str, settings: Sequence[int], runs: int) -> list[Sample]:
-    """What `measure.sample` gives for each setting, from a process in which mpmath has Python's integers."""
-    command = [
-        sys.executable,
-        "-m",
-        "verification.measure.work.question",
-        question,
-        method,
-        str(runs),
-        *map(str, settings),
-    ]
-    folders = os.pathsep.join(path for path in sys.path if path)
-    environment = {**os.environ, **PLAIN, "PYTHONPATH": folders}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    """What `sample` gives for each setting, from a process in which mpmath uses Python's integers."""
+    words = question, method, str(runs), *map(str, settings)
+    command, environment = own_command("verification.measure.work.question", *words)
+    done = subprocess.run(command, env=environment | PLAIN, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
         return [(None, [0.0], f"the process without gmpy2 ended: {reason}")] * len(settings)
@@ -256,7 +247,7 @@ def sampled(question: str, method: str, settings: Sequence[int], runs: int) -> l
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Answers on standard output."""
+    """Prints the samples of a method as JSON on standard output."""
     import mpmath
 
     from verification.measure.work.choice import question

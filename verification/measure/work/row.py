@@ -1,4 +1,4 @@
-"""What a run leaves: rows of error, promise and time, and the front that no other row beats.
+"""Results of a benchmark: rows of error, promise and time, and their Pareto front.
 
 Rows are shown as a table in text or Markdown with the facts of the run beneath, or as a diagram of error against
 time.
@@ -13,12 +13,12 @@ from statistics import median, quantiles
 from typing import Any
 
 BALLS = ("error", "least", "promise")  # fields that a float may not hold
-WITHOUT = "mpmath, no gmpy2"  # the method that says what gmpy2 is worth
-SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # of the errors that are written as floats
+WITHOUT = "mpmath, no gmpy2"  # the method that shows the effect of gmpy2
+SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # limits of the errors that are written as floats
 
 
 @dataclass(frozen=True)
-class Row:
+class MethodResult:
     """One method at one setting: its error, what it promised, and the median of its times with their quartiles.
 
     Times are in seconds for one answer. An `error` of None means that there was no answer; `failure` says why.
@@ -36,8 +36,8 @@ class Row:
     textbook: bool = False
     proved: bool = False
     failure: str = ""
-    digits: int | None = None  # that were asked for, where digits are the setting
-    least: Decimal | None = None  # that the error is, where the reference leaves it open
+    digits: int | None = None  # the setting, where it is a number of digits
+    least: Decimal | None = None  # lower bound of the error, where the reference has a radius
 
     @property
     def kept(self) -> bool | None:
@@ -66,23 +66,23 @@ class Row:
         return self.quartiles[1] / self.quartiles[0] if self.quartiles[0] else 1.0
 
     def to_dict(self) -> dict[str, Any]:
-        """The row as JSON has it; what no float holds is a decimal string."""
+        """The row as JSON; a number that no float holds is a decimal string."""
         plain = {name: getattr(self, name) for name in self.__dataclass_fields__}
         plain |= {name: written(getattr(self, name)) for name in BALLS}
         plain["quartiles"] = list(self.quartiles)
         return plain | {"kept": self.kept}
 
     @staticmethod
-    def from_dict(document: dict[str, Any]) -> "Row":
-        """The row that `to_dict` wrote."""
+    def from_dict(document: dict[str, Any]) -> "MethodResult":
+        """The row from the JSON of `to_dict`."""
         fields = {name: value for name, value in document.items() if name != "kept"}
         for name in BALLS:
             fields[name] = None if fields[name] is None else Decimal(str(fields[name]))
         low, high = fields.pop("quartiles")
-        return Row(**fields, quartiles=(low, high))
+        return MethodResult(**fields, quartiles=(low, high))
 
 
-def timed(question: str, method: str, seconds: Sequence[float], **more: Any) -> Row:
+def timed(question: str, method: str, seconds: Sequence[float], **more: Any) -> MethodResult:
     """A row with the median of some times and their quartiles.
 
     >>> timed("step", "kernel", [3.0, 1.0, 2.0], error=None).seconds
@@ -90,11 +90,11 @@ def timed(question: str, method: str, seconds: Sequence[float], **more: Any) -> 
     """
     low, _, high = quantiles(seconds, n=4, method="inclusive") if len(seconds) > 1 else (seconds[0],) * 3
     own = {"arithmetic": "", "setting": "", "promise": None} | more
-    return Row(question, method, seconds=median(seconds), quartiles=(low, high), runs=len(seconds), **own)
+    return MethodResult(question, method, seconds=median(seconds), quartiles=(low, high), runs=len(seconds), **own)
 
 
 def written(number: Decimal | None) -> float | str | None:
-    """An error for JSON: a float where one holds it, else a decimal string.
+    """An error as JSON: a float where one holds it, else a decimal string.
 
     >>> written(Decimal("1.5e-16")), written(Decimal("2e-1000"))
     (1.5e-16, '2E-1000')
@@ -104,14 +104,14 @@ def written(number: Decimal | None) -> float | str | None:
     return float(number) if number == 0 or SMALLEST < abs(number) < LARGEST else str(number)
 
 
-def front(rows: Iterable[Row]) -> tuple[Row, ...]:
+def front(rows: Iterable[MethodResult]) -> tuple[MethodResult, ...]:
     """The rows that no other row beats in error and time at once, quickest first: the Pareto front.
 
     >>> a, b, c = (timed("q", str(t), [t], error=Decimal(e)) for t, e in ((1.0, 1), (2.0, 2), (3.0, 0)))
     >>> [row.method for row in front([c, b, a])]
     ['1.0', '3.0']
     """
-    best: list[Row] = []
+    best: list[MethodResult] = []
     for row in sorted((r for r in rows if r.error is not None), key=lambda r: (r.seconds, r.error)):
         if not best or (row.error is not None and best[-1].error is not None and row.error < best[-1].error):
             best.append(row)
@@ -122,8 +122,8 @@ HEAD = ("", "method", "setting", "error", "claims", "time", "spread", "ratio", "
 MARKS = {True: "", False: "!", None: ""}
 
 
-def table(rows: Sequence[Row], base: Row | None = None) -> list[tuple[str, ...]]:
-    """A line for each row: `*` on the Pareto front, `!` where a claim is not kept; ratios to the time of `base`."""
+def table(rows: Sequence[MethodResult], base: MethodResult | None = None) -> list[tuple[str, ...]]:
+    """Cells of a table, a row each: `*` on the Pareto front, `!` for a broken claim; ratios to the time of `base`."""
     best, base = front(rows), base or baseline(rows)
     lines: list[tuple[str, ...]] = []
     for row in rows:
@@ -135,8 +135,8 @@ def table(rows: Sequence[Row], base: Row | None = None) -> list[tuple[str, ...]]
     return lines
 
 
-def plain(rows: Sequence[Row]) -> str:
-    """The table with columns that line up.
+def plain(rows: Sequence[MethodResult]) -> str:
+    """The table as text with aligned columns.
 
     >>> from verification.measure.work.row import timed
     >>> print(plain([timed("q", "kernel", [2e-9], error=Decimal("1e-16"), promise=Decimal("1e-17"), setting="s")]))
@@ -151,22 +151,22 @@ def plain(rows: Sequence[Row]) -> str:
     )
 
 
-def markdown(rows: Sequence[Row], base: Row | None = None) -> str:
-    """The same as a table in Markdown, in which each column has a head: screens are read aloud by them."""
+def markdown(rows: Sequence[MethodResult], base: MethodResult | None = None) -> str:
+    """The table in Markdown; each column has a head, which screen readers use."""
     lines = [("front", *HEAD[1:-1], "broken"), ("---",) * len(HEAD), *table(rows, base)]
     return "\n".join(
         "| " + " | ".join(text.replace("|", "/").replace("*", "\\*") for text in line) + " |" for line in lines
     )
 
 
-def baseline(rows: Sequence[Row]) -> Row | None:
-    """The row that times are compared with: the quickest float64 of this package, at its finest setting."""
+def baseline(rows: Sequence[MethodResult]) -> MethodResult | None:
+    """The row that times are compared with: this package's quickest float64 method, at its finest setting."""
     own = [row for row in rows if row.arithmetic == "float64" and not row.textbook and row.error is not None]
     return [row for row in own if row.method == own[0].method][-1] if own else None
 
 
 def short(number: Decimal) -> str:
-    """Two digits of a number that may be no float.
+    """Two digits of a number, which may be out of the range of floats.
 
     >>> short(Decimal("1.234e-1000")), short(Decimal("0.02"))
     ('1.2e-1000', '2e-2')
@@ -178,7 +178,7 @@ def short(number: Decimal) -> str:
 
 
 def facts() -> dict[str, str]:
-    """Machine, versions, and how busy the machine was, for a footer."""
+    """The machine, the versions and the load of the machine, by name."""
     from verification.measure.work.bench import machine_facts
 
     load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
@@ -186,7 +186,7 @@ def facts() -> dict[str, str]:
 
 
 def footer(known: dict[str, str]) -> str:
-    """These on one line."""
+    """The facts of the run on one line."""
     return ", ".join(f"{key} {value}" for key, value in known.items())
 
 
@@ -196,7 +196,7 @@ Point = tuple[float, Decimal | None]  # seconds, and an error in units of 2**-52
 
 
 def duration(seconds: float) -> str:
-    """A time in the unit that suits it.
+    """A time in a suitable unit.
 
     >>> duration(7.5e-9), duration(2e-3)
     ('7.5 ns', '2 ms')
@@ -217,7 +217,7 @@ def magnitude(error: Decimal) -> float:
 
 
 def diagram(points: Sequence[Point], front: Collection[int] = ()) -> str:
-    """A mark at each time (to the right) and error (upwards), both logarithmic; capitals are on the front.
+    """A text diagram of error (upwards) against time (to the right), both logarithmic; capitals are on the front.
 
     Where errors span hundreds of decades the upward scale is the logarithm of the number of digits that are right.
 
@@ -256,21 +256,21 @@ def diagram(points: Sequence[Point], front: Collection[int] = ()) -> str:
 
 
 def _power(y: float) -> str:
-    """`10**y` with one digit."""
+    """The number `10**y` as text with one digit."""
     exponent = int(y // 1)
     lead = round(10 ** (y - exponent))
     return f"{1 if lead == 10 else lead}e{exponent + (lead == 10)}"
 
 
 @dataclass(frozen=True)
-class Diagram:
-    """The diagram of a question, still to be drawn, for a page: its rows, and the machine they were measured on."""
+class WorkDiagram:
+    """The diagram of a question, for a page, not drawn yet: its rows, and the machine they were measured on."""
 
     name: str
     caption: str
     title: str
     unit: str
-    rows: tuple[Row, ...]
+    rows: tuple[MethodResult, ...]
     machine: dict[str, str]
     section: str = ""
     shows: str = ""
@@ -278,7 +278,7 @@ class Diagram:
     module: str = "verification.measure.work.figure"
 
     def drawn(self) -> bytes:
-        """The diagram as a WebP on no ground, so that the page may be dark."""
+        """The diagram as a transparent WebP image, so that the page may be dark."""
         from verification.measure.work.figure import drawn, image
 
         figure = drawn(self.title, self.unit, self.rows, self.machine)

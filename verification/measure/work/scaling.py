@@ -1,10 +1,10 @@
-"""How well a sweep keeps several workers busy, and whether what it costs was foretold: rows of `pinball bench`.
+"""Efficiency of sweeps with several workers, and accuracy of the predicted cost: rows of `pinball bench`.
 
-A worker loses time where it stands still between tasks, or within one for the interpreter's lock; where it only waits
-for a core that other work has, Linux says how long, and that is no loss. So a busy machine shows the efficiency too.
+A worker loses time where it is idle between tasks, or waits within one for the interpreter's lock. Waiting for a core
+that other work has is measured by Linux and not counted as loss, so a busy machine shows the efficiency too.
 
-More workers than cores are asked with tasks that only wait, for a second each, and hand back as much as others do: what
-handing out, sending, gathering and writing into a store costs is then seen on a machine of any size.
+More workers than cores are tested with tasks that only wait, for a second each, and return as much as others do: this
+shows the cost of distributing, sending, gathering and writing into a store on a machine of any size.
 """
 
 import threading
@@ -22,18 +22,18 @@ import numpy as np
 from numeric.sweeps.cost import cost
 from numeric.sweeps.run import Results, on_cluster, on_processes, on_threads, run
 from numeric.sweeps.space import parameter_space
-from numeric.sweeps.sweep import Array, Field, Part, Sweep, Task
+from numeric.sweeps.sweep import Array, Field, Sweep, SweepPart, Task
 from verification.measure.work.calls import Call
 
 TASKS, PARTICLES, WORTH = 8, 2000, 1.2  # tasks, particles of each, and seconds that it takes at least
-LENGTHS = 400, 2000  # bounces, to measure how many take that long
+LENGTHS = 400, 2000  # bounces of two runs, from which the number that takes WORTH is found
 EFFICIENCY, FORETOLD = 0.9, 1.2
-WAIT, ROUNDS, WORKERS = 1.0, 4, 16  # seconds of a task that waits, how many each worker has, and workers
-NOTES = 6  # of a task: its worker, when it began and ended, what its thread had waited by then, what it spent
+WAIT, ROUNDS, WORKERS = 1.0, 4, 16  # seconds of a waiting task, tasks of each worker, number of workers
+NOTES = 6  # of a task: worker, begin, end, waiting time of its thread before and after, processor time
 
 
 def waited() -> float:
-    """Seconds for which this thread had work and no core, since it began; 0 where the system does not tell."""
+    """Seconds for which this thread had work and no core, since it began; 0 where the system does not say."""
     try:
         text = Path(f"/proc/self/task/{threading.get_native_id()}/schedstat").read_text()
     except OSError:
@@ -43,11 +43,11 @@ def waited() -> float:
 
 @dataclass(frozen=True)
 class Watched:
-    """A task, with who did it, from when to when, how long it had no core, and the processor's seconds."""
+    """A task that notes its worker, its begin and end, how long it had no core, and its processor time."""
 
     task: Task
 
-    def __call__(self, part: Part) -> dict[str, Array]:
+    def __call__(self, part: SweepPart) -> dict[str, Array]:
         began, before, spent = time.time(), waited(), time.thread_time()
         found = self.task(part)
         notes = np.zeros([len(values) for values in part.values.values()])
@@ -57,7 +57,7 @@ class Watched:
 
 
 class Busy(NamedTuple):
-    """Seconds of all workers from their first task to their last, but for waiting; and the processor's, for tasks."""
+    """Seconds of all workers from their first task to their last without waiting, processor seconds of tasks, tasks."""
 
     seconds: float
     spent: float
@@ -65,7 +65,7 @@ class Busy(NamedTuple):
 
 
 def busy(results: Results) -> Busy:
-    """What workers did with their time, each from the end of its first task on, which loads and makes what it needs."""
+    """The time of workers, each from the end of its first task on, which includes loading."""
     rows = np.array([found["notes"].flat[:NOTES] for _, found in results])
     seconds, spent, tasks = 0.0, 0.0, 0
     for worker in np.unique(rows[:, 0]):
@@ -78,40 +78,40 @@ def busy(results: Results) -> Busy:
 
 
 def watched(bounces: int) -> Sweep:
-    """A small parameter space of the egg, of tasks that take equally long and are watched."""
+    """A small parameter space of the egg, with tasks that take equally long and note their times."""
     return with_watch(
         parameter_space(np.linspace(0.08, 0.0801, TASKS), np.linspace(0, 1, 20), PARTICLES // 20, bounces, 0)
     )
 
 
 def with_watch(plain: Sweep) -> Sweep:
-    """The sweep, with what is noted of each task."""
+    """The sweep, with a field for the notes of each task."""
     notes = Field("notes", tuple(axis.name for axis in plain.axes), "float64", "s", "of the worker")
     return replace(plain, task=Watched(plain.task), fields=(*plain.fields, notes))
 
 
 @dataclass(frozen=True)
 class Waiting:
-    """A task that waits in place of computing, and hands back arrays of its fields."""
+    """A task that waits instead of computing, and returns arrays of its fields."""
 
     fields: tuple[Field, ...]
     seconds: float
 
-    def __call__(self, part: Part) -> dict[str, Array]:
+    def __call__(self, part: SweepPart) -> dict[str, Array]:
         time.sleep(self.seconds)
         sizes = {name: len(values) for name, values in part.values.items()}
         return {f.name: np.zeros([sizes[dim] for dim in f.dims if dim in sizes], f.dtype) for f in self.fields}
 
 
 def waiting(workers: int, python: bool = False, seconds: float = WAIT) -> Sweep:
-    """A parameter space with `ROUNDS` tasks for each worker that wait, by processes where it is `python`."""
+    """A parameter space with `ROUNDS` waiting tasks for each worker; by processes if `python`."""
     alphas = np.linspace(0.08, 0.0801, ROUNDS * workers)
     plain = parameter_space(alphas, np.linspace(0, 1, 1000), 1, 400, 0)
     return with_watch(replace(plain, task=Waiting(plain.fields, seconds), python=python))
 
 
 def by_waiting(sweep: Sweep, workers: int, scheduler: str | None = None) -> float:
-    """Seconds for one task that waits, of a worker's time, by the whole way of a sweep into a store of its own."""
+    """Seconds of a worker's time for one waiting task, in a whole sweep into a store."""
     with TemporaryDirectory() as folder:
         done = run(sweep, Path(folder) / "waiting.zarr", scheduler, workers)
         notes = np.asarray(done["notes"])
@@ -120,7 +120,7 @@ def by_waiting(sweep: Sweep, workers: int, scheduler: str | None = None) -> floa
 
 
 def waiting_rows(workers: int = WORKERS) -> Iterator[Call]:
-    """What more workers than cores take for tasks that wait: by threads, by processes and by workers of Dask."""
+    """Times of waiting tasks with more workers than cores: threads, processes and workers of Dask."""
 
     def row(name: str, seconds: float) -> Call:
         call = f"a task that waits by one of {workers} {name}"
@@ -134,7 +134,7 @@ def waiting_rows(workers: int = WORKERS) -> Iterator[Call]:
 
 
 def sweep_rows() -> Iterable[Call]:
-    """A sweep by two threads, by processes and by workers of Dask; and its seconds beside those that were foretold."""
+    """Times of a sweep by two threads, processes and workers of Dask; and its predicted over its measured time."""
     short, long = (busy(on_threads(watched(bounces), watched(bounces).indices(), 1)).spent for bounces in LENGTHS)
     rise = max((long - short) / (TASKS - 1) / (LENGTHS[1] - LENGTHS[0]), 1e-9)
     sweep = watched(round(WORTH / rise / 4) * 4)
@@ -157,7 +157,7 @@ def sweep_rows() -> Iterable[Call]:
 
 @contextmanager
 def clustered(workers: int) -> Iterator[str | None]:
-    """The address of a Dask cluster on this machine, of so many processes; None where Dask is not installed."""
+    """The address of a Dask cluster of so many processes on this machine; None where Dask is not installed."""
     try:
         dask: Any = import_module("distributed")  # untyped
     except ImportError:
@@ -168,7 +168,7 @@ def clustered(workers: int) -> Iterator[str | None]:
 
 
 def foretold() -> Call:
-    """The larger of the seconds that a sweep was to take and those that it took, beside the smaller."""
+    """Predicted and measured seconds of a sweep: the larger, with the smaller as the reference."""
     grid = np.linspace(0, 1, 60)
     sweep = parameter_space((grid / 10).round(9), grid, 20, 1000, 1000)
     expected, begun = cost(sweep, 1, stored=False).seconds, time.process_time()

@@ -1,11 +1,11 @@
-"""One system of equations, solved in every arithmetic: what most questions come to.
+"""Benchmark: one system of equations, solved in every arithmetic.
 
 Newton's method on the same generated formulas in float64, in NumPy's long doubles, in mpmath with digits that double
 at each step, in the midpoints of balls, and in balls with a proof. All start from the same few decimals. Two problems
 of this kind stand here: `lambda*` of the cuspless cardioid, and the least expansion of the cardioid's slap map.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cache, partial
@@ -19,6 +19,8 @@ from sympy import Symbol, sqrt
 from numeric import PinballMap
 from symbolic.cycles.cardioid_slap import LAUNCH_Q2, q, slope_squared
 from symbolic.expressions.text import Kernel, kernel, load
+from symbolic.tables.definition import POINTS
+from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import (
     ARRAYS,
     FLOAT64,
@@ -43,10 +45,11 @@ from verification.cycles.newton import (
     settled,
 )
 from verification.measure.work.bench import module
+from verification.measure.work.plain import egg_orbit
 from verification.measure.work.question import Method, Question, available, power
 from verification.measure.work.row import WITHOUT
 from verification.named.locate import lambda_star
-from verification.proofs.periodic.interval_newton import Status, interval_newton
+from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
 
 Read = Callable[[Arithmetic, list[Any]], list[Any]]
 DIGITS = (16, 30, 100, 300, 1000)
@@ -56,24 +59,24 @@ LONG: Arithmetic = replace(
     pi=LONG_PI,
     q=lambda p, n: np.longdouble(p) / np.longdouble(n),
     root=lambda x, n: x ** (np.longdouble(1) / n),
-    **{word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS},  # those of arrays are of doubles
+    **{word: getattr(np, {"atan": "arctan"}.get(word, word)) for word in FUNCTIONS},  # not `ARRAYS`' for doubles
 )
-ROUNDINGS = 16  # of a residual and of what is read, in units of the last place
+ROUNDINGS = 16  # units in the last place: error of a residual and of the values read off
 
 
 def unknowns(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
-    """All of the solution."""
+    """The whole solution `z` of a system, for a question that asks for each of its unknowns."""
     return z
 
 
 def last(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
-    """The free parameter alone."""
+    """The last unknown of the solution `z`, which is the free parameter."""
     return z[-1:]
 
 
 @dataclass(frozen=True)
 class Sought:
-    """Values `read` off the solution of a system near a start; `per` answers come of one solution."""
+    """Values that `read` takes from the solution of a system near a start; `per` answers come from one solution."""
 
     system: System
     start: tuple[float, ...]
@@ -81,7 +84,7 @@ class Sought:
     per: int = 1
 
     def methods(self, certified: Callable[[int], list[arb]] | None = None) -> tuple[Method, ...]:
-        """The system in every arithmetic; `certified(digits)` is the whole proof, by default that of the zero alone."""
+        """The methods of every arithmetic; `certified(digits)` is the whole proof, by default of the zero alone."""
         proof = certified or self.enclosed
         exact = Method("mpmath", "mpmath", "digits", DIGITS, self.in_mpmath, to_digits, self.per)
         found = [
@@ -96,30 +99,30 @@ class Sought:
         return tuple(found)
 
     def in_floats(self, setting: Any = None) -> list[float]:
-        """In float64, until steps no longer shorten."""
+        """The values by Newton's method in float64, until steps no longer shorten."""
         return self.read(FLOAT64, floats(self.system, self.start))
 
     def in_long(self, setting: Any = None) -> list[Any]:
-        """In NumPy's long doubles."""
+        """The values by Newton's method in NumPy's long doubles."""
         found = settled(self.system, LONG, [np.longdouble(x) for x in self.start])
         if not found.settled:
             raise ValueError(f"{self.system.label}: Newton's method in {_width()} did not settle")
         return self.read(LONG, found.x)
 
     def in_mpmath(self, digits: int) -> list[Any]:
-        """In mpmath, from float64 on."""
+        """The values by Newton's method in mpmath, from the float64 root."""
         solution = refined(self.system, self.start, digits)
         context = type(solution.z[0]).context
         return self.read(multiprecision(context), solution.z)
 
     def in_arb(self, digits: int) -> list[arb]:
-        """In the midpoints of balls: quick, and nothing proved."""
+        """The values by Newton's method on the midpoints of balls, without a proof."""
         z = self.middle(digits + GUARD)
         with working(bits_of(digits + GUARD)):
             return [x.mid() for x in self.read(balls(bits_of(digits + GUARD)), z)]
 
     def middle(self, digits: int) -> list[arb]:
-        """An approximate solution in arb's floats, with digits that double at each step."""
+        """An approximate solution in arb's floats, by Newton's method with digits that double at each step."""
         z = [arb(x) for x in floats(self.system, self.start)]
         for level in levels(digits):
             bits = bits_of(level, 8)
@@ -129,31 +132,43 @@ class Sought:
         return z
 
     def enclosed(self, digits: int) -> list[arb]:
-        """Balls that hold what is read off the one zero near the start, which the interval Newton operator proves."""
+        """Balls that hold the values at the one zero near the start, which the interval Newton operator proves."""
         bits = bits_of(digits, 64 + 8 * len(self.start).bit_length())
         with working(bits):
             radius = (arb(10) ** -(digits + 5)).mid()
         found = interval_newton(self.system, self.middle(digits + 8), radius, bits)
-        if found.status is not Status.UNIQUE:
+        if found.status is not ZeroStatus.UNIQUE:
             raise ValueError(f"{self.system.label}: {found.status.value}")
         with working(bits):
             return self.read(balls(bits), found.zero)
 
     def condition(self) -> float:
-        """How far the solution moves at most for a residual of one."""
+        """Condition number: the largest move of the solution for a residual of one."""
         return norm_of_inverse(self.system, FLOAT64, floats(self.system, self.start))
 
     def rounding(self, setting: Any = None) -> Decimal:
-        """What float64 promises: the condition number and a few roundings."""
+        """The error that float64 claims: the condition number times a few roundings."""
         return Decimal(f"{ROUNDINGS * 2.0**-52 * (1 + self.condition()):.3g}")
 
     def long_rounding(self, setting: Any = None) -> Decimal:
-        """What a long double promises."""
+        """The error that a long double claims."""
         return Decimal(f"{ROUNDINGS * float(np.finfo(np.longdouble).eps) * (1 + self.condition()):.3g}")
 
 
+def scripted(scene: Scene, starts: Sequence[Sequence[Any]], bounces: int) -> list[Method]:
+    """The plain script for where particles are after some bounces; of the egg with the paper's law alone."""
+    if scene.name != "egg" or scene.K != POINTS or not scene.law.uniform:
+        return []
+    alpha, lam = str(scene.shape["alpha"]), str(scene.lam)
+
+    def call(digits: int) -> list[Any]:
+        return [x for start in starts for x in egg_orbit(start[:2], bounces, digits, alpha, lam)[-1]]
+
+    return [Method("plain script", "mpmath", "digits", DIGITS, call, per=len(starts), textbook=True)]
+
+
 def to_digits(digits: int) -> Decimal:
-    """What as many digits promise."""
+    """The error `10**-digits`, which a method with so many digits claims."""
     return power(-digits)
 
 
@@ -163,11 +178,11 @@ def _width() -> str:
 
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
 CORNER = 0.254, 0.071
-LEAST = -0.417  # the landing point q, about where the expansion is least
+LEAST = -0.417  # approximate landing point q where the expansion is least
 
 
 def corner_orbit() -> Question:
-    """`lambda*`, at which the orbit through both corners exists. Paper: section 5.2."""
+    """Benchmark: `lambda*`, at which the orbit through both corners exists. Paper: section 5.2."""
     return Question(
         "lambda-star",
         "lambda*, cuspless cardioid",
@@ -179,7 +194,7 @@ def corner_orbit() -> Question:
 
 
 def textbook_corner() -> list[Method]:
-    """brentq for the contraction, around a brentq for the landing; mpmath's findroot in place of both."""
+    """The methods of a brentq for the contraction around a brentq for the landing, and of mpmath's findroot."""
     book = module("textbook")
     if book is None:
         return []
@@ -198,7 +213,7 @@ def textbook_corner() -> list[Method]:
 
 @cache
 def criticality() -> tuple[Kernel, Kernel]:
-    """The logarithmic slope of the expansion along the branch that changes halves, its derivative; the expansion."""
+    """Kernels: logarithmic slope of the expansion along the branch that changes halves, its derivative; expansion."""
     x = Symbol("landing", real=True)
     first, second = slope_squared(x), slope_squared(-sqrt(LAUNCH_Q2.subs(q, x)))
     slope = first.diff(x) / first + second.diff(x) / second
@@ -207,33 +222,33 @@ def criticality() -> tuple[Kernel, Kernel]:
 
 
 @dataclass(frozen=True)
-class Critical:
-    """One equation: the expansion is stationary in the landing point `q`. See `symbolic.cycles.cardioid_slap`."""
+class StationaryExpansion:
+    """The equation that the expansion is stationary in the landing point `q`. See `symbolic.cycles.cardioid_slap`."""
 
     label: str = "cardioid, the least expansion"
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """The logarithmic slope."""
+        """The logarithmic slope of the expansion."""
         return [load(criticality()[0], arithmetic)(*z)[0]]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """The correction for a residual."""
+        """Newton's correction for a residual `r`."""
         return [r[0] / load(criticality()[0], arithmetic)(*z)[1]]
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Newton's correction."""
+        """Newton's correction at `z`."""
         slope, bend = load(criticality()[0], arithmetic)(*z)
         return [slope / bend]
 
 
 def expansion(arithmetic: Arithmetic, z: Vector) -> Vector:
-    """`|(T0^2)'|` at a landing point."""
+    """The expansion `|(T0^2)'|` of the slap map's second iterate at a landing point."""
     return [load(criticality()[1], arithmetic)(z[0])[0]]
 
 
 def slap_infimum() -> Question:
-    """The least `|(T0^2)'|` on the cardioid. Paper: section 4.2, from a plot."""
-    sought = Sought(Critical(), (LEAST,), expansion)
+    """Benchmark: the least slope `|(T0^2)'|`, `T0` the cardioid's slap map. Paper: section 4.2, from a plot."""
+    sought = Sought(StationaryExpansion(), (LEAST,), expansion)
     return Question(
         "slap-infimum",
         "The least expansion of the slap map",
@@ -245,7 +260,7 @@ def slap_infimum() -> Question:
 
 
 def by_polynomial() -> list[Method]:
-    """The zero of a polynomial of degree 22, isolated by FLINT with a proof."""
+    """The method of a polynomial of degree 22, whose zero FLINT isolates with a proof."""
     book = module("textbook")
     if book is None:
         return []
@@ -262,7 +277,7 @@ def by_polynomial() -> list[Method]:
 
 
 def textbook_infimum() -> list[Method]:
-    """A grid, a search, and the roots of the polynomial by NumPy and mpmath."""
+    """The methods of a grid, a search, and roots of the polynomial by NumPy and mpmath."""
     book = module("textbook")
     if book is None:
         return []

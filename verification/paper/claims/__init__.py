@@ -1,4 +1,4 @@
-"""Claims as printed, and what a judge may say of them."""
+"""A paper's claims as printed, the folder that holds them, and the verdicts of judges."""
 
 import lazy_loader
 

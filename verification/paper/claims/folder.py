@@ -1,8 +1,8 @@
-"""A paper in a folder: what it says of itself, its claims as printed, and the modules that judge them.
+"""A paper in a folder: its bibliographic data, its claims as printed, and the modules that judge them.
 
-`paper.toml` has the title, the authors, where it was printed, the sections, and the claims or the files that hold them;
-`judges.py`, or the modules that it names, has a judge for each. A folder is read without running anything of it; its
-judges are run when a claim is judged.
+`paper.toml` has the title, the authors, the citation, the sections, and the claims or the files that hold them;
+`judges.py`, or the modules that it names, has a judge for each claim. Reading a folder runs no code of it; a judge runs
+when its claim is judged.
 """
 
 import json
@@ -11,7 +11,7 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from hashlib import sha256
 from importlib import import_module
@@ -21,23 +21,24 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
-from verification.paper.claims.claim import Claim, Sentence
+from numeric.lowering.files import write_whole
+from verification.paper.claims.claim import Claim
 from verification.paper.claims.judges import JUDGES, Judge
 
 FILE = "paper.toml"
-OWN = "focusing"  # judged when nothing else is asked for
-SHIPPED = Path(__file__).resolve().parent  # the folders of papers that come with the package lie here
+OWN = "focusing"  # the default paper
+SHIPPED = Path(__file__).resolve().parent  # where the papers that come with the package are
 ROOT = SHIPPED.parents[2]
 JUDGED, QUOTED = re.compile(r"^@judges\(([^)]*)\)", re.MULTILINE), re.compile(r"[\"']([^\"']+)[\"']")
 
 
 @dataclass(frozen=True)
 class Paper:
-    """What a folder says of a paper: where it was printed, its sections in order, its claims in the order given.
+    """A paper from a folder: citation, sections in order (each with a source, if it has its own), and claims in order.
 
-    A section may name a source of its own. `judges` are modules, `figures` is one with a function `pictures`, `seconds`
-    a record of what judging takes, `unsettled` the reasons why claims are not settled, `certified` which certificates
-    hold what claims say; all are paths, empty where the folder has none.
+    `judges` are modules and `figures` is a module with a function `pictures`. `seconds` is a record of computing times,
+    `unsettled` has the reasons why claims are not settled, and `certified` the certificates of claims; all are paths,
+    empty where the folder has none. `senses` defines words of the paper as the verdicts understand them.
     """
 
     folder: Path
@@ -52,23 +53,20 @@ class Paper:
     seconds: str = ""
     unsettled: str = ""
     certified: str = ""
+    senses: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def about(self) -> dict[str, object]:
-        """Title, authors and citation, as JSON has them."""
+        """Title, authors and citation, as a JSON object."""
         return {"title": self.title, "authors": list(self.authors), "citation": self.citation}
 
     @property
     def source(self) -> str:
-        """Who wrote it, and where."""
+        """The authors and the citation, as text."""
         return "; ".join(filter(None, (", ".join(self.authors), self.citation)))
 
-    def inventory(self) -> list[Sentence]:
-        """Every sentence of the paper, in its order, as listed."""
-        return [Sentence.from_dict(entry) for path in self.sentences for entry in _toml(path)["sentence"]]
-
     def certificates(self) -> dict[str, tuple[Path, ...]]:
-        """The certificates that hold what a claim says, by its id; those whose files are there.
+        """The certificates of each claim, by its id, where all their files exist.
 
         >>> [path.name for path in paper().certificates()["egg.doubling.3"]]
         ['doubling-3.json']
@@ -89,13 +87,18 @@ ENTRY = {"id": str, "section": str, "quote": str, "printed": (str, list), "kind"
 
 
 def read(folder: Path) -> Paper:
-    """The paper in a folder, as written; nothing of it is run. `ValueError` says in a sentence what is wrong."""
+    """The paper in a folder, without running its code; `ValueError` says in a sentence what is wrong."""
     path = folder / FILE
     if not path.is_file():
         raise ValueError(f"{folder} has no {FILE}; `pinball claims new DIR` makes a folder that has one")
     whole = _toml(path)
     own = whole.pop("claim", [])
-    _checked(path, whole, {**NAMED, **dict.fromkeys(LISTED, list), "sections": (list, dict)}, ("title", "sections"))
+    _checked(
+        path,
+        whole,
+        {**NAMED, **dict.fromkeys(LISTED, list), "sections": (list, dict), "senses": dict},
+        ("title", "sections"),
+    )
     lists = {name: tuple(map(str, whole.get(name, ()))) for name in LISTED}
     entries = [(path, entry) for entry in own]
     entries += [(folder / name, entry) for name in lists["claims"] for entry in _toml(folder / name).get("claim", [])]
@@ -116,6 +119,7 @@ def read(folder: Path) -> Paper:
         tuple(judges or [folder / "judges.py"]),
         tuple(sentences),
         **beside,
+        senses={word: str(meaning) for word, meaning in whole.get("senses", {}).items()},
     )
 
 
@@ -124,12 +128,12 @@ def _toml(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ValueError(f"{path} cannot be read: {error.strerror or error}") from None
-    except ValueError as error:  # no TOML, or no UTF-8
+    except ValueError as error:  # not TOML, or not UTF-8
         raise ValueError(f"{path} is no TOML: {error}") from None
 
 
 def _checked(where: Path, entry: Any, kinds: Mapping[str, Any], needed: Iterable[str], name: str = "") -> None:
-    """Refuses what a table must not hold, with the key, and what would be accepted."""
+    """`ValueError` where a table has a missing, unknown or wrong key; it says what is accepted."""
     label = f"{where}{f', claim {name!r}' if name else ''}"
     if not isinstance(entry, dict):
         raise ValueError(f"{label}: a claim is a table [[claim]], not {entry!r}")
@@ -167,7 +171,7 @@ def _claim(where: Path, entry: Any, sections: Mapping[str, str], letters: tuple[
     over = tuple(entry.get("over", {}).items())
     found = Claim(**{"kind": "property", **entry, "over": over, "letters": letters})
     for name, text in over:
-        ranged = isinstance(text, str) and (text[:1] not in ("[", "(") or "," in text)  # others are in words
+        ranged = isinstance(text, str) and (text[:1] not in ("[", "(") or "," in text)  # other ranges are in words
         if name not in found.names or not ranged:
             said = f"over = {{ {name} = {text!r} }} is no range of a letter"
             raise ValueError(f'{where}, claim {entry["id"]!r}: {said}; accepted: over = {{ lam = "(0, 1/3)" }}')
@@ -175,10 +179,10 @@ def _claim(where: Path, entry: Any, sections: Mapping[str, str], letters: tuple[
 
 
 def paper(claims: str | Path = OWN) -> Paper:
-    """The paper in a folder, or one that comes with the package by its name; each claim knows which module judges it.
+    """The paper in a folder, or a paper of the package by its name, with the module that judges each claim.
 
-    Nothing of the folder is run: the judges are read off the decorators. `ValueError` names a claim that nothing
-    judges, and a judge that has no claim.
+    No code of the folder is run: the judges are read from the text of the decorators. `ValueError` names a claim
+    without a judge, or a judge without a claim.
 
     >>> paper().sections["4 Cardioid"], paper("focusing").authors[0]
     ('', 'A. Arroyo')
@@ -237,10 +241,7 @@ def _with_judges(found: Paper) -> Paper:
 
 
 def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """The seconds that judging each claim takes, and those that it spares each other claim whose results it has found.
-
-    They say who does what first, and change no result; nothing is recorded of most papers.
-    """
+    """The recorded seconds of each claim, and those that it saves each other claim, to order the work; often empty."""
     if not found.seconds:
         return {}, {}
     record = json.loads(Path(found.seconds).read_text(encoding="utf-8"))
@@ -248,21 +249,21 @@ def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]
 
 
 def begin(folder: Path) -> list[Path]:
-    """Writes the folder of a paper with one claim and its judge; what was written. `ValueError` when it is there."""
+    """Writes the folder of a paper with one claim and its judge, and returns the files; `ValueError` when it exists."""
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ValueError(f"{folder} is there already; accepted: a new folder, or an empty one")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         written = [folder / name for name in (FILE, "judges.py")]
         for path in written:
-            path.write_text((SHIPPED / "skeleton" / f"{path.stem}.txt").read_text(encoding="utf-8"), encoding="utf-8")
+            write_whole(path, (SHIPPED / "skeleton" / f"{path.stem}.txt").read_bytes())
     except OSError as error:
         raise ValueError(f"{folder} cannot be written: {error.strerror or error}") from None
     return written
 
 
 def home(path: Path) -> str:
-    """A module of this package by its dotted name, another by its path.
+    """The name of a judge's module: dotted within this package, else its path.
 
     >>> home(Path(__file__))
     'verification.paper.claims.folder'
@@ -273,19 +274,19 @@ def home(path: Path) -> str:
 
 
 def judge_of(claim: Claim) -> Judge:
-    """The function that judges a claim. Its module is run when it is met for the first time."""
+    """The function that judges a claim; its module is imported at the first call."""
     return JUDGES[module(claim.home).__name__, claim.id]
 
 
 class _AsItStands(SourceFileLoader):
-    """Reads the text of a module, and no bytecode, which may be that of another text of the same second and length."""
+    """A loader that reads the source of a module and ignores bytecode, which may belong to an earlier source."""
 
     def get_code(self, fullname: str) -> CodeType:
         return self.source_to_code(self.get_data(self.path), self.path)
 
 
 def module(home: str) -> ModuleType:
-    """A module of this package by its dotted name, or one outside by its path, run once for each text that it had."""
+    """A module of this package by its dotted name, or another by its path, imported again when its text changes."""
     if not home.endswith(".py"):
         return import_module(home)
     path = Path(home)

@@ -1,7 +1,7 @@
-"""The judges: each turns what is printed and what is derived into a judgement.
+"""The decorator that registers judges, and common steps of judgements.
 
-A judge never looks for what is hoped: an identity is proved by reduction or refuted by a ball at a
-witness; a printed range is judged with its ends; a repair counts only when it is proved too.
+An identity is proved by reduction or refuted by a ball at a witness; a printed range is judged with its ends; a
+correction counts only when it is proved too.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -13,19 +13,19 @@ from sympy import AccumBounds, Expr, Interval, Matrix, Rational, S, Symbol, nan,
 from sympy.logic.boolalg import Boolean
 from sympy.logic.inference import satisfiable
 
-from symbolic.expressions.signs import Box, Finding, Outcome, conjunction, placed, vanishes
+from symbolic.expressions.signs import Box, Outcome, SignFinding, conjunction, placed, vanishes
 from verification.arithmetic.balls import enclose, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Number
 
 Judge = Callable[[Claim], Judgement]
-JUDGES: dict[tuple[str, str], Judge] = {}  # by the module and the claim's id: two papers may use one id
-WITHOUT_VALUE = (zoo, nan, oo, -oo, AccumBounds)  # what SymPy makes of a formula at a pole
+JUDGES: dict[tuple[str, str], Judge] = {}  # by module and id: two papers may use one id
+WITHOUT_VALUE = (zoo, nan, oo, -oo, AccumBounds)  # SymPy's results at a pole
 
 
 def judges(*ids: str) -> Callable[[Judge], Judge]:
-    """Enters a function as the judge of the claims named.
+    """Registers a function as the judge of the claims with these ids.
 
-    The ids are read before anything runs: they are written out, and the decorator begins its line.
+    The ids are read from the source before anything runs, so they are literals, and the decorator begins its line.
     """
 
     def enter(judge: Judge) -> Judge:
@@ -36,7 +36,7 @@ def judges(*ids: str) -> Callable[[Judge], Judge]:
 
 
 def identity(claim: Claim, derived: Expr | Matrix, mend: tuple[str, str] | None = None, erratum: str = "") -> Judgement:
-    """Is the printed formula equal to the derived one? `mend` replaces the text that is misprinted."""
+    """The judgement on a printed formula, from the derived one; `mend` replaces misprinted text."""
     finding = equal(claim.formula, derived, claim.box)
     if mend is None:
         return Judgement(finding, text_of(derived))
@@ -44,7 +44,7 @@ def identity(claim: Claim, derived: Expr | Matrix, mend: tuple[str, str] | None 
 
 
 def mended(claim: Claim, wrong: str, right: str) -> Claim:
-    """The claim with one piece of printed text replaced, wherever it stands once.
+    """The claim with one piece of printed text replaced, in each formula that contains it once.
 
     >>> mended(Claim("t.x", "1", "", "identity", "a + 2"), "2", "3").printed
     'a + 3'
@@ -57,11 +57,11 @@ def mended(claim: Claim, wrong: str, right: str) -> Claim:
     if isinstance(printed, str):
         return replace(claim, printed=repaired(printed))
     rows = [repaired(row) if isinstance(row, str) else [repaired(entry) for entry in row] for row in printed]
-    return replace(claim, printed=rows)  # type: ignore[arg-type]  # rows keep the kind that they had
+    return replace(claim, printed=rows)  # type: ignore[arg-type]  # rows keep their type
 
 
-def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
-    """Are two formulas the same function? Proved by reduction to 0, refuted by a ball that excludes 0.
+def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> SignFinding:
+    """The finding that two formulas are equal: proved by reduction to 0, refuted by a ball that excludes 0.
 
     >>> from symbolic.tables.table import lam
     >>> equal(lam**2 - 1, (lam - 1) * (lam + 1), {}).outcome.name
@@ -72,7 +72,7 @@ def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
     if isinstance(left, Matrix) or isinstance(right, Matrix):
         left, right = Matrix(left), Matrix(right)
         if left.shape != right.shape:
-            return Finding(Outcome.REFUTED, f"the shapes {left.shape} and {right.shape} differ")
+            return SignFinding(Outcome.REFUTED, f"the shapes {left.shape} and {right.shape} differ")
         findings = []
         for i in range(left.rows):
             for j in range(left.cols):
@@ -81,23 +81,23 @@ def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> Finding:
                 findings.append(replace(finding, reason=where + finding.reason))
         return conjunction(*findings)
     difference = left - right
-    # A ball that excludes 0 is cheaper than a reduction, and there is none where the two agree.
+    # A ball that excludes 0 is cheaper to find than a reduction.
     for point in witnesses(difference.free_symbols, box):
         value = difference.subs(point)
-        if value.has(*WITHOUT_VALUE):  # a pole: nothing can be told there
+        if value.has(*WITHOUT_VALUE):  # a pole, which decides nothing
             continue
         ball = enclose(value)
         if ball.is_finite() and not ball.contains(0):
             where = ", ".join(f"{x} = {v}" for x, v in point.items()) or "this number"
             reason = f"at {where} the two differ by {ball.str(6, radius=False)}"
-            return placed(Finding(Outcome.REFUTED, reason, tuple(point.items())), box)
+            return placed(SignFinding(Outcome.REFUTED, reason, tuple(point.items())), box)
     if vanishes(difference):
-        return Finding(Outcome.PROVED, "exact reduction to 0")
-    return Finding(Outcome.UNKNOWN, "neither reduced to 0 nor told apart at a witness")
+        return SignFinding(Outcome.PROVED, "exact reduction to 0")
+    return SignFinding(Outcome.UNKNOWN, "neither reduced to 0 nor told apart at a witness")
 
 
 def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
-    """A few rational points, inside the ranges given, (0, 1) for letters without one."""
+    """A few rational points inside the given ranges, or in (0, 1) for letters without one."""
     points: list[dict[Symbol, Expr]] = [{}, {}, {}]
     for n, x in enumerate(sorted(letters, key=str)):
         interval = box.get(x, Interval(0, 1))
@@ -109,7 +109,7 @@ def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
 
 
 def digits(claim: Claim, value: Number, mend: tuple[str, str] | None = None) -> Judgement:
-    """Is the printed decimal the true value, correctly rounded? `mend` is the misprint and what it should read."""
+    """The judgement on a printed decimal, from the true value; `mend` is the misprint and its correction."""
     shown_value = text_of(value) if isinstance(value, Expr) else real_ball(value, 20).str(15, radius=False) + "..."
     finding = rounded(str(claim.printed), value)
     if mend is None:
@@ -119,8 +119,8 @@ def digits(claim: Claim, value: Number, mend: tuple[str, str] | None = None) -> 
     return Judgement(finding, shown_value, rounded(repaired, value), f"{wrong} should read {right}", value)
 
 
-def rounded(decimal: str, value: Number) -> Finding:
-    """Does `decimal` show `value` rounded to its last place?
+def rounded(decimal: str, value: Number) -> SignFinding:
+    """The finding that `decimal` is `value` rounded to its last place.
 
     >>> from sympy import sqrt
     >>> rounded("1.414", sqrt(S(2))).outcome.name, rounded("1.415", sqrt(S(2))).outcome.name
@@ -133,44 +133,44 @@ def rounded(decimal: str, value: Number) -> Finding:
     room = fmpq(1, 2 * 10**places) - gap
     true = ball.str(places + 6, radius=False)
     if room > 0:
-        return Finding(Outcome.PROVED, f"the true value {true}... rounds to {decimal}")
+        return SignFinding(Outcome.PROVED, f"the true value {true}... rounds to {decimal}")
     if room < 0:
-        return Finding(Outcome.REFUTED, f"the true value {true}... does not round to {decimal}")
-    return Finding(Outcome.UNKNOWN, "the enclosure does not decide the rounding")
+        return SignFinding(Outcome.REFUTED, f"the true value {true}... does not round to {decimal}")
+    return SignFinding(Outcome.UNKNOWN, "the enclosure does not decide the rounding")
 
 
 def on_range(
     claim: Claim,
-    prove: Callable[[Mapping[Symbol, Interval]], Finding],
+    prove: Callable[[Mapping[Symbol, Interval]], SignFinding],
     derived: str,
     right: Mapping[Symbol, Interval] | None = None,
     erratum: str = "",
 ) -> Judgement:
-    """Does a statement hold over the printed range, ends included? `right` is the range where it does."""
+    """The judgement on a statement over the printed range; `right` is the range where it holds."""
     finding = prove(claim.box)
     if right is None:
         return Judgement(finding, derived)
     return Judgement(finding, derived, prove({**claim.box, **right}), erratum)
 
 
-def by(argument: str, *findings: Finding) -> Finding:
-    """An argument in one sentence that rests on findings: proved when each of them is."""
+def by(argument: str, *findings: SignFinding) -> SignFinding:
+    """The finding of an argument in one sentence that rests on `findings`: proved when all of them are."""
     whole = conjunction(*findings)
-    return Finding(whole.outcome, f"{argument} [{whole.reason}]" if whole else whole.reason)
+    return SignFinding(whole.outcome, f"{argument} [{whole.reason}]" if whole else whole.reason)
 
 
-def counterexample(argument: str, *findings: Finding, at: Mapping[Symbol, Expr] | None = None) -> Finding:
-    """What is printed is refuted when every finding on the counterexample is proved.
+def counterexample(argument: str, *findings: SignFinding, at: Mapping[Symbol, Expr] | None = None) -> SignFinding:
+    """The finding that the printed claim is refuted, when all `findings` on the counterexample are proved.
 
-    `at` is where it fails, a value for each letter whose printed range is more than a point.
+    `at` is the point where the claim fails, with a value for each letter whose printed range is more than a point.
     """
     whole = conjunction(*findings)
     witness = tuple((at or {}).items())
-    return Finding(Outcome.REFUTED if whole else Outcome.UNKNOWN, f"{argument} [{whole.reason}]", witness)
+    return SignFinding(Outcome.REFUTED if whole else Outcome.UNKNOWN, f"{argument} [{whole.reason}]", witness)
 
 
-def greater(left: Expr, right: Expr) -> Finding:
-    """Is one real number larger than another? Decided by balls.
+def greater(left: Expr, right: Expr) -> SignFinding:
+    """The finding that one real number is larger than another, decided in balls.
 
     >>> from sympy import pi
     >>> greater(pi, S(3)).outcome.name
@@ -178,34 +178,34 @@ def greater(left: Expr, right: Expr) -> Finding:
     """
     gap = enclose(left - right).real
     if gap > 0:
-        return Finding(Outcome.PROVED, f"{left} > {right}")
+        return SignFinding(Outcome.PROVED, f"{left} > {right}")
     if gap <= 0:
-        return Finding(Outcome.REFUTED, f"{left} <= {right}")
-    return Finding(Outcome.UNKNOWN, f"no order of {left} and {right} is proved")
+        return SignFinding(Outcome.REFUTED, f"{left} <= {right}")
+    return SignFinding(Outcome.UNKNOWN, f"no order of {left} and {right} is proved")
 
 
-def shown(argument: str, holds: bool | None) -> Finding:
-    """An exact decision of SymPy (`True`, `False`, or `None` for undecided) as a finding."""
+def shown(argument: str, holds: bool | None) -> SignFinding:
+    """The finding of an exact decision of SymPy: `True`, `False`, or `None` for undecided."""
     outcome = {True: Outcome.PROVED, False: Outcome.REFUTED}.get(holds, Outcome.UNKNOWN)  # type: ignore[arg-type]
-    return Finding(outcome, argument)
+    return SignFinding(outcome, argument)
 
 
-def answer(holds: bool | None, reason: str) -> Finding:
-    """A proof in balls as a finding: one that fails refutes nothing.
+def answer(holds: bool | None, reason: str) -> SignFinding:
+    """The finding of a proof in balls, where a proof that fails refutes nothing.
 
     >>> answer(True, "").outcome.name, answer(False, "").outcome.name
     ('PROVED', 'UNKNOWN')
     """
-    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 def sampled(derived: str, evidence: str, agrees: bool) -> Judgement:
-    """A claim that sampling supports within the error it states, and leaves open where it does not."""
-    return Judgement(Finding(Outcome.UNKNOWN, evidence), derived, evidence=evidence if agrees else "")
+    """The judgement on a sampled claim: supported if the sample agrees within its stated error, else open."""
+    return Judgement(SignFinding(Outcome.UNKNOWN, evidence), derived, evidence=evidence if agrees else "")
 
 
-def implied(argument: str, proposition: Boolean) -> Finding:
-    """A step of logic alone: proved when no assignment of truth values makes `proposition` false, refuted by one.
+def implied(argument: str, proposition: Boolean) -> SignFinding:
+    """The finding of a logical step: proved when `proposition` is a tautology, refuted by an assignment otherwise.
 
     >>> from sympy.abc import p, q
     >>> implied("", (p & q) >> p).outcome.name, implied("", p >> (p & q)).outcome.name
@@ -213,16 +213,16 @@ def implied(argument: str, proposition: Boolean) -> Finding:
     """
     false_at = satisfiable(~proposition)
     if not false_at:
-        return Finding(Outcome.PROVED, argument)
-    return Finding(Outcome.REFUTED, f"it fails where {', '.join(f'{x} is {v}' for x, v in false_at.items())}")
+        return SignFinding(Outcome.PROVED, argument)
+    return SignFinding(Outcome.REFUTED, f"it fails where {', '.join(f'{x} is {v}' for x, v in false_at.items())}")
 
 
-def zero(argument: str, *expressions: Expr) -> Finding:
-    """An argument that rests on expressions vanishing identically."""
+def zero(argument: str, *expressions: Expr) -> SignFinding:
+    """The finding of an argument that holds if all expressions vanish identically."""
     whole = conjunction(*(equal(expression, S.Zero, {}) for expression in expressions))
-    return Finding(whole.outcome, argument if whole and argument else whole.reason)
+    return SignFinding(whole.outcome, argument if whole and argument else whole.reason)
 
 
 def text_of(derived: Expr | Matrix) -> str:
-    """A derived formula on one line."""
+    """A derived formula as text on one line."""
     return str(derived.tolist()) if isinstance(derived, Matrix) else str(derived)

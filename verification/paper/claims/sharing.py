@@ -1,20 +1,20 @@
-"""Which claims are judged by one process: those that share results, as far as no process waits for the others.
+"""The division of claims among processes: claims that share results go together, while the load stays even.
 
-The fewer processes there are, the less sharing costs: the bounds are shares of what one process has to do.
+The bounds are relative to the work of one process: the fewer processes there are, the less sharing costs.
 """
 
 from collections.abc import Mapping, Sequence
 
 from verification.paper.claims.claim import Claim, seconds
 
-MANY = 16  # processes among which claims should divide evenly, where their number is not known
-GROUP = 0.4  # of a process's share: the largest group, unless ...
-KEPT = 0.3  # ... so much of a group's seconds is saved by staying together
-SMALL, HANDFUL = 0.01, 0.12  # groups of so little go in handfuls, those of one module of judges together
+MANY = 16  # the assumed number of processes, where it is not known
+GROUP = 0.4  # the largest group, relative to a process's work, unless ...
+KEPT = 0.3  # ... staying together saves at least this part of a group's time
+SMALL, HANDFUL = 0.01, 0.12  # groups below SMALL are bundled up to HANDFUL, by module of judges
 
 
 def sharing(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
-    """The claims in groups that share results, each in the order given, for so many processes.
+    """The claims in groups that share results, each in the given order, for `jobs` processes.
 
     >>> from verification.paper.report.report import catalogue
     >>> [len(group) for group in sharing(catalogue()[:3])]
@@ -31,7 +31,7 @@ def sharing(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
 
 
 def shared_out(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
-    """Those groups, the dearest first; what is small goes in handfuls, each of one module of judges."""
+    """The groups of `sharing`, the most expensive first, with small groups of one module bundled."""
     share = seconds(claims) / jobs
     group = {claim.id: own for own in sharing(claims, jobs) for claim in own}
     handful: dict[str, list[Claim]] = {}
@@ -45,7 +45,7 @@ def shared_out(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
 
 
 def _listed(group: Mapping[str, list[Claim]], claims: Sequence[Claim]) -> list[list[Claim]]:
-    """Each group once."""
+    """The distinct groups, with their claims in the given order."""
     found: dict[int, list[Claim]] = {}
     for claim in claims:
         found.setdefault(id(group[claim.id]), []).append(claim)

@@ -1,1 +1,1 @@
-"""Judges of the three-pointed egg. Paper: section 6."""
+"""Judges of the claims on the egg with three vertices. Paper: section 6."""

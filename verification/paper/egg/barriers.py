@@ -1,11 +1,11 @@
-"""Claims on the egg's basins next to the boundary crisis, by barriers, and on what attracts beyond it. Section 6.7.
+"""Judges of claims on the egg's basins near the boundary crisis, and on attractors beyond it. Paper: section 6.7.
 
-At 0.66 a curve around phase space is mapped strictly below itself: what begins below it, which is all of `phi <= 0`
-and more, never reaches the triangle with `phi > 0`; with its mirror image it encloses a trapping region. A little
-further an orbit crosses. Beyond the crisis windows are left, in which other cycles attract.
+At `lam = 0.66` a curve around phase space, a *barrier* above `phi = 0`, is mapped strictly below itself: no orbit that
+starts below it reaches the attracting triangle with `phi > 0`. With its mirror image it encloses a trapping region. At
+0.6623 an orbit crosses. Beyond the crisis there are windows in which other cycles attract.
 
-What the barriers do not say: that what attracts in between is one chaotic attractor, and that it vanishes where they
-are lost. An attractor may stay there with a smaller basin, when an orbit from `phi = 0` goes up.
+The barriers do not prove that the region holds one chaotic attractor, nor that this vanishes where they are lost: an
+attractor with a smaller basin may remain.
 """
 
 from fractions import Fraction
@@ -17,7 +17,7 @@ from sympy import Rational
 from numeric import PinballMap
 from numeric.dynamics.phase_points import PhasePoints, phase_points
 from symbolic import tables
-from symbolic.expressions.signs import Finding
+from symbolic.expressions.signs import SignFinding
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import lam
 from verification.arithmetic.balls import balls, working
@@ -25,26 +25,26 @@ from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
 from verification.paper.judges.attractors import SHAPE, chaotic, cycles, egg, proved_at, unsettled
-from verification.proofs.global_dynamics.barrier import Barrier, lost
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.crisis import boxed
+from verification.proofs.global_dynamics.barrier import Barrier, BarrierBreaks
+from verification.proofs.global_dynamics.crisis import bounding_boxes
 from verification.proofs.manifolds.known import table
+from verification.rigorous.boxes import Boxes
 
-AT, LOST, GONE = "0.66", "0.6623", "0.7"  # where barriers are, are no more, and where nothing is left in between
-SINK, CROSSES = (-3.0003, 0.4175), 0.7251  # near the upper triangle; where on `phi = 0` an orbit crosses at LOST
-WINDOW, STAYS = "0.6718", (-2.32324864, 0.26943288)  # a window of a cycle of 10 bounces, and a point near one of them
+AT, LOST, GONE = "0.66", "0.6623", "0.7"  # contractions with barriers, without, and without an attractor between
+SINK, CROSSES = (-3.0003, 0.4175), 0.7251  # near the upper triangle; on `phi = 0`, the start of a crossing orbit
+WINDOW, STAYS = "0.6718", (-2.32324864, 0.26943288)  # in a window of a cycle of 10 bounces; a point near it
 LONG, BITS = 10, 160
 
 
 @cache
 def barrier(contraction: str = AT) -> Barrier:
-    """At one contraction."""
+    """The barrier at one contraction."""
     return Barrier(Scene("egg", alpha=SHAPE), (Fraction(contraction), Fraction(contraction)))
 
 
 @cache
-def triangles(contraction: str = AT) -> Finding:
-    """Of the two cycles of period 3, mirror images, one is above the barrier and one below the mirrored barrier."""
+def triangles(contraction: str = AT) -> SignFinding:
+    """The finding that of two cycles of period 3, mirror images, one is above both barriers and one below."""
     found, divides, sides = cycles(egg(contraction), 3), barrier(contraction), []
     for cycle in found:
         place = bounces(contraction, cycle.points)
@@ -57,7 +57,7 @@ def triangles(contraction: str = AT) -> Finding:
 
 
 def bounces(contraction: str, near: PhasePoints) -> Boxes | None:
-    """The bounces of a cycle that is proved near some phase points, as boxes; None where none is proved."""
+    """The bounces of a cycle that is proved near some phase points, as boxes; None where it is not proved."""
     shape = Rational(SHAPE)
     proof = certificate(tables.egg(3).at(alpha=SHAPE), Rational(contraction), near)
     if not proof.proved:
@@ -65,12 +65,12 @@ def bounces(contraction: str, near: PhasePoints) -> Boxes | None:
     with working(BITS):
         angle = table(shape).over(balls(BITS)).angle
         ends = zip(proof.theta, (*proof.theta[1:], proof.theta[0]), strict=True)
-        return boxed([(here, angle(here, there)[0]) for here, there in ends])
+        return bounding_boxes([(here, angle(here, there)[0]) for here, there in ends])
 
 
 @cache
-def divided(contraction: str = AT) -> Finding:
-    """No orbit goes from below the barrier to above, nor, by the mirror, from above the lower one to below it."""
+def divided(contraction: str = AT) -> SignFinding:
+    """The finding that no orbit crosses the barrier upwards or its mirror image downwards."""
     divides = barrier(contraction)
     return by(
         f"at lam = {contraction} a curve above phi = 0, in {divides.columns * divides.turns} steps, is mapped strictly "
@@ -83,10 +83,10 @@ def divided(contraction: str = AT) -> Finding:
 
 @judges("egg.basins_above_below")
 def above_below(claim: Claim) -> Judgement:
-    """The basins lie beyond the barriers. An attractor that is its own mirror image lies between them.
+    """The basins lie beyond the barriers, and an attractor that is its own mirror image lies between them.
 
     Its dense orbit comes below the upper barrier, since the mirror image of a point above it is below the lower one,
-    and above the lower barrier likewise; there it stays.
+    and similarly above the lower barrier; there it stays.
     """
     return Judgement(
         divided(),
@@ -98,7 +98,7 @@ def above_below(claim: Claim) -> Judgement:
 
 @judges("egg.basins_separate")
 def separate(claim: Claim) -> Judgement:
-    """The basins are apart, proved; that the basin of one chaotic attractor is between them is sampled."""
+    """The basins are proved disjoint; that the basin of one chaotic attractor is between them is sampled."""
     attractors = egg(AT)
     inner = chaotic(attractors)
     shares = ", ".join(str(a.share.count) for a in attractors if a.share)
@@ -110,15 +110,31 @@ def separate(claim: Claim) -> Judgement:
     )
 
 
-@judges("egg.crisis_below")
-def crisis_below(claim: Claim) -> Judgement:
-    """The barrier is there at 0.66 and is lost at 0.6623; that an attractor vanishes with it is sampled."""
-    checks = lost(barrier(), Fraction(LOST), SINK, CROSSES)
-    bracket = by(
+@cache
+def barrier_ends() -> SignFinding:
+    """The finding that the last barrier between `phi = 0` and the triangles is lost between two contractions."""
+    breaks = BarrierBreaks(barrier(), Fraction(LOST), SINK, CROSSES)
+    return by(
         f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper triangle",
         divided(),
-        answer(all(checks.values()), f"at {LOST} an orbit from phi = 0 enters trapped boxes about that triangle"),
+        answer(breaks.proved, f"at {LOST} an orbit from phi = 0 enters trapped boxes about that triangle"),
     )
+
+
+@judges("egg.another_crisis")
+def another_crisis(claim: Claim) -> Judgement:
+    """The barrier between `phi = 0` and the triangles exists at 0.66 and is lost soon after."""
+    return Judgement(
+        barrier_ends(),
+        f"at {AT} a curve above phi = 0 is mapped below itself, so that no orbit from phi = 0 comes to a triangle; at "
+        f"{LOST} one does. What is kept before is not shown to be one chaotic attractor",
+    )
+
+
+@judges("egg.crisis_below")
+def crisis_below(claim: Claim) -> Judgement:
+    """The barrier exists at 0.66 and is lost at 0.6623; that an attractor vanishes with it is sampled."""
+    bracket = barrier_ends()
     before, after = (len(chaotic(egg(x))) for x in (AT, GONE))
     return sampled(
         f"what keeps orbits from phi = 0 from the triangles is lost at a contraction above {AT}, and not above {LOST}: "
@@ -129,8 +145,8 @@ def crisis_below(claim: Claim) -> Judgement:
 
 
 @cache
-def window() -> Finding:
-    """A third kind of attractor beyond the crisis, in the region where orbits stayed below it."""
+def window() -> SignFinding:
+    """The finding of another attracting cycle beyond the crisis, in the region between the former barriers."""
     map = PinballMap("egg", lam=WINDOW, alpha=SHAPE)
     orbit = map.orbit(*STAYS, 1000 + LONG)
     near = phase_points(orbit.theta[-LONG:], orbit.phi[-LONG:])
@@ -145,7 +161,7 @@ def window() -> Finding:
 
 @judges("egg.after_crisis")
 def beyond(claim: Claim) -> Judgement:
-    """Windows: "all" is meant of almost all, and fails in each, since the basin of the cycle there is open."""
+    """The word "all", read as almost all, fails in each window, where the basin of another cycle is open."""
     others = window()
     return Judgement(
         counterexample("an open set of starts goes elsewhere", others, at={lam: Rational(WINDOW)}),

@@ -1,7 +1,7 @@
-"""Claims about sets of phase points: basins of attraction, sampled, and what exists nowhere, proved by exclusion.
+"""Judges of claims on basins of attraction, and on the absence of cycles of short periods.
 
-The basin of an attracting cycle is open, so no two such basins are intermingled at every point; what pictures show is
-a fractal boundary, and its dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
+The basin of an attracting cycle is open, so no two such basins are intermingled at every point; pictures show a fractal
+boundary, whose dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
 """
 
 from dataclasses import replace
@@ -13,18 +13,18 @@ from sympy import Expr, Rational
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor
+from numeric.dynamics.basins import Uncertainty, uncertainty
 from numeric.dynamics.phase_points import phase_points
-from numeric.dynamics.statistics import Uncertainty, uncertainty
 from symbolic.cycles.cycle import cuspless_horizontal, cuspless_vertical, is_double_normal
 from symbolic.cycles.polygons import near_flat, saddle_node
-from symbolic.expressions.signs import Finding
+from symbolic.expressions.signs import SignFinding
 from symbolic.tables import egg
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha, lam
 from verification.arithmetic.iteration import telling
 from verification.named.attractors import certificate
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, counterexample, greater, judges, shown
+from verification.paper.claims.judges import answer, by, counterexample, greater, judges, sampled, shown
 from verification.paper.judges.attractors import SHAPE, found
 from verification.paper.judges.cuspless import attracting_below
 from verification.proofs.global_dynamics.common_boundary import CommonBoundary, entered_around
@@ -32,16 +32,16 @@ from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.periodic.triangles import PRODUCED, SLAP, no_triangles, witness
 from verification.proofs.slap_map.exponent import PeriodicPoints, periodic_points
 from verification.proofs.starts.alternating import Alternating
-from verification.proofs.starts.core import Core
-from verification.proofs.starts.division import Division, Ring
+from verification.proofs.starts.core import AbsorbingTube
+from verification.proofs.starts.division import Division, ExpandingAnnulus
 
 SEED = 1
 PAIRS = 4000
-EARLY = 400  # bounces before labels are read off
+EARLY = 400  # bounces before an orbit's attractor is determined
 
 
 def scene(name: str, contraction: str) -> tuple[PinballMap, tuple[Attractor, ...]]:
-    """The map and its attractors."""
+    """The map of a table at a contraction, and its attractors."""
     if name == "egg":
         return PinballMap("egg", lam=contraction, alpha=SHAPE), found("egg", contraction, alpha=SHAPE)
     return PinballMap(name, lam=contraction), found(name, contraction)
@@ -49,32 +49,33 @@ def scene(name: str, contraction: str) -> tuple[PinballMap, tuple[Attractor, ...
 
 @cache
 def boundary(name: str, contraction: str, distances: tuple[float, ...]) -> Uncertainty:
-    """The uncertainty exponent over a range of distances."""
+    """The uncertainty exponent of the basin boundary over a range of distances."""
     map, attractors = scene(name, contraction)
     return uncertainty(map, attractors, PAIRS, SEED, distances=distances, transient=EARLY)
 
 
 def told(law: Uncertainty) -> str:
-    """The dimension with its error and the range it was fitted over."""
+    """The dimension with its error and the range of distances, as text."""
     return f"{law.dimension:.3f} +- {law.error:.3f} for eps from {law.largest:g} to {law.smallest:g}"
 
 
 @cache
 def division() -> Division:
-    """The core of period 2 at 9/100, and the ring about the unstable cycle of period 4 that bounds it."""
-    core = Core(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, gates=((0.14, 0.006), (0.1, 0.01)))
-    ring = Ring(low=0.1395, high=0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
-    return Division(Scene("cuspless"), (Fraction(9, 100),) * 2, (8192, 1024), 8, core, ring, rate=0.16)
+    """The data at `lam = 9/100`: the tube around period 2, and the annulus around the unstable cycle of period 4."""
+    entries = (0.14, 0.006), (0.1, 0.01)
+    tube = AbsorbingTube(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, entry_tubes=entries)
+    annulus = ExpandingAnnulus(0.1395, 0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
+    return Division(Scene("cuspless"), (Fraction(9, 100),) * 2, (8192, 1024), 8, tube, annulus, rate=0.16)
 
 
 def alternating() -> Alternating:
-    """Strips of both basins next to the vertical orbit's stable manifold."""
-    return Alternating(Fraction(9, 100), division().core)
+    """The theorem on strips of both basins next to the stable manifold of the vertical orbit."""
+    return Alternating(Fraction(9, 100), division().tube)
 
 
 @judges("cuspless.basins_intermingled")
 def cuspless_intermingled(claim: Claim) -> Judgement:
-    """Strips of both basins in turn come to all of a saddle's stable manifold."""
+    """Strips of both basins alternate next to the whole stable manifold of a saddle."""
     found = alternating()
     return Judgement(
         by(
@@ -95,7 +96,7 @@ def cuspless_intermingled(claim: Claim) -> Judgement:
 
 @judges("cuspless.two_basins")
 def two_basins(claim: Claim) -> Judgement:
-    """Almost every start: what stays near the unstable cycles has no area. That chaos is one attractor is not said."""
+    """Almost every start is in one of two basins; that the chaotic set is one attractor is not proved."""
     found = division()
     rate = f"each orbit that misses the joins has nu_+ >= {found.rate}"
     return Judgement(
@@ -113,19 +114,20 @@ def two_basins(claim: Claim) -> Judgement:
 
 
 def beyond_the_crisis() -> CommonBoundary:
-    """The triangle of the vertices at 0.7, with an orbit to either attracting triangle along one of its branches."""
+    """The theorem on the triangle near the vertices at 0.7, with an orbit to each attracting triangle."""
     sink, saddle = (1.16897116, 0.43119899), replace(TRIANGLE, start=(-0.14235898,))
     sinks, turns = (sink, (-sink[0], -sink[1])), (Fraction(1, 3), Fraction(2, 3))
-    starts = 0.9, 0.21125  # sampled in the middle of pieces of the branch that go to one triangle
+    starts = 0.9, 0.21125  # middles of pieces of the branch that were sampled to end on one triangle
     return CommonBoundary(Scene("egg", alpha=SHAPE), Fraction(7, 10), saddle, 1, starts, sinks, turns)
 
 
-MIDDLE = (Fraction(0), Fraction(1, 50)), (Fraction(0), Fraction(1, 20))  # between the triangles, one for each
+NEARLY_ALL = 1.9  # the least dimension that counts as near 2
+MIDDLE = (Fraction(0), Fraction(1, 50)), (Fraction(0), Fraction(1, 20))  # between the triangles, one for each basin
 
 
 @cache
-def common() -> tuple[Finding, Finding]:
-    """Both basins have open discs between the triangles; and they come near all of the saddle's stable manifold."""
+def common() -> tuple[SignFinding, SignFinding]:
+    """The findings that both basins hold open discs between the triangles, and share a boundary: a stable manifold."""
     found = beyond_the_crisis()
     checks = found.checks
     cycles = answer(bool(checks["discs"] and checks["apart"]), "two cycles attract a disc each, apart from the other")
@@ -138,21 +140,19 @@ def common() -> tuple[Finding, Finding]:
 
 @judges("egg.basins_intermingled")
 def egg_intermingled(claim: Claim) -> Judgement:
-    """Open discs of one basin alone lie in the region; both basins come near all of the saddle's stable manifold."""
+    """A sampled boundary has a dimension near 2, and both basins are proved to accumulate at a stable manifold.
+
+    Basins of attracting cycles are open, so neither is dense in a disc of the other: no sample can show that.
+    """
     law = boundary("egg", "0.7", (1e-3, 1e-5, 1e-7))
     open_, both = common()
-    return Judgement(
-        counterexample(
-            "the region holds open sets of one basin alone, so not every neighbourhood in it meets both",
-            open_,
-        ),
-        "each neighbourhood of each point of the stable manifold of the triangle of the vertices holds open sets of "
-        "both basins, so that manifold lies on the boundary of both; sampled, the common boundary has the dimension "
-        f"{told(law)}",
-        both,
-        "The basins of the two attracting triangles are open, so they are not completely intermingled; they have a "
-        "common boundary, which holds the stable manifold of the unstable triangle of the vertices: arbitrarily close "
-        "to each of its points there are starts that go to either attracting triangle.",
+    return sampled(
+        f"sampled, the boundary between the basins has the dimension {told(law)}, near that of the plane. Proved: "
+        "each neighbourhood of each point of the stable manifold of the triangle of "
+        "the vertices holds open sets of both basins; and both are open, so that smaller discs of one basin alone lie "
+        "between them",
+        f"dimension {told(law)}; proved: {both.reason}; {open_.reason}",
+        bool(open_) and bool(both) and law.dimension > NEARLY_ALL,
     )
 
 
@@ -161,8 +161,8 @@ BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
 
 
 @cache
-def without_triangles(shape: Expr, most: Expr) -> Finding:
-    """No cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
+def without_triangles(shape: Expr, most: Expr) -> SignFinding:
+    """The finding that there is no cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
     found = no_triangles(shape, most, tick=telling(f"triangles excluded at alpha = {shape}"))
     if not found.excluded:
         return answer(None, f"{found.share:.0%} of the triangles excluded")
@@ -171,15 +171,15 @@ def without_triangles(shape: Expr, most: Expr) -> Finding:
 
 @judges("egg.slap_no_period3")
 def slap_no_period3(claim: Claim) -> Judgement:
-    """At both shapes of the figure."""
+    """No cycle of period 3 exists at both shapes of the figure."""
     findings = without_triangles(Rational(1, 20), Rational(1, 16)), without_triangles(EXACT_SHAPE, BELOW)
     return Judgement(
         by("exclusion of every triangle", *findings), "none for alpha = 0.05 and 0.08, and lam up to 0.378 at 0.08"
     )
 
 
-def triangle_at(contraction: Rational) -> Finding:
-    """A cycle of period 3 at `alpha = 0.08`, by interval Newton."""
+def triangle_at(contraction: Rational) -> SignFinding:
+    """The finding of an attracting cycle of period 3 at `alpha = 0.08`, by interval Newton."""
     bounce = float(near_flat().subs({alpha: EXACT_SHAPE, lam: contraction}))
     near = phase_points([bounce + k * tau / 3 for k in range(3)], 0.0)
     proof = certificate(egg(3).at(alpha=EXACT_SHAPE), contraction, near)
@@ -188,7 +188,7 @@ def triangle_at(contraction: Rational) -> Finding:
 
 @judges("egg.no_period3_caption")
 def no_period3_caption(claim: Claim) -> Judgement:
-    """The fold lies below 0.4."""
+    """The printed limit 0.4 is too large: the fold of period 3 lies below it."""
     fold = saddle_node().subs(alpha, EXACT_SHAPE)
     return Judgement(
         counterexample(
@@ -205,7 +205,7 @@ def no_period3_caption(claim: Claim) -> Judgement:
 
 @judges("egg.projection_misses")
 def projection_misses(claim: Claim) -> Judgement:
-    """Witnesses: orbits that come back to their first position after three bounces."""
+    """Two counterexamples: orbits that return to their first position after three bounces."""
     free, produced = witness(EXACT_SHAPE, Rational(0), *SLAP), witness(EXACT_SHAPE, Rational(3, 10), *PRODUCED)
     proved = bool(free.exists and produced.exists and produced.produced)
     met = answer(proved, "both orbits proved by interval Newton")
@@ -226,13 +226,13 @@ def projection_misses(claim: Claim) -> Judgement:
 
 @cache
 def points_of_period_4() -> PeriodicPoints:
-    """Where the fourth iterate of the cuspless slap map may return."""
+    """Intervals that hold all fixed points of the fourth iterate of the cuspless slap map."""
     return periodic_points(4, tick=telling("boundary followed"))
 
 
 @judges("cuspless.slap_no_period4")
 def slap_no_period4(claim: Claim) -> Judgement:
-    """Four stretches hold at most one point each of period dividing 4, and the two orbits of period 2 take them."""
+    """Four intervals hold at most one point each of period dividing 4; the two 2-cycles are these points."""
     found = points_of_period_4()
     known = [cuspless_horizontal(), cuspless_vertical()]
     return Judgement(

@@ -1,6 +1,8 @@
-"""Claims on how the egg's period-4 orbits lose stability, and on where in its parameters. Paper: sections 6.5, 6.6."""
+"""Judges of claims on the period-doubling cascade of the egg's period-4 orbits. Paper: sections 6.5, 6.6."""
 
+from fractions import Fraction
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from flint import fmpq
@@ -11,12 +13,12 @@ from numeric.sweeps.run import in_memory
 from numeric.sweeps.space import parameter_space
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import tilt
-from symbolic.expressions.signs import Finding, Outcome, positive
+from symbolic.expressions.signs import Outcome, SignFinding, positive
 from symbolic.tables import egg as table_of
+from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha
-from verification.arithmetic.iteration import telling
 from verification.cycles.cascade import attractor
-from verification.named.branches import cascade
+from verification.named.cascades import cascade
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, shown
 from verification.paper.egg.period2 import SHAPES
@@ -24,28 +26,28 @@ from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettled
 from verification.paper.judges.hyperbolicity import ends_of_period
 from verification.paper.judges.located import certified, located
+from verification.proofs.global_dynamics.fates import FewAttractingCycles
 from verification.proofs.periodic.bifurcation import Stability, over_interval
-from verification.proofs.periodic.returning import returning
 
 SHAPE = Rational(2, 25)
-SMALL = ("0", "0.05", "0.1", "0.2", "0.28")  # contractions where period 4 is alone
-BETWEEN = 0.33, (0.289, 0.371)  # inside the life of the period 4 without a mirror
-OTHERS = (Rational(3, 40), Rational(9, 100))  # shapes where the cascade at 0.08 should be typical
+SMALL = ("0", "0.05", "0.1", "0.2", "0.28")  # contractions where only period 4 attracts
+BETWEEN = 0.33, (0.289, 0.371)  # inside the range where an asymmetric period 4 attracts
+OTHERS = (Rational(3, 40), Rational(9, 100))  # shapes with which the cascade at 0.08 is compared
 TONGUE = ("0.02", "0.05", "0.07", "0.08", "0.09", "0.1")
 LAMS = np.round(np.arange(0.05, 0.96, 0.05), 3)
-PROVED = 3 / 128  # contractions up to which the cycles are proved
+PROVED = Fraction(3, 128)  # the largest contraction up to which the cycles are proved
 STOPS = (0.03, 0.01, 1e-12)  # tolerances of Newton's method
-STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # shapes side by side, and starts
+STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # neighbouring shapes, with starts
 
 
-def answer(holds: bool | None, reason: str) -> Finding:
-    """A three-valued proof as a finding; a proof that fails refutes nothing."""
-    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+def answer(holds: bool | None, reason: str) -> SignFinding:
+    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @cache
 def chaotic_lams() -> dict[str, list[float]]:
-    """The contractions of a coarse grid at which a quarter of 20 particles or more are chaotic, for each shape."""
+    """For each shape the contractions of a grid at which at least a quarter of 20 particles are chaotic."""
     shapes = np.array([float(shape) for shape in TONGUE])
     found = in_memory(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), 1)
     rows = zip(TONGUE, found["chaotic"], strict=True)
@@ -53,14 +55,14 @@ def chaotic_lams() -> dict[str, list[float]]:
 
 
 def listed() -> str:
-    """The rows of that grid in words."""
+    """The contractions with chaos for each shape, as text."""
     rows = [(shape, lams) for shape, lams in chaotic_lams().items()]
     return "; ".join(f"{shape}: {f'{min(r):g} to {max(r):g} ({len(r)})' if r else 'none'}" for shape, r in rows)
 
 
 @judges("egg.alpha_destabilises")
 def destabilises(claim: Claim) -> Judgement:
-    """The diameters' stability number falls with alpha; that chaos spreads is sampled."""
+    """The stability number of the diameters falls with alpha; that chaos spreads is sampled."""
     falls = positive(tilt().diff(alpha), {alpha: SHAPES})
     counts = [len(row) for row in chaotic_lams().values()]
     said = (
@@ -78,7 +80,7 @@ def destabilises(claim: Claim) -> Judgement:
 
 @judges("egg.tongue")
 def tongue(claim: Claim) -> Judgement:
-    """The range of contractions with chaos, shape by shape."""
+    """The range of contractions with chaos, for each shape, from a sample."""
     rows = chaotic_lams()
     ends = [(min(rows[x]), max(rows[x])) for x in ("0.08", "0.09", "0.1") if rows[x]]
     starts_lower = [low for low, _ in ends]
@@ -89,7 +91,7 @@ def tongue(claim: Claim) -> Judgement:
 
 @judges("egg.small_basins")
 def small_basins(claim: Claim) -> Judgement:
-    """The chance that 100 independent starts all miss a basin."""
+    """The probability that 100 independent starts all miss a basin is computed exactly."""
     missed = Rational(999, 1000) ** 100
     return Judgement(
         by(
@@ -102,7 +104,7 @@ def small_basins(claim: Claim) -> Judgement:
 
 @judges("egg.representative")
 def representative(claim: Claim) -> Judgement:
-    """The same events in the same order at two other shapes; the fold of the triangles comes at another place."""
+    """The same bifurcations occur in the same order at two other shapes, except for the fold of the triangles."""
     said, good = [], True
     for shape in (OTHERS[0], SHAPE, OTHERS[1]):
         events = [located("symmetry-breaking", alpha=shape)]
@@ -121,21 +123,19 @@ def representative(claim: Claim) -> Judgement:
 
 
 @cache
-def cycles_for_small_lam() -> Finding:
-    """For every contraction up to `PROVED`: each cycle repels, or is the one, up to symmetry, that may attract."""
-    bands = [(k * PROVED / 3, (k + 1) * PROVED / 3) for k in range(3)]
-    found = [returning(SHAPE, band, tick=telling(f"cycles for lam up to {band[1]:.4f}")) for band in bands]
-    parts = " and ".join(str(len(each.repelling)) for each in found)
+def cycles_for_small_lam() -> SignFinding:
+    """The finding that for every contraction up to `PROVED` all cycles but at most three are unstable."""
+    ends, scene = [PROVED * k / 3 for k in range(4)], Scene("egg", alpha=SHAPE)
     return answer(
-        all(each.proved for each in found),
-        f"for every lam in [0, 3/128] a cover of phase space leaves {parts} parts where every cycle is unstable, and "
-        "one where there is at most one cycle, up to symmetry",
+        all(FewAttractingCycles(scene, band, (12288, 256), 32, 3).proved for band in pairwise(ends)),
+        "for every lam in [0, 3/128] all cycles are unstable, but for at most one in each of three sinks; a cycle of "
+        "period 4 is none of its turned copies, so that where one attracts it is the only one, up to symmetry",
     )
 
 
 @judges("egg.only_period4")
 def only_period4(claim: Claim) -> Judgement:
-    """Proved for small contractions by a cover of phase space; beyond it random starts reach certified cycles alone."""
+    """Proved for small contractions by a cover of phase space; beyond, random starts reach certified cycles only."""
     alone = all([a.period for a in egg(x)] == [4, 4, 4] and unsettled(egg(x)) == 0 for x in SMALL)
     proofs = [proved_at(x, 4) for x in SMALL]
     said = (
@@ -153,8 +153,8 @@ def only_period4(claim: Claim) -> Judgement:
 
 
 @cache
-def attracting_without_mirror() -> Finding:
-    """The attracting cycles of period 4 between the loss of symmetry and the doubling."""
+def attracting_without_mirror() -> SignFinding:
+    """The finding of attracting asymmetric cycles of period 4 from the loss of symmetry to the doubling."""
     table, (lam, ends) = table_of(3).at(alpha=SHAPE), BETWEEN
     start = attractor(table, lam, (0.05, 3.1))
     away = abs(np.remainder(start[0] + start[2] + np.pi, 2 * np.pi) - np.pi) > 0.01
@@ -165,7 +165,7 @@ def attracting_without_mirror() -> Finding:
 
 @judges("egg.period4_doubles")
 def period4_doubles(claim: Claim) -> Judgement:
-    """Two events, not one: a loss of symmetry, by a pitchfork, and a doubling of what it bears."""
+    """There are two bifurcations: a pitchfork that breaks the symmetry, and a doubling of the asymmetric orbits."""
     breaks, doubles = located("symmetry-breaking", alpha=SHAPE), located("doubling", alpha=SHAPE, n=Integer(3))
     stable = breaks.proof.supercritical if breaks.proof else None  # type: ignore[union-attr]  # a cycle's proof
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]
@@ -196,7 +196,7 @@ def period4_doubles(claim: Claim) -> Judgement:
 
 @judges("egg.negative_exponents")
 def negative_exponents(claim: Claim) -> Judgement:
-    """An attracting cycle at a bifurcation has a multiplier of modulus 1, and the exponent 0."""
+    """A counterexample: an attracting cycle at a bifurcation has a multiplier of modulus 1 and the exponent 0."""
     doubles = located("doubling", alpha=SHAPE, n=Integer(3))
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]  # a cycle's proof
     return Judgement(
@@ -212,13 +212,13 @@ def negative_exponents(claim: Claim) -> Judgement:
             "the exponent is log|mu|/n with the largest multiplier, negative when both lie inside the circle",
             attracting_without_mirror(),
         ),
-        "For stable periodic orbits; unstable ones have a positive exponent, and at the bifurcation values it is 0.",
+        "Of attracting orbits it is negative, but at bifurcation values it is 0: at lambda_3 the orbit still attracts.",
     )
 
 
 @judges("egg.tolerance_sensitive")
 def tolerance_sensitive(claim: Claim) -> Judgement:
-    """Where period 4 is seen to end, when the flights are solved more and less exactly."""
+    """The apparent end of period 4, for flights solved with larger and smaller tolerances."""
     ends = seen_ends()
     true = float(located("doubling", alpha=SHAPE, n=Integer(3)).ball.mid())
     said = ", ".join(f"{f'{end:.5f}' if end else 'above 0.3725'} with {stop:g}" for stop, end in ends.items())
@@ -234,7 +234,7 @@ def tolerance_sensitive(claim: Claim) -> Judgement:
 
 @cache
 def seen_ends() -> dict[float, float | None]:
-    """For each tolerance the first contraction of a grid at which an orbit is not back after four bounces, or None."""
+    """For each tolerance the first contraction of a grid whose orbit misses its start after four bounces, or None."""
     settled = PinballMap("egg", lam="0.36", alpha=str(SHAPE)).orbit(0.05, 0.0, 1000)
     start, lams = (float(settled.theta[-1]), float(settled.phi[-1])), np.arange(0.3705, 0.3725, 1e-4)
     found = ends_of_period(4, lams, 0.08, STOPS, start, 2000, 1e-4)
@@ -243,7 +243,7 @@ def seen_ends() -> dict[float, float | None]:
 
 @judges("egg.isolated_resolution")
 def isolated_resolution(claim: Claim) -> Judgement:
-    """A strip that one shape of a grid meets goes on at the shapes beside it."""
+    """A strip of chaos that a grid meets at one shape continues at neighbouring shapes."""
     said, good = [], True
     for shape, lam, period, step in STRIPS:
         found = cascade(Rational(shape), Rational(lam), period, step)

@@ -1,6 +1,6 @@
-"""Claims of the paper's last section, in which it sums up. Paper: section 7.
+"""Judges of the claims in the paper's conclusions. Paper: section 7.
 
-What is proved elsewhere is used here; a summary that rests on one sampled part is supported and no more.
+They use results proved elsewhere; a summary with one sampled part is supported, not confirmed.
 """
 
 from functools import cache
@@ -15,12 +15,12 @@ from symbolic.cycles.almost_every import two_rates
 from symbolic.cycles.defocusing import expands, least_exponent
 from symbolic.cycles.splitting import least_rate
 from symbolic.cycles.thresholds import even_stability_numbers
-from symbolic.expressions.signs import Finding, Outcome
+from symbolic.expressions.signs import Outcome, SignFinding
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.geometry import curvature
 from symbolic.tables.table import K1, alpha, lam, theta
 from verification.named.attractors import certificate
-from verification.named.branches import Cascade, cascade
+from verification.named.cascades import Cascade, cascade
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import (
@@ -41,20 +41,20 @@ from verification.proofs.manifolds.known import CONTACTS
 from verification.proofs.periodic.bifurcation import doubling_curve
 
 MIXED = ("0.1", "0.43", "0.5", "0.6", "0.7", "0.83")  # contractions of the egg at alpha = 0.08
-DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # where orbits of these periods attract
+DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # contraction, period, step of a cascade
 WEAK = "0.99"
 NEAR_ELASTIC = ("0.97", "0.99")
 EVEN, ODD = (4, 6), (5, 7)
 
 
-def answer(holds: bool | None, reason: str) -> Finding:
-    """A three-valued proof as a finding; a proof that fails refutes nothing."""
-    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+def answer(holds: bool | None, reason: str) -> SignFinding:
+    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @judges("map.mixture")
 def mixture(claim: Claim) -> Judgement:
-    """The two "only" are proved; what is generic is sampled on the egg and the cuspless cardioid."""
+    """Both statements with "only" are proved; the generic mixture is sampled on the egg and the cuspless cardioid."""
     periodic = by(LIMIT, *lyapunov())
     kinds = {x: (bool(chaotic(egg(x))), bool(cycles(egg(x)))) for x in MIXED}
     cuspless = found("cuspless", "0.09")
@@ -75,7 +75,7 @@ def mixture(claim: Claim) -> Judgement:
 
 @judges("map.sudden_creation")
 def sudden_creation(claim: Claim) -> Judgement:
-    """The chaotic attractor that is born with the orbit through both joins."""
+    """The chaotic attractor born at the orbit through both joins."""
     return Judgement(
         by(
             "an orbit joins the two jumps of the curvature at lam = lambda*, and a chaotic attractor is next to it "
@@ -87,8 +87,8 @@ def sudden_creation(claim: Claim) -> Judgement:
     )
 
 
-def corners() -> Finding:
-    """The attractor born at `lambda-star` holds curves with a corner at each join."""
+def corners() -> SignFinding:
+    """The finding that the attractor born at `lambda-star` contains curves with a corner at each join."""
     saddle, slope = all(step.saddle for step in born().steps), Symbol("slope")
     along, across = derivative_matrix() * Matrix([1, slope])
     arc, wall = (curvature(component) for component in tables.cuspless.components)
@@ -108,7 +108,7 @@ def corners() -> Finding:
 
 @judges("map.kink_structure")
 def kink_structure(claim: Claim) -> Judgement:
-    """Curves of the attractor cross the joins, where the slope jumps by `lam` times the jump of the curvature."""
+    """Curves of the attractor cross the joins, where their slope jumps by `lam` times the jump of curvature."""
     return Judgement(
         corners(),
         "curves with corners at s = +-sqrt(3)/4, where dphi/ds jumps by 3*lam/2: proved of the attractor "
@@ -118,7 +118,7 @@ def kink_structure(claim: Claim) -> Judgement:
 
 @judges("map.cascades_of_different_periods")
 def different_periods(claim: Claim) -> Judgement:
-    """The first doublings of orbits of three periods."""
+    """The first doublings of cycles of three periods are certified."""
     cascades = doublings()
     told = "; ".join(f"{', '.join(map(str, c.periods))} at {', '.join(f'{x:.6f}' for x in c.lams)}" for c in cascades)
     return sampled(
@@ -130,13 +130,13 @@ def different_periods(claim: Claim) -> Judgement:
 
 @cache
 def doublings() -> list[Cascade]:
-    """The first doublings from each of the starts."""
+    """For each cycle of `DIFFERENT` the first two doublings of the period-doubling cascade that starts there."""
     return [cascade(Rational(SHAPE), Rational(at), period, step, 2) for at, period, step in DIFFERENT]
 
 
 @judges("map.collapse_in_crises")
 def collapse(claim: Claim) -> Judgement:
-    """Two ways to end: in the basin of another attractor, or by growing together with others."""
+    """Attractors end at the boundary of another basin, or by merging with others."""
     ends = [name for name in CONTACTS if any(kind in name for kind in ("family-end", "window-end", "boundary"))]
     before, after = egg("0.65"), egg("0.67")
     gone = bool(chaotic(before)) and not chaotic(after) and unsettled(after) < 0.1 * STARTS
@@ -151,19 +151,21 @@ def collapse(claim: Claim) -> Judgement:
 
 @judges("map.uniform_contraction")
 def uniform_contraction(claim: Claim) -> Judgement:
-    """Such circles exist under the paper's own law."""
+    """A counterexample: attracting invariant circles exist under the paper's own law."""
+    circles, at = rotating()
     return Judgement(
-        rotating(),
+        counterexample("with the paper's own law there are some", circles, at=at),
         "uniform contraction of the angle does not exclude them: it is no contraction of areas at each point, so "
         "multipliers can be complex of modulus 1 at lam < 1, and an attracting circle is born there",
-        erratum="A uniform contraction of the angle is no reason: with it the egg has attracting invariant circles "
-        "with an irrational rotation, next to alpha = 0.06873034, lambda = 0.96378998.",
+        circles,
+        "A uniform contraction of the angle does not exclude such behaviour: with it the egg has attracting invariant "
+        "circles with an irrational rotation, next to alpha = 0.06873034, lambda = 0.96378998.",
     )
 
 
 @judges("map.weak_shows_elliptic")
 def weak_shows_elliptic(claim: Claim) -> Judgement:
-    """Each cycle that attracts at weak dissipation lies next to an elastic one that is elliptic."""
+    """Each cycle that attracts at weak dissipation is close to an elliptic cycle of the elastic map."""
     near = [cycle for cycle in cycles(egg(WEAK)) if cycle.share and cycle.share.count]
     families = {cycle.family: cycle for cycle in near}.values()
     turned = [elastic(cycle) for cycle in families]
@@ -175,12 +177,14 @@ def weak_shows_elliptic(claim: Claim) -> Judgement:
             answer(bool(turned) and all(turned), f"{len(turned)} elliptic cycles"),
             proved_at(WEAK, 3),
         ),
-        "weak dissipation shows those elliptic orbits whose islands are wide enough for a random start",
+        f"at alpha = {SHAPE}, lam = {WEAK} the cycles that random starts reach lie next to elliptic ones of the "
+        "elastic map; not every island is shown so, since elliptic orbits may become repelling "
+        "(egg.weak_dissipation_attracts)",
     )
 
 
 def elastic(cycle: Attractor) -> bool:
-    """Is there an elliptic cycle of the elastic map near an attracting one?"""
+    """True if an elliptic cycle of the elastic map is proved near an attracting one."""
     proof = certificate(tables.egg(3).at(alpha=SHAPE), S.One, cycle.points, 20)
     discrete = all(proof.checks[item] is True for item in ("exists", "unique", "admissible", "minimal_period"))
     apart = max(abs(near(theta, x)) for theta, x in zip(proof.theta, cycle.points.theta, strict=True))
@@ -188,13 +192,13 @@ def elastic(cycle: Attractor) -> bool:
 
 
 def near(theta: arb, x: float) -> float:
-    """The difference of two angles, modulo a turn."""
+    """The difference of two angles, modulo full turns."""
     return float(np.remainder(float(theta.mid()) - x + np.pi, 2 * np.pi) - np.pi)
 
 
 @judges("map.weak_chaos")
 def weak_chaos(claim: Claim) -> Judgement:
-    """What attracts every orbit is no cycle, and of its orbits that miss cusp and joins each is unstable."""
+    """No attracting set is a cycle, and every orbit of it off cusp and joins is unstable."""
     return Judgement(
         by(
             "in the cardioid, for every lam < 1, every orbit that misses the cusp stretches in one direction and "
@@ -212,7 +216,7 @@ def weak_chaos(claim: Claim) -> Judgement:
 
 @judges("map.other_K")
 def other_K(claim: Claim) -> Judgement:
-    """Even K cannot double; odd K doubles all along its own curve, supercritically."""
+    """The diameters never double for even K; for odd K they double supercritically, along one curve."""
     even = [even_stability_numbers(K) for K in EVEN]
     squares = [
         zero("", P - root**2)
@@ -223,18 +227,19 @@ def other_K(claim: Claim) -> Judgement:
         )
     ]
     odd = [doubling_curve(K) for K in ODD]
+    never = by(
+        "K = 4 and 6: a vertex faces a vertex and a flat point a flat point, the stability number is a square, so "
+        "1 + trace + det = (1 + lam)^2*P + (1 - lam)^2 > 0 for lam < 1 and no diameter ever doubles its period: the "
+        "first event of the portrait for K = 3 is missing",
+        *squares,
+    )
+    doubles = answer(
+        all(sign.supercritical for sign in odd) or None, "K = 5 and 7: a supercritical doubling for every 0 <= lam < 1"
+    )
     return Judgement(
-        counterexample(
-            "K = 4 and 6: a vertex faces a vertex and a flat point a flat point, the stability number is a square, so "
-            "1 + trace + det = (1 + lam)^2*P + (1 - lam)^2 > 0 for lam < 1 and no diameter ever doubles its period: "
-            "the first event of the portrait for K = 3 is missing",
-            *squares,
-            at={lam: S.Half},
-        ),
-        "odd K: the diameters double on a curve alpha-tilde(K) of their own, supercritically for every lam < 1 "
-        "(proved "
-        "for K = 5 and 7), and a tongue follows; even K: they never do, and no tongue was found",
-        answer(all(sign.supercritical for sign in odd), "K = 5 and 7: a supercritical doubling for every 0 <= lam < 1"),
-        "The answer: for odd K the portrait begins as for K = 3, for even K it does not. Section 'Other numbers of "
-        "points' of the page on bifurcations follows it further.",
+        SignFinding(Outcome.UNKNOWN, f"a question, answered in part: {by('proved', never, doubles).reason}"),
+        "for odd K the portrait begins as for K = 3: the diameters double, supercritically for every lam < 1 (proved "
+        "for K = 5 and 7), and a tongue follows, sampled; for even K it does not: they never double (proved for K = 4 "
+        "and 6), and no tongue was found. Section 'Other numbers of points' of the page on bifurcations follows it "
+        "further",
     )

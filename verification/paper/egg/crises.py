@@ -1,7 +1,7 @@
-"""Claims on the egg's crises, and on how its attractor and the basins of period 3 grow. Paper: section 6.7.
+"""Judges of claims on the egg's crises, and on its growing attractor and basins of period 3. Paper: section 6.7.
 
-A crisis is a tangency of manifolds, with particles that leave beside it. That the period-3 orbits attract is proved;
-all else is sampled. The merging crisis has a module of its own.
+A crisis is found as a tangency of manifolds and by particles that escape. That the period-3 orbits attract is proved;
+all else is sampled. The merging crisis is in `merging`.
 """
 
 from dataclasses import dataclass
@@ -28,29 +28,29 @@ from verification.paper.judges.attractors import (
     unsettled,
 )
 from verification.proofs.manifolds.grow import branch
-from verification.proofs.manifolds.known import CONTACTS, Crisis, crisis, table
+from verification.proofs.manifolds.known import CONTACTS, KnownCrisis, crisis, table
 from verification.proofs.manifolds.saddle import local, saddle
 
 EXACT_SHAPE = Rational(2, 25)
 SEED, BITS = 1, 160
-BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions at which the attractor's distance to the boundary is taken
+BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions where the attractor's distance to the basin boundary is measured
 
 
 @cache
-def located(kind: str) -> Crisis:
-    """A crisis to ten digits, by both methods."""
+def located(kind: str) -> KnownCrisis:
+    """A crisis to ten digits, by both methods of `manifolds.known`."""
     return crisis(kind, EXACT_SHAPE, 10)
 
 
 @cache
 def seen(kind: str) -> crises.Crisis:
-    """The same by particles that leave: few do at first, and where is known to 3e-4 only, whatever the bracket."""
+    """A crisis, by the escape of particles, to about 3e-4, since few particles escape close to it."""
     return crises.crisis(kind, str(EXACT_SHAPE), tolerance=1e-4, budget=10**7)
 
 
 @judges("egg.boundary_crisis")
 def values(claim: Claim) -> Judgement:
-    """Where the manifolds touch, by two methods, and where particles begin to leave."""
+    """The tangency of the manifolds by two methods, and the contraction where particles begin to escape."""
     printed, found, particles = "0.66", located("boundary"), seen("boundary")
     gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
     value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
@@ -60,12 +60,17 @@ def values(claim: Claim) -> Judgement:
         f"cycle of {found.period} bounces agree to {found.apart:.0e}; particles first leave at {particles.lam:.5f} +- "
         f"{particles.error:.0e}; {printed} differs by {gap:+.1e}"
     )
-    return sampled(f"{value}, estimated", said, together and abs(gap) < unit)
+    return sampled(
+        f"{value}: manifolds of the unstable triangle touch there, proved; that the chaotic attractor ends there is "
+        "sampled",
+        said,
+        together and abs(gap) < unit,
+    )
 
 
 @judges("egg.crisis_touch")
 def touch(claim: Claim) -> Judgement:
-    """The attractor nears the stable manifold of the unstable triangle, which bounds the basins of period 3."""
+    """The attractor approaches the stable manifold of the unstable triangle, which bounds the basins of period 3."""
     outside, inside = sides(0.66)
     gaps = [distance(lam) for lam in BELOW]
     nears = all(a > b for a, b in pairwise(gaps))
@@ -80,14 +85,14 @@ def touch(claim: Claim) -> Judgement:
 
 
 def boundary(lam: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The part of the triangle's stable manifold along which the attractor lies."""
+    """The part of the triangle's stable manifold near the attractor, as arrays of `theta` and `phi`."""
     found = saddle(CONTACTS["boundary"].unstable, table(EXACT_SHAPE).over(FLOAT64), lam)
     curve = branch(local(found, unstable=False), -1, 1.2, spacing=0.002)
     return curve.x, curve.y
 
 
 def distance(lam: float) -> float:
-    """The least distance in `(theta, phi)`, modulo symmetry, between the attractor and that curve."""
+    """The least distance in `(theta, phi)`, modulo symmetry, between the attractor and `boundary(lam)`."""
     x, y = boundary(lam)
     rng = np.random.default_rng(SEED)
     map = PinballMap("egg", lam=lam, alpha=str(EXACT_SHAPE))
@@ -104,7 +109,7 @@ def distance(lam: float) -> float:
 
 
 def sides(lam: float, offset: float = 1e-5) -> tuple[float, float]:
-    """Shares of points just outside and just inside the curve that end on period 3."""
+    """The shares of points just outside and just inside `boundary(lam)` that end on period 3."""
     x, y = boundary(lam)
     map = PinballMap("egg", lam=lam, alpha=str(EXACT_SHAPE))
     shares = []
@@ -115,23 +120,23 @@ def sides(lam: float, offset: float = 1e-5) -> tuple[float, float]:
     return shares[0], shares[1]
 
 
-ONE = ("0.445", "0.48", "0.52", "0.56", "0.6", "0.63", "0.655")  # one attractor, no windows
+ONE = ("0.445", "0.48", "0.52", "0.56", "0.6", "0.63", "0.655")  # contractions with one attractor, outside of windows
 CELLS = 300  # along each side of phase space, in (theta, sin(phi))
 STARTS, MANY = 200, 4000
 LEFT = "0.7"
 
 
 @dataclass(frozen=True)
-class Extent:
-    """The largest `|sin(phi)|` on the chaotic attractors, and the share of cells of phase space that they meet."""
+class AttractorExtent:
+    """The largest `|sin(phi)|` on the chaotic attractors, and the share of the cells of phase space that they meet."""
 
     height: float
     share: float
 
 
 @cache
-def extent(lam: str) -> Extent:
-    """The extent of all chaotic attractors together, by 200 orbits of 2000 bounces and their images."""
+def extent(lam: str) -> AttractorExtent:
+    """The extent of all chaotic attractors together, from 200 orbits of 2000 bounces and their symmetric images."""
     map = PinballMap("egg", lam=lam, alpha=SHAPE)
     start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, STARTS))
     settled = map.exponents(start[0], start[1], 500, 2000)
@@ -142,9 +147,9 @@ def extent(lam: str) -> Extent:
     row = np.minimum(((height + 1) / 2 * CELLS).astype(int), CELLS - 1)
     met = np.zeros((CELLS, CELLS), dtype=bool)
     met[row, column] = True
-    met |= met[::-1, ::-1]  # the mirror image: cell by cell, as those of a third of a turn
+    met |= met[::-1, ::-1]  # the mirror image, cell by cell; rotations are treated likewise
     met |= np.roll(met, CELLS // 3, axis=1) | np.roll(met, -CELLS // 3, axis=1)
-    return Extent(float(np.max(np.abs(height))), float(np.mean(met)))
+    return AttractorExtent(float(np.max(np.abs(height))), float(np.mean(met)))
 
 
 @cache
@@ -161,19 +166,19 @@ def period_3(lam: str) -> float:
 
 
 def grows(lams: tuple[str, ...]) -> bool:
-    """Do height and share of the attractor both grow from each contraction to the next?"""
+    """True if height and share of the attractor both grow from each contraction to the next."""
     found = [extent(lam) for lam in lams]
     return all(a.height < b.height and a.share < b.share for a, b in pairwise(found))
 
 
 def listed(lams: tuple[str, ...]) -> str:
-    """The extents in words."""
+    """The extents at contractions, as text."""
     return "; ".join(f"{extent(x).height:.3f}, {extent(x).share:.2%} at {x}" for x in lams)
 
 
 @judges("egg.both_grow")
 def both_grow(claim: Claim) -> Judgement:
-    """The attractor's extent beside the share of starts that period 3 attracts."""
+    """The attractor's extent and the share of starts that period 3 attracts both grow, by samples."""
     shares = [period_3(lam) for lam in ONE]
     error = 3 * np.sqrt(0.25 / MANY)
     rises = shares[-1] - shares[0] > error and all(b > a - error for a, b in pairwise(shares))
@@ -187,14 +192,14 @@ def both_grow(claim: Claim) -> Judgement:
 
 @judges("egg.transient")
 def transient(claim: Claim) -> Judgement:
-    """Just beyond the crisis orbits stay for long where the attractor was, and leave at a constant rate."""
+    """Just beyond the crisis orbits stay for long where the attractor was, and escape at a constant rate."""
     beyond, before = "0.67", "0.66"
     map = PinballMap("egg", lam=beyond, alpha=SHAPE)
     start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, STARTS))
     early, later, last = (map.exponents(start[0], start[1], 300, after) for after in (200, 1000, 3000))
     counts = [int(np.sum(end.nu_plus > 0)) for end in (early, later, last)]
     orbit = map.orbit(early.theta, early.phi, 200)
-    still = map.exponents(orbit.theta[-1], orbit.phi[-1], 300, 0).nu_plus > 0  # after the bounces that are looked at
+    still = map.exponents(orbit.theta[-1], orbit.phi[-1], 300, 0).nu_plus > 0  # still chaotic after the bounces counted
     heights = float(np.quantile(np.abs(np.sin(orbit.phi[:, still])), 0.95))
     known = PinballMap("egg", lam=before, alpha=SHAPE)
     settled = known.exponents(start[0], start[1], 500, 500)
@@ -210,7 +215,7 @@ def transient(claim: Claim) -> Judgement:
 
 @judges("egg.just_two", "egg.region_taken_over")
 def just_two(claim: Claim) -> Judgement:
-    """Both orbits are proved to attract; every random start reaches one of them."""
+    """Both orbits of period 3 are proved to attract; every random start reaches one of them."""
     found = egg(LEFT)
     threes = cycles(found, 3)
     alone = len(found) == len(threes) == 2 and unsettled(found) == 0

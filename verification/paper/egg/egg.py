@@ -1,7 +1,4 @@
-"""Claims on the egg's shape and its map, and on its figures. Paper: sections 6, 6.1 and 6.4 to 6.7.
-
-A caption is judged from the data behind its figure.
-"""
+"""Judges of claims on the egg's shape, map and figures with captions. Paper: sections 6, 6.1 and 6.4 to 6.7."""
 
 from functools import cache
 from itertools import islice
@@ -33,7 +30,7 @@ from symbolic.cycles.polygons import (
     squared_speed_polynomial,
     turning_polynomial,
 )
-from symbolic.expressions.signs import Finding, positive
+from symbolic.expressions.signs import SignFinding, positive
 from symbolic.motion.chords import convexity
 from symbolic.motion.flight import flight
 from symbolic.tables import egg
@@ -41,32 +38,32 @@ from symbolic.tables.curves import trigonometric
 from symbolic.tables.table import alpha, lam, phi, theta
 from verification.cycles.cascade import doublings
 from verification.named.crises import changed_axis, stay
-from verification.named.locate import certify
+from verification.named.locate import proof_near
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, equal, identity, judges, sampled, zero
 from verification.paper.egg.period2 import FULL, ROUND, SHAPES
-from verification.proofs.periodic.bifurcation import Proof
+from verification.proofs.periodic.cycle_in_box import UniqueCycle
 
 BOUNDARY = egg(3).components[0]
 
 
 @judges("egg.polar")
 def radius(claim: Claim) -> Judgement:
-    """The distance from the centre along the direction `theta`."""
+    """The printed polar equation, from the distance to the centre in the direction `theta`."""
     x, y = BOUNDARY.point
     return identity(claim, trigonometric(x * cos(theta) + y * sin(theta)))
 
 
 @judges("egg.circle")
 def circle(claim: Claim) -> Judgement:
-    """`rho = 1` at `alpha = 0`."""
+    """The table is a circle at `alpha = 0`."""
     x, y = (coordinate.subs(alpha, 0) for coordinate in BOUNDARY.point)
     return Judgement(by("rho = 1", zero("", x**2 + y**2 - 1)), "x^2 + y^2 = 1")
 
 
 @judges("egg.symmetry")
 def symmetry(claim: Claim) -> Judgement:
-    """A third of a turn maps the boundary to itself."""
+    """The rotation by a third of a turn maps the boundary to itself."""
     third = 2 * pi / 3
     turn = Matrix([[cos(third), -sin(third)], [sin(third), cos(third)]])
     moved = Matrix(BOUNDARY.point).subs(theta, theta + third)
@@ -76,7 +73,7 @@ def symmetry(claim: Claim) -> Judgement:
 
 @judges("egg.nonconvex")
 def nonconvex(claim: Claim) -> Judgement:
-    """The turning at the flat points is `(1 - alpha)*(1 - 10*alpha)`."""
+    """The sign of the turning at the flat points is that of `(1 - alpha)*(1 - 10*alpha)`."""
     flat = turning_polynomial().subs(COSINE, -1)
     return Judgement(
         by(
@@ -90,7 +87,7 @@ def nonconvex(claim: Claim) -> Judgement:
 
 @judges("egg.convex")
 def convex(claim: Claim) -> Judgement:
-    """Convex on the closed range, focusing without its end."""
+    """The egg is convex on the closed range of `alpha`, but focusing only without the end 1/10."""
     flat_end = turning_polynomial().subs({COSINE: -1, alpha: Rational(1, 10)})
     focusing = convexity(egg(3), {alpha: Interval.Ropen(0, Rational(1, 10))}, strictly=True)
     return Judgement(
@@ -105,20 +102,20 @@ def convex(claim: Claim) -> Judgement:
     )
 
 
-def regular() -> Finding:
-    """The speed vanishes nowhere."""
+def regular() -> SignFinding:
+    """The finding that the speed of the parametrisation vanishes nowhere."""
     return by("rho^2 + rho'^2 > 0", positive(squared_speed_polynomial(), {COSINE: FULL, alpha: SHAPES}))
 
 
 @judges("egg.analytic")
 def analytic(claim: Claim) -> Judgement:
-    """A trigonometric polynomial with non-vanishing velocity."""
+    """The boundary is a trigonometric polynomial with non-vanishing velocity."""
     return Judgement(regular(), "a regular analytic closed curve")
 
 
 @judges("egg.compact_domain")
 def compact_domain(claim: Claim) -> Judgement:
-    """A circle times a closed interval of angles."""
+    """The domain of the map is a circle times a closed interval of angles."""
     N = convexity(egg(3))
     return Judgement(
         by(
@@ -132,7 +129,7 @@ def compact_domain(claim: Claim) -> Judgement:
 
 @judges("egg.curvature_min_location", "egg.curvature_max_location")
 def extrema(claim: Claim) -> Judgement:
-    """`|kappa|` grows strictly with `cos(3*theta)`."""
+    """The curvature is extremal at the vertices and flat points: `|kappa|` grows strictly with `cos(3*theta)`."""
     slope = curvature_slope_polynomial()
     return Judgement(
         counterexample(
@@ -149,19 +146,19 @@ def extrema(claim: Claim) -> Judgement:
 
 @judges("egg.curvature_min")
 def flat_curvature(claim: Claim) -> Judgement:
-    """The curvature where the diameter arrives."""
+    """The printed curvature at a flat point, one end of a diameter."""
     return identity(claim, egg_diameter().frames[1].curvature)
 
 
 @judges("egg.curvature_max")
 def vertex_curvature(claim: Claim) -> Judgement:
-    """The curvature where the diameter starts."""
+    """The printed curvature at a vertex, the other end of a diameter."""
     return identity(claim, egg_diameter().frames[0].curvature)
 
 
 @judges("egg.integrable_at_zero")
 def integrable(claim: Claim) -> Judgement:
-    """The elastic circle keeps `phi`."""
+    """The elastic circle preserves `phi`."""
     return Judgement(
         by("at alpha = 0, lam = 1 the map keeps phi", zero("", flight()[1].subs(lam, 1) - phi)), "phi1 = phi"
     )
@@ -169,13 +166,13 @@ def integrable(claim: Claim) -> Judgement:
 
 @judges("egg.slap_limit")
 def slap_limit(claim: Claim) -> Judgement:
-    """The circle's slap map, reached continuously because landings are transversal."""
+    """The limit `alpha -> 0` is the circle's slap map, continuous because landings are transversal."""
     return identity(claim, flight(theta, S.Zero)[0])
 
 
 @judges("egg.map_smooth")
 def map_smooth(claim: Claim) -> Judgement:
-    """The flight equation has slope `cos(eta1) > 0` in the landing point."""
+    """The map is analytic: the flight equation has slope `cos(eta1) > 0` at the landing point."""
     return Judgement(
         by(
             "the flight equation is analytic with slope cos(eta1) != 0 for |phi0| < pi/2 in a convex "
@@ -189,7 +186,7 @@ def map_smooth(claim: Claim) -> Judgement:
 
 @judges("egg.persistence")
 def persistence(claim: Claim) -> Judgement:
-    """No multiplier is 1."""
+    """Attracting and hyperbolic cycles persist, since no multiplier is 1."""
     trace, det, mu = Symbol("trace"), Symbol("det"), Symbol("mu")
     gap = (mu**2 - trace * mu + det).subs(mu, 1) - (1 - trace + det)
     return Judgement(
@@ -203,14 +200,14 @@ def persistence(claim: Claim) -> Judgement:
 
 SHAPE = Rational(2, 25)
 SEED = 1
-SIDE = {12: (0.3725, (-1.544175, -0.015589)), 8: (0.379, (-2.258379, -0.040530))}  # lam, and theta, phi on a cycle
+SIDE = {12: (0.3725, (-1.544175, -0.015589)), 8: (0.379, (-2.258379, -0.040530))}  # lam, and (theta, phi)
 MEMBERS, STARTS = 2, 8000
-SOON, EARLY = 250, 1000  # bounces after which many, and most, orbits are on their cycle: they are not followed on
+SOON, EARLY = 250, 1000  # bounces after which many, and most, orbits have reached a cycle and are dropped
 
 
 @judges("egg.period3_direction")
 def period3_direction(claim: Claim) -> Judgement:
-    """A bounce where `rho'/rho = T` moves by `dT*rho**2/(-9*alpha*(c + alpha))`, `c = cos(3*theta)`."""
+    """The bounces of the two triangles move in opposite directions, by the sign of a derivative along the branch."""
     c = Symbol("c", real=True)
     rho = 1 + alpha * cos(3 * theta)
     return Judgement(
@@ -227,28 +224,28 @@ def period3_direction(claim: Claim) -> Judgement:
 
 @judges("egg.stays_long")
 def stays_long(claim: Claim) -> Judgement:
-    """The mean number of bounces before an orbit is near another diameter."""
+    """The mean number of bounces of an orbit before it changes to another diameter."""
     mean = stay(changed_axis, str(SHAPE), 0.45, 10**6)
     said = f"an orbit at lam = 0.45 makes {mean:.0f} bounces on average near one diameter, over 10^6 bounces"
     return sampled(f"{mean:.0f} bounces", said, mean > 100)
 
 
 @cache
-def side_cascade(period: int) -> tuple[Proof, ...]:
-    """The first doublings of a cascade beside the paper's, each flip certified."""
+def side_cascade(period: int) -> tuple[UniqueCycle, ...]:
+    """The first doublings of another cascade than the paper's, each flip certified."""
     table, (lam_at, (theta, phi)) = tables.egg(3).at(alpha=SHAPE), SIDE[period]
     settled = PinballMap("egg", lam=lam_at, alpha=str(SHAPE)).orbit(theta, phi, 4000)
     found = doublings(table, settled.theta[-period:].tolist(), lam_at, 2e-4)
-    return tuple(certify(each.problem, each.start, 10) for each in islice(found, MEMBERS))
+    return tuple(proof_near(each.problem, each.start, 10) for each in islice(found, MEMBERS))
 
 
 @judges("egg.noise")
 def noise(claim: Claim) -> Judgement:
-    """Two cascades of cycles beside the paper's: first doublings proved, chaos and its end sampled."""
+    """Two cascades of other cycles: their first doublings are proved, chaos and its end are sampled."""
     sentences, holds = [], True
     for period, chaotic, gone in ((12, "0.375", "0.3765"), (8, "0.382", "0.3835")):
         proofs = side_cascade(period)
-        holds = holds and all(proof.certified and proof.supercritical for proof in proofs)
+        holds = holds and all(proof.proved and proof.supercritical for proof in proofs)
         flips = " and ".join(f"{float(proof.value.mid()):.7f}" for proof in proofs)
         inside, outside = chaotic_share(chaotic), chaotic_share(gone)
         holds = holds and inside > 0 and outside == 0
@@ -260,7 +257,7 @@ def noise(claim: Claim) -> Judgement:
 
 
 def chaotic_share(lam_text: str) -> float:
-    """The share of random starts whose neighbourhood still grows after a long time."""
+    """The share of random starts with a positive exponent after a long time."""
     map = PinballMap("egg", lam=lam_text, alpha=str(SHAPE))
     starts = interior_starts(map, STARTS, SEED)
     rest = followed(map, starts, (SOON, EARLY))

@@ -1,4 +1,4 @@
-"""Claims on the egg with elastic collisions: its cycles, islands and chaos. Paper: sections 6.1 and 6.5."""
+"""Judges of claims on the egg with elastic collisions: cycles, islands and chaos. Paper: sections 6.1 and 6.5."""
 
 from functools import cache
 
@@ -15,7 +15,7 @@ from symbolic.cycles.normal_forms import egg_diameter as diameter_twist
 from symbolic.cycles.polygons import elastic_trace
 from symbolic.cycles.resonance import flat_triangle
 from symbolic.cycles.thresholds import stability_number
-from symbolic.expressions.signs import Finding, Outcome, positive
+from symbolic.expressions.signs import Outcome, SignFinding, positive
 from symbolic.motion.chords import convexity
 from symbolic.motion.flight import flight
 from symbolic.tables import egg
@@ -36,7 +36,7 @@ TRIED = ("0.005", "0.01", "0.02", "0.05", "0.08", "0.1")
 
 @judges("egg.period2_islands")
 def period2_islands(claim: Claim) -> Judgement:
-    """The twist of the diameter, exact in alpha."""
+    """Islands around the diameter, by its twist, which is exact in alpha."""
     _, trace, turn = diameter_twist()
     return Judgement(
         by(
@@ -55,7 +55,7 @@ def period2_islands(claim: Claim) -> Judgement:
 
 @cache
 def isosceles() -> tuple[bool, Twist]:
-    """The elliptic isosceles triangle of the egg with `alpha = 1/10`, enclosed, and its twist."""
+    """The enclosed elliptic isosceles triangle of the egg with `alpha = 1/10`: True if proved, and its twist."""
     table = egg(3).at(alpha=END)
     proof = certificate(table, S.One, phase_points(list(ISOSCELES), 0.0), 20)
     needed = ("exists", "unique", "admissible", "minimal_period")
@@ -64,9 +64,9 @@ def isosceles() -> tuple[bool, Twist]:
 
 @judges("egg.no_full_chaos")
 def no_full_chaos(claim: Claim) -> Judgement:
-    """Caustics near the boundary while the curvature is not 0, and an island where it is."""
+    """Caustics exist near the boundary while the curvature is not 0, and an island exists where it is 0."""
     proved, turn = isosceles()
-    island = Finding(
+    island = SignFinding(
         Outcome.PROVED if proved and turn.islands else Outcome.UNKNOWN,
         f"at alpha = 1/10 a period-3 orbit has trace {_short(turn.trace)} and twist {_short(turn.twist)}",
     )
@@ -86,7 +86,7 @@ def no_full_chaos(claim: Claim) -> Judgement:
 
 @judges("egg.elastic_mixed")
 def elastic_mixed(claim: Claim) -> Judgement:
-    """Random orbits in the measure that the map keeps. `alpha = 0` is the paper's own exception, one sentence later."""
+    """The share of chaotic orbits in the invariant measure, for `alpha > 0` (the paper itself excepts `alpha = 0`)."""
     found = chaotic_shares(("0.02", "0.05", "0.08"))
     circle = zero("", flight()[1].subs(lam, 1) - phi)
     said = f"of 300 random orbits each, {', '.join(f'{share:.0%} at alpha = {a}' for a, share in found)} are chaotic"
@@ -100,7 +100,7 @@ def elastic_mixed(claim: Claim) -> Judgement:
 
 @judges("egg.elastic_chaos")
 def elastic_chaos(claim: Claim) -> Judgement:
-    """Exponents near the saddle triangle through the vertices, where the first stochastic layer lies."""
+    """Positive exponents near the saddle triangle through the vertices, in the first stochastic layer."""
     found = [(a, *layer(a)) for a in TRIED]
     said = ", ".join(f"{nu:.4f} +- {error:.0e} at alpha = {a}" for a, nu, error, _ in found)
     return sampled(
@@ -112,7 +112,7 @@ def elastic_chaos(claim: Claim) -> Judgement:
 
 
 def layer(shape: str) -> tuple[float, float, bool]:
-    """The largest exponent of orbits that start next to the triangle through the vertices, its error, and its sign."""
+    """The largest exponent of orbits next to the triangle through the vertices, its error, and True if positive."""
     map = PinballMap("egg", lam=1, alpha=shape)
     near = phase_points(1e-4 * np.linspace(-1, 1, 16), np.pi / 6)
     x, y = map.states.point(near.component, near.theta)
@@ -123,7 +123,7 @@ def layer(shape: str) -> tuple[float, float, bool]:
 
 
 def chaotic_shares(shapes: tuple[str, ...]) -> list[tuple[str, float]]:
-    """The share of random orbits whose exponent is surely positive, in the measure that the map keeps."""
+    """For each shape the share of random orbits, in the invariant measure, with a clearly positive exponent."""
     shares = []
     for shape in shapes:
         map = PinballMap("egg", lam=1, alpha=shape)
@@ -139,15 +139,15 @@ PANELS = ("0.02", "0.05", "0.08")
 ELLIPTIC = Rational(11, 200)  # below alpha-tilde(1) = 0.05538..., where the diameters become hyperbolic
 
 
-def elliptic(shape: str) -> Finding:
-    """The triangle at the flat points: the trace over the period lies strictly between -2 and 2."""
+def elliptic(shape: str) -> SignFinding:
+    """The finding that the triangle at the flat points is elliptic: its trace lies strictly between -2 and 2."""
     single = flat_triangle()[0].subs(alpha, at(shape))
     return positive(4 - (single**3 - 3 * single) ** 2, {})
 
 
 @judges("egg.alternating_points")
 def alternating(claim: Claim) -> Judgement:
-    """Elliptic and hyperbolic points in turn, at angles read off from the cycles."""
+    """Elliptic and hyperbolic points alternate, at the angles of the cycles."""
     P, low = cancel(stability_number(egg_diameter())), {alpha: Interval.Lopen(0, ELLIPTIC)}
     between = {c: Interval.Ropen(Rational(-2, 9), 0)}
     return Judgement(
@@ -172,11 +172,11 @@ def alternating(claim: Claim) -> Judgement:
 
 @judges("egg.period3_bias")
 def bias(claim: Claim) -> Judgement:
-    """To first order in alpha the length of a polygon depends on its place for three bounces alone."""
+    """To first order in alpha the length of a polygon depends on its position only for three bounces."""
     delta, c0, c1, z, n = (Symbol(name, real=True) for name in ("delta", "c0", "c1", "z", "n"))
     square = (1 + alpha * c0) ** 2 + (1 + alpha * c1) ** 2 - 2 * (1 + alpha * c0) * (1 + alpha * c1) * cos(delta)
     slope = square.diff(alpha).subs(alpha, 0) - (c0 + c1) * square.subs(alpha, 0)
-    total = (1 - z**n) / (1 - z)  # of 1 + z + ... + z**(n - 1)
+    total = (1 - z**n) / (1 - z)  # 1 + z + ... + z**(n - 1)
     trace, _, _ = flat_triangle()
     P = stability_number(egg_diameter())
     return Judgement(
@@ -197,13 +197,13 @@ def bias(claim: Claim) -> Judgement:
 
 
 def powers(total: Expr, z: Symbol, n: Symbol) -> Expr:
-    """How far a formula for `1 + z + ... + z**(n-1)` is off gaining `z**n` from `n` to `n + 1`."""
+    """The residual of the induction step `total(n + 1) = total(n) + z**n` of a formula for `1 + z + ... + z**(n-1)`."""
     return simplify(total.subs(n, n + 1) - total - z**n)
 
 
 @judges("egg.period3_islands")
 def period3_islands(claim: Claim) -> Judgement:
-    """The twist of one flight of the triangle, exact in alpha."""
+    """Islands around the triangle, by the twist of one flight, which is exact in alpha."""
     trace, twist, drift = flat_triangle()
     told, findings = [], [zero("the map preserves area", drift)]
     for shape in PANELS:

@@ -1,14 +1,14 @@
-"""Claims on how the egg's attractor expands with the contraction, by bounds for its extent in exit angle. Section 6.7.
+"""Judges of claims that the egg's attractor expands with the contraction, by bounds of its exit angles. Section 6.7.
 
-Between a barrier and its mirror image a largest set is kept that attracts all orbits there and holds every attractor
-and every cycle. Its largest exit angle is bounded from above for all contractions of a range by one barrier. At single
-contractions it is bounded from below, by cycles between the barriers of that contraction, unstable or attracting. At
-each of these it is larger than at every contraction of a range before. That the chaotic attractor reaches as far as all
-that is kept is sampled: it may be a part.
+Between a barrier and its mirror image there is a *maximal attractor*: it attracts all orbits there and contains every
+attractor and every cycle. One barrier bounds its largest exit angle (its *extent*) from above for a range of
+contractions. Cycles between the barriers bound it from below at single contractions. At each of these the extent is
+larger than on a range of smaller contractions. That the chaotic attractor has the same extent is sampled: it may be a
+part.
 
-Nor is what attracts there single at each contraction between the crises, at 0.4434 and 0.6621: in a window several
-cycles attract, all of them between the barriers of that contraction. (In some windows the cycles lie beyond the
-barriers, those of period 9 at 0.493 for one; these are attractors beside what is kept, and say nothing of it.)
+The attractor is not unique at every contraction between the crises, at 0.4434 and 0.6621: in a window several cycles
+attract, all of them between the barriers. (In other windows, as of period 9 at 0.493, the cycles lie beyond the
+barriers.)
 """
 
 from fractions import Fraction
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import Rational
 
-from symbolic.expressions.signs import Finding
+from symbolic.expressions.signs import SignFinding
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha as shape
 from symbolic.tables.table import lam as letter
@@ -31,25 +31,25 @@ from verification.paper.egg import crises
 from verification.paper.egg.barriers import barrier, bounces
 from verification.paper.judges.attractors import SHAPE, cycles, egg
 from verification.proofs.global_dynamics.barrier import Barrier
-from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.branch import exact
-from verification.proofs.global_dynamics.crisis import boxed
+from verification.proofs.global_dynamics.crisis import bounding_boxes
 from verification.proofs.manifolds.enclosed import TooWideError, complex_balls, enclosed_cycle
 from verification.proofs.manifolds.known import CONTACTS, table
 from verification.proofs.manifolds.saddle import padded
+from verification.rigorous.boxes import Boxes
 
 FIRST = "0.43"
-STOPS = (FIRST, "0.5", "0.55")  # one barrier serves all from each to the next
-SADDLE, NAME = "0.506", "window-end-9"  # a contraction, and the contact to which its unstable cycle leads
-WINDOW, PERIOD, COUNT, STARTS = "0.641", 18, 3, 40  # a contraction, and how many cycles of which period attract
+STOPS = (FIRST, "0.5", "0.55")  # one barrier holds from each to the next
+SADDLE, NAME = "0.506", "window-end-9"  # a contraction, and the tangency of its unstable cycle
+WINDOW, PERIOD, COUNT, STARTS = "0.641", 18, 3, 40  # a contraction, and the period and number of attracting cycles
 SEEN, BITS = "0.66", 160  # where chaotic orbits are sampled
-REST = 1e-12  # more than the rounding of a turn
+REST = 1e-12  # above the rounding of a full turn
 Array = NDArray[np.float64]
 
 
 @cache
 def saddle() -> Boxes | None:
-    """The bounces of the unstable cycle, where it is proved and lies between the barriers of its contraction."""
+    """The bounces of the unstable cycle as boxes, if proved between the barriers of its contraction; else None."""
     orbit, map = CONTACTS[NAME].unstable, table(Rational(SHAPE))
     with working(BITS):
         try:
@@ -58,44 +58,44 @@ def saddle() -> Boxes | None:
             return None
         real = map.over(balls(BITS))
         ring = padded(orbit, real, [point.real for point in points])[1:]
-        boxes = boxed([(here, real.angle(here, there)[0]) for here, there in pairwise(ring)])
+        boxes = bounding_boxes([(here, real.angle(here, there)[0]) for here, there in pairwise(ring)])
     return boxes if boxes and np.all(barrier(SADDLE).between(boxes)) else None
 
 
 @cache
 def kept() -> tuple[Boxes, ...]:
-    """The bounces of the cycles that are proved to attract in the window, and to lie between its barriers."""
+    """The bounces of the cycles in the window that are proved to attract and to lie between its barriers."""
     found = [bounces(WINDOW, cycle.points) for cycle in cycles(egg(WINDOW, STARTS), PERIOD)]
     return tuple(boxes for boxes in found if boxes and np.all(barrier(WINDOW).between(boxes)))
 
 
 def reach() -> dict[str, float]:
-    """What is kept reaches as far, at contractions in order; 0 where nothing is proved."""
+    """Lower bounds of the extent by contraction, in order; 0 where none is proved."""
     found = {SADDLE: [boxes for boxes in (saddle(),) if boxes], WINDOW: kept()}
     return {lam: max(map(height, some), default=0.0) for lam, some in found.items()}
 
 
 def height(boxes: Boxes) -> float:
-    """Points of one of the boxes have exit angles at least as large."""
+    """A lower bound of the largest modulus of exit angles in the boxes."""
     return float(np.max(np.maximum(boxes.y[0], -boxes.y[1])))
 
 
 @cache
 def ceiling(low: str, high: str) -> float:
-    """A bound for the extent at every contraction of a range; infinite where none is proved."""
+    """An upper bound of the extent for every contraction of a range; infinite where none is proved."""
     found = Barrier(Scene("egg", alpha=SHAPE), (Fraction(low), Fraction(high)))
     return inf if found.heights is None or not found.mirrored else float(np.max(found.heights))
 
 
 def before(lam: str) -> tuple[str, float]:
-    """Up to which contraction of the list below this one a bound serves, from `FIRST` on, and the bound."""
+    """The last contraction of `STOPS` below this one, and an upper bound of the extent from `FIRST` to it."""
     ranges = [(low, high) for low, high in pairwise(STOPS) if Fraction(high) < Fraction(lam)]
     return ranges[-1][1], max(ceiling(low, high) for low, high in ranges)
 
 
 @cache
-def expands() -> Finding:
-    """At each contraction of the list the extent is larger than at all those from `FIRST` to one before."""
+def expands() -> SignFinding:
+    """The finding that the extent at each listed contraction exceeds that at all from `FIRST` to a smaller one."""
     steps = []
     for lam, low in reach().items():
         stop, most = before(lam)
@@ -105,8 +105,8 @@ def expands() -> Finding:
 
 
 @cache
-def several() -> Finding:
-    """In a window different cycles attract, and all of them are kept."""
+def several() -> SignFinding:
+    """The finding that several cycles attract in a window, all of them between the barriers."""
     return answer(
         len(kept()) == COUNT and not any(meet(one, other) for one, other in combinations(kept(), 2)),
         f"{COUNT} cycles of period {PERIOD} are proved to attract at lam = {WINDOW}, without a common bounce; all lie "
@@ -115,7 +115,7 @@ def several() -> Finding:
 
 
 def meet(one: Boxes, other: Boxes) -> bool:
-    """May a box of one have a point in common with a box of the other, whole turns apart?
+    """True if a box of one may have a point in common with a box of the other, modulo full turns.
 
     >>> place = Boxes(np.zeros(1, dtype=int), (np.array([3.0]), np.array([3.5])), (np.zeros(1), np.ones(1)))
     >>> turned = place._replace(x=(place.x[0] - 2 * np.pi, place.x[1] - 2 * np.pi))
@@ -132,17 +132,17 @@ def meet(one: Boxes, other: Boxes) -> bool:
 
 
 def down(x: float) -> str:
-    """Four decimals, none above the number."""
+    """The number rounded down to four decimals, as text."""
     return f"{floor(x * 10**4) / 10**4:.4f}"
 
 
 def up(x: float) -> str:
-    """Four decimals, none below the number."""
+    """The number rounded up to four decimals, as text."""
     return f"{ceil(x * 10**4) / 10**4:.4f}" if x < inf else "nothing"
 
 
 def grown() -> str:
-    """The bounds in words."""
+    """The bounds of the extent, as text."""
     steps = [
         f"{down(low)} or more at {lam}, against {up(before(lam)[1])} at most before" for lam, low in reach().items()
     ]
@@ -151,7 +151,7 @@ def grown() -> str:
 
 @judges("egg.attractor_expands")
 def attractor_expands(claim: Claim) -> Judgement:
-    """Before the three regions have merged, and after: what is kept holds all of them."""
+    """The maximal attractor expands, before the three regions have merged and after."""
     seen = asin(crises.extent(SEEN).height)
     return sampled(
         f"proved from {FIRST}, where it holds three attractors or more, to {WINDOW}: of all that is kept between a "
@@ -164,7 +164,7 @@ def attractor_expands(claim: Claim) -> Judgement:
 
 @judges("egg.single_expands")
 def single_expands(claim: Claim) -> Judgement:
-    """Not single in a window, where several cycles attract in the region kept; what is kept as a whole expands."""
+    """The attractor is not unique in a window with several attracting cycles; the maximal attractor expands."""
     return Judgement(
         counterexample(
             "in windows between the crises what attracts is not single",

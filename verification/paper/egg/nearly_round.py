@@ -1,27 +1,26 @@
-"""Claims on nearly round eggs: for `lam` below any bound under 1 every orbit converges to a diameter. Sections 6.5, 7.
+"""Judges of claims on nearly round eggs: for `lam <= most < 1` every orbit converges to a diameter. Sections 6.5, 7.
 
-How round depends on that bound, and is not computed.
+It holds for `0 < alpha <= alpha0(most)`, with a bound `alpha0` that is not computed.
 
 *An invariant curve.* The circle's map `(theta + pi - 2*phi, lam*phi)` has the derivative `[[1, -2], [0, lam]]`. Let
-`lam <= most < 1` and `K = (1 - most)/4`. The derivative takes slopes `abs(dphi/dtheta) <= K` to smaller ones, with
-`dtheta` growing by `1 - 2*K > 0` at least; so graphs of slope at most `K` over the whole circle go to such graphs. Two
-points above one another, `d` apart, are taken to points whose distances from a graph through either differ by
-`(lam + 2*K)*d` at most, which is less than `d`. These are strict inequalities on a compact set, `0 <= lam <= most` and
-`abs(phi) <= most*pi/2`, on which the egg's map and its derivative depend continuously on `alpha`, as the boundary is
-analytic, convex, and met at an angle. So they hold for `0 <= alpha <= alpha0(most)`, and there the egg has an invariant
-graph, to which every orbit converges, and on which the map is a homeomorphism of degree 1.
+`lam <= most < 1` and `K = (1 - most)/4`. The derivative maps slopes `abs(dphi/dtheta) <= K` to smaller ones and
+multiplies `dtheta` by `1 - 2*K > 0` or more; so graphs over the circle with slopes up to `K` are mapped to such graphs.
+The vertical distance `d` of two points becomes a distance from such a graph of at most `(lam + 2*K)*d`, which is less
+than `d`. These are strict inequalities on a compact set, `0 <= lam <= most` and `abs(phi) <= most*pi/2`, on which the
+egg's map and its derivative depend continuously on `alpha`, as the boundary is analytic, convex, and met at an angle.
+So they hold for `0 <= alpha <= alpha0(most)`, and there the egg has an invariant graph, to which every orbit converges,
+and on which the map is a homeomorphism of degree 1.
 
-*What happens on it.* For `lam < 1` an orbit of period 2 goes to and fro on a double normal of the boundary: the chord
-is left at the angle at which it is met, `lam` times itself. Double normals are the critical points of the width, which
-is `2 + 9*alpha^2*sin(3*psi)^2` up to `alpha^4`: for small `alpha > 0` there are twelve directions, six chords, none
-degenerate. All points that the square of a circle homeomorphism with fixed points leaves in place are these twelve;
-between two neighbours it moves one way, and the other way beyond (the width's minima attract, its maxima do not). So
-what is chain transitive is one fixed point, and every orbit converges to a double normal.
+*The dynamics on it.* For `lam < 1` an orbit of period 2 is a double normal of the boundary, since the angles at both
+ends of its chord are `lam` times themselves, hence 0. Double normals are the critical points of the width, which is `2
++ 9*alpha^2*sin(3*psi)^2` up to `alpha^4`: for small `alpha > 0` there are twelve directions, six chords, none
+degenerate. Their twelve end points are all fixed points of the square of the circle homeomorphism. Between neighbours
+all points move the same way, towards a minimum of the width, and every orbit converges to a double normal.
 
 *Basins.* With `P = (L/R - 1)*(L/R' - 1) = 1 + L*(L - R - R')/(R*R')` the width's second derivative is `R + R' - L`, the
-trace is `(1 + lam)^2*P - 2*lam` and the determinant `lam^2`: three diameters attract (`P < 1`), three are saddles
-(`P > 1`). For `lam > 0` the map is a diffeomorphism onto its image, so what goes to no attracting diameter is the
-stable manifolds of three saddles: analytic curves. They divide the three basins.
+trace is `(1 + lam)^2*P - 2*lam` and the determinant `lam^2`: three diameters attract (`P < 1`), three are saddles (`P >
+1`). For `lam > 0` the map is a diffeomorphism onto its image, so the starts that converge to no attracting diameter
+form the stable manifolds of three saddles: analytic curves that separate the three basins.
 """
 
 from dataclasses import replace
@@ -29,7 +28,7 @@ from functools import cache
 
 from sympy import Expr, Interval, Matrix, Symbol, cos, expand_trig, factorial, pi, simplify, sin
 
-from symbolic.expressions.signs import Finding, positive
+from symbolic.expressions.signs import SignFinding, positive
 from symbolic.motion.flight import flight
 from symbolic.tables import egg
 from symbolic.tables.table import alpha, lam, phi, s, theta
@@ -45,8 +44,8 @@ MOST, PSI, SHIFT = Symbol("most"), Symbol("psi", real=True), Symbol("shift", rea
 SHAPES, LAMS = ("0.01", "0.02"), ("0.2", "0.4", "0.6", "0.8", "0.9")  # where periods are sampled
 
 
-def invariant_curve(cone: Expr = (1 - MOST) / 4) -> Finding:
-    """The circle's inequalities, with their margins, for every `most` in `[0, 1)`."""
+def invariant_curve(cone: Expr = (1 - MOST) / 4) -> SignFinding:
+    """The finding of the circle's strict inequalities for every `most` in `[0, 1)`."""
     range, slope = {MOST: Interval.Ropen(0, 1)}, Symbol("slope")
     derivative = Matrix(flight()).jacobian([s, phi])
     carried = derivative * Matrix([1, slope])
@@ -61,11 +60,11 @@ def invariant_curve(cone: Expr = (1 - MOST) / 4) -> Finding:
     )
 
 
-def double_normals(sixth: Expr = 9 * alpha**2) -> Finding:
-    """The egg's width in the direction `psi`, to second order in `alpha`; it is even in `alpha`.
+def double_normals(sixth: Expr = 9 * alpha**2) -> SignFinding:
+    """The finding of the egg's double normals, from its width in the direction `psi` to second order in `alpha`.
 
-    The boundary point farthest in that direction is `shift` away, and an error of `alpha^2` in `shift` is one of
-    `alpha^4` in how far it reaches, since that is greatest there.
+    The width is even in `alpha`. The farthest boundary point in that direction is `shift` away; an error of `alpha^2`
+    in `shift` changes the width by `alpha^4`, since the width is stationary in `shift`.
     """
     x, y = egg(3).components[0].point
     radius = simplify(x * cos(theta) + y * sin(theta))
@@ -84,13 +83,13 @@ def double_normals(sixth: Expr = 9 * alpha**2) -> Finding:
 
 
 def _terms(expression: Expr, order: int) -> Expr:
-    """Taylor's polynomial in `alpha`."""
+    """The Taylor polynomial in `alpha`."""
     return sum(expression.diff(alpha, k).subs(alpha, 0) * alpha**k / factorial(k) for k in range(order + 1))
 
 
 @cache
-def settles() -> Finding:
-    """Every orbit converges to a double normal."""
+def settles() -> SignFinding:
+    """The finding that every orbit of a nearly round egg converges to a double normal."""
     return by(
         "for every most < 1 there is an alpha0 > 0 such that for 0 < alpha <= alpha0 and 0 <= lam <= most every orbit "
         "converges to one of six orbits of period 2",
@@ -101,7 +100,7 @@ def settles() -> Finding:
 
 @judges("egg.periodic_only_near_zero")
 def periodic_only(claim: Claim) -> Judgement:
-    """At every `lam < 1`, for all `alpha` close enough to 0; that one bound serves them all is not proved."""
+    """Proved at every `lam < 1` for all `alpha` close enough to 0; one bound on `alpha` for all `lam` is not proved."""
     found = {(a, x): periods_at(a, x, 60) for a in SHAPES for x in LAMS}
     seen = sorted({period for periods in found.values() for period in periods})
     return sampled(
@@ -117,7 +116,7 @@ def periodic_only(claim: Claim) -> Judgement:
 
 @cache
 def edge() -> BasinEdge:
-    """Of the upper triangle's basin at the contraction of the paper's figure; at that of the vertices it ends."""
+    """The theorem on the boundary of the upper triangle's basin, at the contraction of the paper's figure."""
     saddle = replace(TRIANGLE, start=(-0.166903,))
     return BasinEdge(barrier(), (-0.90420792, 0.41635565), saddle, 0.012)
 

@@ -1,7 +1,4 @@
-"""Claims on the egg's slap map and period-2 orbits. Paper: sections 6.1 to 6.3.
-
-The ranges that claims on the egg share stand here too.
-"""
+"""Judges of claims on the egg's slap map and period-2 orbits, with ranges of parameters. Paper: sections 6.1 to 6.3."""
 
 from functools import cache
 from typing import TYPE_CHECKING
@@ -25,7 +22,7 @@ from symbolic.cycles.cycle import (
     trace_and_determinant,
 )
 from symbolic.cycles.thresholds import alpha_hat, alpha_tilde, complex_up_to, stability_number, tilt, trace_of
-from symbolic.expressions.signs import Finding, conjunction, nonnegative, positive
+from symbolic.expressions.signs import SignFinding, conjunction, nonnegative, positive
 from symbolic.motion.collision import slap_derivative
 from symbolic.tables.table import alpha, lam
 from verification.arithmetic.iteration import telling
@@ -48,17 +45,17 @@ if TYPE_CHECKING:
 
 SHAPES = Interval(0, Rational(1, 10))
 ROUND = Interval.Lopen(0, Rational(1, 10))  # without the circle
-FULL = Interval(-1, 1)  # of cos(3*theta)
+FULL = Interval(-1, 1)  # the range of cos(3*theta)
 
 
 def at(numeral: str) -> Rational:
-    """A shape or a contraction as the exact number that its decimal shows."""
+    """The exact rational number that a decimal shows."""
     return Rational(numeral)
 
 
 @cache
 def squared_tilt() -> Expr:
-    """`1 - P` on the diameters."""
+    """The square `1 - P` of the tilt `W`, with the stability number `P` of the diameters."""
     return tilt() ** 2
 
 
@@ -68,13 +65,13 @@ def P_at(shape: Expr) -> Expr:
 
 
 def diameter() -> tuple[Expr, Expr]:
-    """Trace and determinant on the diameters."""
+    """Trace and determinant of the monodromy matrix of the diameters."""
     return trace_and_determinant(egg_diameter())
 
 
 @judges("egg.elastic_period2_elliptic")
 def elliptic_diameters(claim: Claim) -> Judgement:
-    """`0 < P < 1`."""
+    """The diameters are elliptic, since the stability number `P` has `0 < P < 1`."""
     numbers = [P_at(at(value)) for value in ("0.02", "0.05")]
     return Judgement(
         by("0 < P < 1 at both shapes", *(f for P in numbers for f in (positive(P, {}), positive(1 - P, {})))),
@@ -84,13 +81,13 @@ def elliptic_diameters(claim: Claim) -> Judgement:
 
 @judges("egg.elastic_period2_unstable")
 def unstable_diameters(claim: Claim) -> Judgement:
-    """`P < 0` at `lam = 1`."""
+    """The diameters are unstable at `lam = 1`, since the stability number `P` is negative."""
     P = P_at(at("0.08"))
     return Judgement(by("P < 0, so trace = 4*P - 2 < -2 at lam = 1", positive(-P, {})), f"P = {P}")
 
 
 def slap_slope(at_vertex: bool) -> Expr:
-    """`T0'` at an end of a diameter."""
+    """The derivative `T0'` of the slap map at an end of a diameter."""
     cycle = egg_diameter()
     start = cycle.frames[0 if at_vertex else 1]
     return slap_derivative(K0=start.curvature, t=cycle.length(0), cos_eta1=S.One)
@@ -98,15 +95,15 @@ def slap_slope(at_vertex: bool) -> Expr:
 
 @cache
 def crossings() -> "OneZero":
-    """The certificate that `T0'` vanishes at most once between a flat point and a vertex."""
-    from verification.proofs.slap_map.exponent import one_zero  # few of these claims need a proof in balls
+    """The proof that the slap map's slope `T0'` has at most one zero between a flat point and a vertex."""
+    from verification.proofs.slap_map.exponent import one_zero  # loaded here: few of these claims need balls
 
     return one_zero(tick=telling("shapes and cosines"))
 
 
 @judges("egg.slap_critical_points")
 def critical_points(claim: Claim) -> Judgement:
-    """`T0'` is even about each flat point and positive at the vertices; its sign at the flat points decides."""
+    """The sign of the slap map's slope at flat points decides: it is even about each, and positive at the vertices."""
     shape, birth = {alpha: at("0.08")}, sqrt(82) - 9
     cover = crossings()
     return Judgement(
@@ -136,7 +133,7 @@ def critical_points(claim: Claim) -> Judgement:
 
 @judges("egg.slap_fold")
 def slap_fold(claim: Claim) -> Judgement:
-    """A map that turns back takes values twice."""
+    """The slap map is not one-to-one, since its slope `T0'` changes sign."""
     shape = {alpha: at("0.08")}
     return Judgement(
         by(
@@ -150,27 +147,27 @@ def slap_fold(claim: Claim) -> Judgement:
 
 @judges("egg.slap_critical_caption")
 def critical_caption(claim: Claim) -> Judgement:
-    """The same, at the caption's shape."""
+    """The slap map is not one-to-one at the caption's shape."""
     return slap_fold(claim)
 
 
 @judges("egg.slap_period2_stable")
 def slap_stable(claim: Claim) -> Judgement:
-    """`-1 < P < 1`."""
+    """The period-2 orbit of the slap map is stable, since its stability number `P` has `-1 < P < 1`."""
     P = P_at(at("0.05"))
     return Judgement(by(f"(T0^2)' = P = {P}", positive(1 - P**2, {})), f"P = {P}")
 
 
 @judges("egg.slap_period2_unstable", "egg.horizontal_period2_unstable")
 def slap_unstable(claim: Claim) -> Judgement:
-    """`P < -1`."""
+    """The period-2 orbit of the slap map is unstable, since its stability number `P` is below -1."""
     P = P_at(at("0.08"))
     return Judgement(by(f"(T0^2)' = P = {P}", positive(-1 - P, {})), f"P = {P}")
 
 
 @judges("egg.other_period2")
 def other_period2(claim: Claim) -> Judgement:
-    """`alpha` grows from 0 to 1/10 along the family, and `P > 1` on it."""
+    """The other period-2 orbits exist for each `alpha`: it runs from 0 to 1/10 along the family; all have `P > 1`."""
     family = egg_parallel()
     P = stability_number(family)
     left = {c: Interval.Ropen(Rational(-2, 9), 0)}
@@ -190,7 +187,7 @@ def other_period2(claim: Claim) -> Judgement:
 
 @judges("egg.period2_orbits")
 def diameters_exist(claim: Claim) -> Judgement:
-    """Normal at both ends."""
+    """The diameters are orbits, since they are normal to the boundary at both ends."""
     return Judgement(
         shown(
             "the diameters are normal to the boundary at both ends, for every alpha", is_double_normal(egg_diameter())
@@ -201,7 +198,7 @@ def diameters_exist(claim: Claim) -> Judgement:
 
 @judges("egg.monodromy")
 def egg_monodromy(claim: Claim) -> Judgement:
-    """At the vertex; one exponent is misprinted."""
+    """The printed monodromy matrix at the vertex, in which one exponent is misprinted."""
     return identity(
         claim,
         monodromy(egg_diameter()),
@@ -216,7 +213,7 @@ def egg_monodromy(claim: Claim) -> Judgement:
 
 @judges("egg.mu_not_one")
 def mu_not_one(claim: Claim) -> Judgement:
-    """The characteristic polynomial at 1 is `(1+lam)**2*W**2`."""
+    """No multiplier is 1, since the characteristic polynomial at 1 is `(1+lam)**2*W**2`, `W` the `tilt`."""
     trace, det = diameter()
     return on_range(
         claim,
@@ -229,7 +226,7 @@ def mu_not_one(claim: Claim) -> Judgement:
 
 @judges("egg.alpha_tilde")
 def doubling_curve(claim: Claim) -> Judgement:
-    """Both forms are non-negative; their squares agree."""
+    """The printed and the derived `alpha-tilde` agree: both are non-negative, with equal squares."""
     return Judgement(
         by(
             "both forms are square roots or quotients of positive numbers, with equal squares",
@@ -241,7 +238,7 @@ def doubling_curve(claim: Claim) -> Judgement:
 
 @judges("egg.mu_at_alpha_tilde")
 def mu_at_alpha_tilde(claim: Claim) -> Judgement:
-    """`-P = ((1-lam)/(1+lam))**2` there, so -1 is a multiplier, and the other is `-lam**2`."""
+    """At `alpha-tilde` the stability number is `-((1-lam)/(1+lam))**2`, so the multipliers are -1 and `-lam**2`."""
     trace, det = diameter()
     both = zero("", trace - trace_of(1 - squared_tilt()), det - lam**2, 1 + trace_of(S.Zero) + lam**2 - (1 - lam) ** 2)
     return Judgement(
@@ -255,8 +252,8 @@ def mu_at_alpha_tilde(claim: Claim) -> Judgement:
     )
 
 
-def on_the_curve() -> Finding:
-    """`W**2` is `2*(1+lam**2)/(1+lam)**2` at alpha-tilde, and grows with alpha."""
+def on_the_curve() -> SignFinding:
+    """The finding that `W**2` is `2*(1+lam**2)/(1+lam)**2` at `alpha-tilde`, and `W`, the `tilt`, grows with alpha."""
     level = 2 * (1 + lam**2) / (1 + lam) ** 2
     return conjunction(
         zero("", squared_tilt().subs(alpha, alpha_tilde()) - level), positive(tilt().diff(alpha), {alpha: SHAPES})
@@ -265,7 +262,7 @@ def on_the_curve() -> Finding:
 
 @judges("egg.period2_unstable_above")
 def unstable_above(claim: Claim) -> Judgement:
-    """`P` falls with alpha."""
+    """The diameters are unstable above `alpha-tilde`, since `P` falls with alpha."""
     return Judgement(
         by("1 + trace + det = (1+lam)^2*P + (1-lam)^2 vanishes at alpha-tilde and falls with alpha", on_the_curve()),
         "mu_- < -1 for alpha > alpha-tilde(lam)",
@@ -274,19 +271,19 @@ def unstable_above(claim: Claim) -> Judgement:
 
 @judges("egg.alpha_tilde_0")
 def alpha_tilde_0(claim: Claim) -> Judgement:
-    """At `lam = 0`."""
+    """The printed digits of `alpha-tilde` at `lam = 0`."""
     return digits(claim, alpha_tilde().subs(lam, 0))
 
 
 @judges("egg.alpha_tilde_1")
 def alpha_tilde_1(claim: Claim) -> Judgement:
-    """At `lam = 1`."""
+    """The printed digits of `alpha-tilde` at `lam = 1`."""
     return digits(claim, alpha_tilde().subs(lam, 1))
 
 
 @judges("egg.period2_always_unstable")
 def always_unstable(claim: Claim) -> Judgement:
-    """alpha-tilde falls with `lam`."""
+    """The diameters are unstable for all `lam` above `alpha-tilde(0)`, since `alpha-tilde` falls with `lam`."""
     level = 2 * (1 + lam**2) / (1 + lam) ** 2
     return Judgement(
         by(
@@ -300,7 +297,7 @@ def always_unstable(claim: Claim) -> Judgement:
 
 @judges("egg.period2_stable_below")
 def stable_below(claim: Claim) -> Judgement:
-    """Strict inequalities fail at `alpha = 0` and at `lam = 1`."""
+    """The printed strict inequalities fail at `alpha = 0` and at `lam = 1`."""
     trace, det = diameter()
     return Judgement(
         counterexample(
@@ -322,13 +319,13 @@ def stable_below(claim: Claim) -> Judgement:
 
 @judges("egg.alpha_hat")
 def focus_curve(claim: Claim) -> Judgement:
-    """The printed form is 0/0 at `lam = 1`; the derived one is not."""
+    """The printed `alpha-hat` equals the derived form, which has no 0/0 at `lam = 1`."""
     return identity(claim, alpha_hat())
 
 
 @judges("egg.complex_region")
 def complex_region(claim: Claim) -> Judgement:
-    """`0 < P < 4*lam/(1+lam)**2` between the curves, because `W` grows with alpha."""
+    """Multipliers are complex between the curves, where `0 < P < 4*lam/(1+lam)**2`, as the `tilt` grows with alpha."""
     low = tilt().subs(alpha, alpha_hat()) - (1 - lam) / (1 + lam)
     high = tilt().subs(alpha, complex_up_to()) - 1
     trace, _ = diameter()

@@ -1,4 +1,4 @@
-"""Claims on the egg's period-3 orbits. Paper: sections 6.1 and 6.4."""
+"""Judges of claims on the egg's period-3 orbits. Paper: sections 6.1 and 6.4."""
 
 from functools import cache
 
@@ -19,6 +19,7 @@ from sympy import (
 from symbolic.cycles.cycle import egg_triangle, is_elastic, trace_and_determinant
 from symbolic.cycles.polygons import (
     COSINE,
+    characteristic_on_branch,
     contraction_slope,
     elastic_trace,
     fold_margin,
@@ -29,43 +30,44 @@ from symbolic.cycles.polygons import (
     saddle_node,
     tilt_tangent,
 )
-from symbolic.expressions.signs import Finding, conjunction, nonnegative, positive
+from symbolic.expressions.signs import SignFinding, conjunction, nonnegative, positive
 from symbolic.motion.flight import flight, iterate
 from symbolic.tables.table import alpha, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, digits, greater, identity, implied, judges, shown, zero
 from verification.paper.egg.period2 import FULL, ROUND, SHAPES, at
 
-PLACE_RETURNS, ANGLE_RETURNS = symbols("place_returns angle_returns")  # theta_3 = theta_0 and phi_3 = phi_0
+MOVED = symbols("x", real=True)  # 3*theta - pi at a bounce, 0 at lam = 1
+PLACE_RETURNS, ANGLE_RETURNS = symbols("place_returns angle_returns")  # theta_3 = theta_0, phi_3 = phi_0
 
 
 def exit_sines(at_flat: bool) -> Matrix:
-    """The sines of the exit angle on a triangle, one way round and the other."""
+    """The sines of the exit angle on an equilateral triangle, in both directions."""
     out, _ = egg_triangle(at_flat).sliding(0)
     return Matrix([out, -out])
 
 
 @judges("egg.period3_angle")
 def flat_angle(claim: Claim) -> Judgement:
-    """Thirty degrees either way."""
+    """The exit angles of the flat triangle are 30 degrees either way."""
     return identity(claim, exit_sines(True))
 
 
 @judges("egg.hyperbolic3_angle")
 def vertex_angle(claim: Claim) -> Judgement:
-    """Thirty degrees either way."""
+    """The exit angles of the triangle of the vertices are 30 degrees either way."""
     return identity(claim, exit_sines(False))
 
 
-def limit_positive() -> Finding:
-    """`0 < lambda_c(alpha) < 1`: the largest tilt lies between 0 and `tan(pi/6)`."""
+def limit_positive() -> SignFinding:
+    """The finding that `0 < lambda_c(alpha) < 1`, since the largest tilt lies between 0 and `tan(pi/6)`."""
     squared = simplify(largest_tilt() ** 2)
     return conjunction(positive(Rational(1, 3) - squared, {alpha: ROUND}), positive(squared, {alpha: ROUND}))
 
 
 @judges("egg.period3_created", "egg.period3_cease")
 def created(claim: Claim) -> Judgement:
-    """The closed form of the fold, for the orbits that section 6.4 follows from `lam = 1`: equilateral triangles."""
+    """The closed form of the fold, for the equilateral triangles that section 6.4 follows from `lam = 1`."""
     return Judgement(
         by(
             "the equilateral orbits need |rho'/rho| = tan(pi/6*(1-lam)/(1+lam)), which no point reaches for lam < "
@@ -81,8 +83,8 @@ def created(claim: Claim) -> Judgement:
     )
 
 
-def third_power(at_flat: bool) -> Finding:
-    """The trace over the period is that of the cube of a matrix of determinant 1."""
+def third_power(at_flat: bool) -> SignFinding:
+    """The finding that the trace over the period is that of the cube of a matrix of determinant 1."""
     single = elastic_trace(at_flat)
     return zero(
         "the monodromy is a cube", single**3 - 3 * single - trace_and_determinant(egg_triangle(at_flat), S.One)[0]
@@ -91,7 +93,7 @@ def third_power(at_flat: bool) -> Finding:
 
 @judges("egg.two_period3")
 def two_period3(claim: Claim) -> Judgement:
-    """The flat triangle, both ways round."""
+    """The flat triangle is run in two directions."""
     return Judgement(
         counterexample(
             "at alpha = 0 every equilateral triangle is an orbit",
@@ -105,8 +107,8 @@ def two_period3(claim: Claim) -> Judgement:
     )
 
 
-def flat_triangle() -> list[Finding]:
-    """The triangle obeys the elastic law and its multipliers lie on the unit circle."""
+def flat_triangle() -> list[SignFinding]:
+    """The findings that the flat triangle obeys the elastic law, with multipliers on the unit circle."""
     single = elastic_trace(True)
     return [
         shown("the law phi = -eta holds", is_elastic(egg_triangle(True))),
@@ -117,7 +119,7 @@ def flat_triangle() -> list[Finding]:
 
 @judges("egg.period3_pair")
 def pair(claim: Claim) -> Judgement:
-    """Elastic orbits run backwards."""
+    """Elastic orbits run backwards are orbits, too."""
     return Judgement(
         by("an elastic orbit run backwards is an orbit with opposite angles", *flat_triangle()[:1]), "phi -> -phi"
     )
@@ -125,7 +127,7 @@ def pair(claim: Claim) -> Judgement:
 
 @judges("egg.period3_equilateral")
 def equilateral(claim: Claim) -> Judgement:
-    """Three equal chords."""
+    """The three chords of the triangle are equal."""
     cycle = egg_triangle(True)
     return Judgement(
         by("the three chords are equal", zero("", *(cycle.length(i) - cycle.length(0) for i in (1, 2)))),
@@ -135,7 +137,7 @@ def equilateral(claim: Claim) -> Judgement:
 
 @judges("egg.period3_elliptic")
 def period3_elliptic(claim: Claim) -> Judgement:
-    """`|trace| <= 2` on the closed range, with equality only at the ends."""
+    """The triangle is elliptic: `|trace| <= 2` on the closed range, with equality only at the ends."""
     single = elastic_trace(True)
     return Judgement(
         by(
@@ -149,8 +151,8 @@ def period3_elliptic(claim: Claim) -> Judgement:
     )
 
 
-def polygon_facts() -> list[Finding]:
-    """The condition of the rotating triangles: the tilt of the normal, its largest value, and the law."""
+def polygon_facts() -> list[SignFinding]:
+    """The findings on rotating triangles: the tilt of the normal, its largest value, and the law."""
     slope = simplify(tilt_tangent() * (1 + alpha * cos(3 * theta)) / (3 * alpha)) - sin(3 * theta)
     squared = 9 * alpha**2 * (1 - COSINE**2) / (1 + alpha * COSINE) ** 2
     best = 9 * alpha**2 * (COSINE + alpha) ** 2 / ((1 - alpha**2) * (1 + alpha * COSINE) ** 2)
@@ -167,25 +169,41 @@ def polygon_facts() -> list[Finding]:
 
 @judges("egg.period3_attracting")
 def attracting(claim: Claim) -> Judgement:
-    """Complex multipliers of modulus `det**(1/2)` near `lam = 1`, and `det` grows to 1 there."""
+    """The triangle attracts near `lam = 1`: complex multipliers of modulus `det**(1/2)`, and `det` grows to 1.
+
+    At `alpha = 1/10` both multipliers of a bounce are -1 at `lam = 1`, and the second order decides; the circle has no
+    triangle for `lam < 1`.
+    """
     gamma, single = half_turn(), elastic_trace(True)
+    margin = characteristic_on_branch(MOVED, -S.One).subs(alpha, Rational(1, 10))  # (1 + trace + det)*cos(eta)
+    first, second = margin.diff(MOVED).subs(MOVED, 0), margin.diff(MOVED, 2).subs(MOVED, 0)
     return Judgement(
+        counterexample(
+            "in the circle phi_3 = lam^3*phi: below lam = 1 only orbits with phi = 0 come back, which have period 2",
+            zero("", iterate(3)[1] - lam**3 * phi),
+            at={alpha: S.Zero, lam: S.Half},
+        ),
+        "attracting for lam slightly below 1, for every alpha with 0 < alpha <= 1/10",
         by(
             "at lam = 1 one bounce has the determinant 1 and a trace of modulus below 2, so near lam = 1 its "
-            "multipliers are complex, of modulus det^(1/2), and det grows up to lam = 1",
+            "multipliers are complex, of modulus det^(1/2), and det grows up to lam = 1; at alpha = 1/10 the trace is "
+            "-2 there, and 1 + trace + det > 0 next to it by its second order along the branch",
             *polygon_facts(),
             positive(4 - single**2, {alpha: Interval.open(0, Rational(1, 10))}),
             third_power(True),
             zero("d(log det)/d lam = 1 - gamma*tan(gamma) at lam = 1", contraction_slope() - 1 + gamma * tan(gamma)),
             greater(contraction_slope(), S.Zero),
+            zero("1 + trace + det vanishes to first order", margin.subs(MOVED, 0), first),
+            greater(second, S.Zero),
+            *side_of_fold(),
         ),
-        "attracting for lam slightly below 1, for 0 < alpha < 1/10",
+        "At alpha = 0 (the circle) no triangle is left below lambda = 1; the statement needs alpha > 0.",
     )
 
 
 @judges("egg.period3_stay_equilateral")
 def stay(claim: Claim) -> Judgement:
-    """The triangles solve one equation in `theta`."""
+    """The triangles stay equilateral, since they solve one equation in `theta`."""
     return Judgement(
         by(
             "a triangle turned by 2*pi/3 at each bounce solves the one equation |rho'/rho| = tan(delta(lam))",
@@ -198,7 +216,7 @@ def stay(claim: Claim) -> Judgement:
 
 @judges("egg.period3_rotate")
 def rotate(claim: Claim) -> Judgement:
-    """`sin(3*theta) != 0` as soon as the tilt is not 0."""
+    """The triangles rotate: `sin(3*theta) != 0` as soon as the tilt is not 0."""
     return Judgement(
         by(
             "delta = pi/6*(1-lam)/(1+lam) > 0 needs sin(3*theta) != 0",
@@ -211,13 +229,13 @@ def rotate(claim: Claim) -> Judgement:
 
 @judges("egg.period3_lambda_c")
 def fold_digits(claim: Claim) -> Judgement:
-    """The closed form at `alpha = 0.08`."""
+    """The printed digits of `lambda_c`, from the closed form at `alpha = 0.08`."""
     return digits(claim, saddle_node().subs(alpha, at("0.08")), ("0.39", "0.378"))
 
 
 @judges("egg.projection_argument")
 def projection(claim: Claim) -> Judgement:
-    """A cycle of period 3 returns in place and in angle: in place alone it gives a point of the diagonal."""
+    """A point of period 3 returns in place, so where no place returns there is no cycle of period 3."""
     return Judgement(
         implied(
             "T^3(theta, phi) = (theta, phi) says that the place returns and that the angle does; so where no place "
@@ -230,7 +248,7 @@ def projection(claim: Claim) -> Judgement:
 
 @judges("egg.projection_converse")
 def converse(claim: Claim) -> Judgement:
-    """The circle: `T^3` returns to a place with another angle."""
+    """A counterexample to the converse: in the circle `T^3` returns to a place with another angle."""
     angle = flight(*flight(*flight()))
     back = angle[0] - s - 2 * pi
     returning = pi / (2 * (1 + lam + lam**2))
@@ -246,7 +264,7 @@ def converse(claim: Claim) -> Judgement:
 
 @judges("egg.saddle_node")
 def fold(claim: Claim) -> Judgement:
-    """Two branches, from the flat points and from the vertices, meet where the tilt is largest, with multiplier 1."""
+    """The two branches, from the flat points and the vertices, meet where the tilt is largest, with multiplier 1."""
     return Judgement(
         by(
             "for each lam in (lambda_c, 1) the equation for the tilt has one root on the side of the "
@@ -263,7 +281,7 @@ def fold(claim: Claim) -> Judgement:
 
 @judges("egg.period3_exponent")
 def multiplier_at_fold(claim: Claim) -> Judgement:
-    """`1 - trace + det` of one bounce vanishes at the fold, so 1 is a multiplier there."""
+    """The multiplier at the fold is 1, since `1 - trace + det` of one bounce vanishes there."""
     return Judgement(
         by("one multiplier of a bounce tends to 1 as cos(3*theta) -> -alpha", *side_of_fold()),
         "multiplier 1 at lambda_c",
@@ -271,8 +289,8 @@ def multiplier_at_fold(claim: Claim) -> Judgement:
 
 
 @cache
-def side_of_fold() -> tuple[Finding, ...]:
-    """`1 - trace + det` of one bounce has the sign of `-(cos(3*theta) + alpha)`, on either branch."""
+def side_of_fold() -> tuple[SignFinding, ...]:
+    """The findings that `1 - trace + det` of one bounce has the sign of `-(cos(3*theta) + alpha)` on both branches."""
     ring = 1 + alpha * COSINE
     return (
         *(zero(fact, difference) for fact, difference in polygon_identities().items()),
@@ -291,7 +309,7 @@ def side_of_fold() -> tuple[Finding, ...]:
 
 @judges("egg.vertex_period3")
 def vertex_period3(claim: Claim) -> Judgement:
-    """The triangle of the vertices is elastic."""
+    """The triangle of the vertices obeys the elastic law."""
     return Judgement(
         shown("the triangle of the vertices obeys phi = -eta", is_elastic(egg_triangle(False))),
         "theta = 0, 2*pi/3, -2*pi/3 at lam = 1",
@@ -300,7 +318,7 @@ def vertex_period3(claim: Claim) -> Judgement:
 
 @judges("egg.vertex_period3_unstable")
 def vertex_unstable(claim: Claim) -> Judgement:
-    """A multiplier above 1 all along the branch; at `alpha = 0` the branches coincide."""
+    """The triangle of the vertices has a multiplier above 1 along its branch, except at `alpha = 0`."""
     at_one = elastic_trace(False)
     return Judgement(
         counterexample(

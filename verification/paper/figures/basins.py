@@ -1,4 +1,4 @@
-"""The figures of basins of attraction in phase space. Paper: sections 5.2 and 6.7, appendix A.3."""
+"""Figures of basins of attraction in phase space. Paper: sections 5.2 and 6.7, appendix A.3."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ACROSS, UP = 360, 240  # cells of a draft
-TRANSIENT = 1000  # bounces before a particle is first looked at
-SOON = 250  # the same where most particles are on a cycle by then: those that are not go on
+TRANSIENT = 1000  # bounces before a particle's attractor is determined
+SOON = 250  # the same where most particles reach a cycle by then; the others continue
 BLANK, SHADE = (1.0, 1.0, 1.0), (0.78, 0.84, 0.78)
 RED = (0.87, 0.55, 0.5)
 
 
 def basins(map: PinballMap, fine: float, angle: bool, transient: int = TRANSIENT) -> Panel:
-    """Which attractor the particle in each cell of phase space reaches, and the attractors.
+    """The attractor that a particle from each cell of phase space reaches, and the attractors, as a panel.
 
-    The abscissa is `theta` where `angle` is true, else arc length; cells are equal in arc length either way.
+    The abscissa is `theta` where `angle` is true, else arc length; cells are equal in arc length in both cases.
     """
     grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
     particles = grid.starts
@@ -48,7 +48,7 @@ def basins(map: PinballMap, fine: float, angle: bool, transient: int = TRANSIENT
 
 
 def paint(ax: "Axes", raster: Raster, colours: dict[str, Any]) -> None:
-    """The cells in the colour of their name; those of a name without one stay blank."""
+    """Draws the cells in the colours of their names; a cell whose name has no colour stays blank."""
     table = np.array([colours.get(name, BLANK) for name in raster.names])
     ax.pcolormesh(edges(raster.x), edges(raster.y), table[raster.labels], rasterized=True)
 
@@ -69,7 +69,7 @@ def cuspless(fine: float = 1.0) -> Panels:
 
 
 def draw_cuspless(panels: Panels) -> "Figure":
-    """The chaotic attractor's basin shaded, the other blank; both attractors."""
+    """Draws the chaotic attractor's basin shaded, the other blank, with both attractors."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     (panel,) = panels
     assert panel.raster is not None
@@ -85,7 +85,7 @@ def egg(fine: float = 1.0) -> Panels:
 
 
 def draw_egg(panels: Panels) -> "Figure":
-    """The chaotic basin shaded where there is one, else that of one of the two triangles; the attractors."""
+    """Draws the chaotic basin shaded, or else that of one triangle, with the attractors."""
     figure, axes = sheet(panels, height=3.0)
     for ax, panel in zip(axes, panels, strict=True):
         assert panel.raster is not None
@@ -95,7 +95,7 @@ def draw_egg(panels: Panels) -> "Figure":
 
 
 def points(ax: "Axes", panel: Panel) -> None:
-    """Chaotic attractors as dots, cycles as crosses."""
+    """Draws chaotic attractors as dots, and cycles as crosses."""
     for name, curve in panel.curves.items():
         if name.startswith("chaotic"):
             cloud(ax, curve, DARK, size=0.7)

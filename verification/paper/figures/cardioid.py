@@ -1,7 +1,7 @@
-"""The figures on the cardioid and the cuspless cardioid. Paper: sections 4 and 5, appendix A.2.
+"""Figures on the cardioid and the cuspless cardioid. Paper: sections 4 and 5, appendix A.2.
 
-Lyapunov exponents against the contraction, as the paper plots them; attractors as a figure shows them: cycles as
-closed polygons or a few marks, chaotic sets as one long orbit.
+They show Lyapunov exponents against the contraction, and attractors: cycles as closed polygons or marks, chaotic sets
+as one long orbit.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -53,7 +53,7 @@ PARTICLES = 40
 
 
 def attractors(fine: float = 1.0) -> Panels:
-    """The attractor at `lam = 0.3` and `0.8` in phase space, and at `0.3` in configuration space."""
+    """The attractor at `lam = 0.3` and `0.8` in phase space, and at `0.3` in the table."""
     panels = []
     for lam in ("0.3", "0.8"):
         map, bounces = PinballMap("cardioid", lam=lam), scaled(500, fine, 20)
@@ -70,7 +70,7 @@ def attractors(fine: float = 1.0) -> Panels:
 
 
 def draw_attractors(panels: Panels) -> "Figure":
-    """Two phase portraits; the third panel is the inset of the first."""
+    """Draws two phase portraits, with the third panel as inset of the first."""
     figure, axes = sheet(panels[:2])
     for ax, panel in zip(axes, panels[:2], strict=True):
         cloud(ax, panel.curves["attractor"], BLACK)
@@ -90,7 +90,7 @@ def exponents(fine: float = 1.0) -> Panels:
 
 
 def draw_exponents(panels: Panels) -> "Figure":
-    """Filled and open circles, and the sum as a line."""
+    """Draws the exponents as filled and open circles, and their sum as a line."""
     figure, (ax,) = sheet(panels, columns=1, height=3.0)
     (panel,) = panels
     ax.axhline(0, **FAINT)
@@ -98,7 +98,7 @@ def draw_exponents(panels: Panels) -> "Figure":
     ax.plot(*panel.curves["nu_minus"], ls="", marker="o", ms=3, mfc="white", color=DARK, label=r"$\nu_-$")
     ax.plot(*panel.curves["sum"], color="0.45", label=r"$\nu_+ + \nu_-$")
     ax.set_xlim(0, 1.01)
-    ax.legend()
+    legend(ax)
     return figure
 
 
@@ -110,7 +110,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Both graphs with the diagonal."""
+    """Draws both graphs of the slap map, with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure
@@ -120,9 +120,9 @@ ORBITS = 100  # the paper's number for each contraction
 
 
 def averaged(table: str, lams: Array, bounces: int, orbits: int = ORBITS) -> Panel:
-    """The means of both exponents over all orbits, and of `nu_plus` over those that converge to a cycle and the others.
+    """The means of both exponents over all orbits, and of `nu_plus` over those on cycles and over the others.
 
-    The standard errors over the orbits come with the means; a mean over no orbit is a gap.
+    The standard errors over orbits come with the means; a mean over no orbit is a gap.
     """
     map = PinballMap(table, lam=np.repeat(lams, orbits))
     starts = interior_starts(map.at(1), orbits, SEED)
@@ -148,7 +148,7 @@ def averaged(table: str, lams: Array, bounces: int, orbits: int = ORBITS) -> Pan
 
 
 def _mean(values: Array, chosen: NDArray[np.bool_]) -> Array:
-    """The mean of the chosen ones in each row; nan where there is none."""
+    """The mean of the chosen entries of each row; NaN where there are none."""
     count = chosen.sum(axis=1)
     total = np.where(chosen, values, 0.0).sum(axis=1)
     return np.asarray(np.divide(total, count, out=np.full(count.shape, np.nan), where=count > 0))
@@ -162,7 +162,7 @@ RANGES = (("0.1", "0.2", "0.3"), ("0.4", "0.5", "0.6"), ("0.7", "0.8", "0.9"))
 
 
 def configurations(fine: float = 1.0) -> Panels:
-    """The attractors in configuration space at four contractions."""
+    """The attractors in the table at four contractions."""
     panels = []
     for lam in ("0.02", "0.072", "0.2", "0.5"):
         map, bounces = PinballMap("cuspless", lam=lam), scaled(300, min(fine, 1.0), 8)
@@ -174,7 +174,7 @@ def configurations(fine: float = 1.0) -> Panels:
 
 
 def draw_configurations(panels: Panels) -> "Figure":
-    """Periodic attractors as thick lines, chaotic ones as thin."""
+    """Draws periodic attractors as thick lines, chaotic ones as thin lines."""
     figure, axes = sheet(panels, columns=4, height=2.1)
     for ax, panel in zip(axes, panels, strict=True):
         ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -204,7 +204,7 @@ def phase_space(fine: float = 1.0) -> Panels:
 
 
 def draw_phase_space(panels: Panels) -> "Figure":
-    """The least contraction darkest and on top."""
+    """Draws the attractors, the least contraction darkest and on top."""
     figure, axes = sheet(panels, columns=3, height=2.6)
     for ax, panel in zip(axes, panels, strict=True):
         for place in (-JOIN, 0.0, JOIN):
@@ -219,7 +219,7 @@ def draw_phase_space(panels: Panels) -> "Figure":
 
 
 def corner(fine: float = 1.0) -> Panels:
-    """Arc length of the fourth collision from the upper join, against the first angle, at three contractions."""
+    """The arc length of the fourth collision from the upper join, against the first angle, at three contractions."""
     phi = np.linspace(-0.25, 0.25, scaled(500, fine, 20))
     curves = {}
     for lam in ("0.05", STAR, "0.09"):
@@ -231,7 +231,7 @@ def corner(fine: float = 1.0) -> Panels:
 
 
 def draw_corner(panels: Panels) -> "Figure":
-    """Three graphs, between dotted lines at the joins and the centre of the wall."""
+    """Draws three graphs, with dotted lines at the joins and the centre of the wall."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     for place in (-JOIN, 0.0, JOIN):
         ax.axhline(place, **(FAINT | {"color": "0.3"}))
@@ -243,20 +243,20 @@ def draw_corner(panels: Panels) -> "Figure":
     for (lam, curve), look in zip(panels[0].curves.items(), looks, strict=True):
         star = " = \\lambda^*" if lam == STAR else ""
         ax.plot(*curve, label=rf"$\lambda = {lam}{star}$", **look)
-    ax.legend()
+    legend(ax)
     return figure
 
 
 def cuspless_exponents(fine: float = 1.0) -> Panels:
-    """Both exponents against `lam`, averaged over 100 orbits, and apart for those on cycles and on chaotic sets."""
+    """Both exponents against `lam`, averaged over 100 orbits, and separately over cycles and chaotic sets."""
     count = min(fine, 2.0)
-    stretches = ((0.005, 0.055, 10), (0.06, 0.1, 30), (0.11, 1, 30))  # of lam, and how many in a draft
+    stretches = ((0.005, 0.055, 10), (0.06, 0.1, 30), (0.11, 1, 30))  # ranges of lam, and values in a draft
     lams = np.concatenate([np.linspace(low, high, scaled(many, count, 3)) for low, high, many in stretches])
     return (averaged("cuspless", lams, scaled(1000, fine, 50)),)
 
 
 def draw_cuspless_exponents(panels: Panels) -> "Figure":
-    """The paper's averages as circles, lines for `nu_plus` on each kind of attractor; where both coexist, enlarged."""
+    """Draws averages as circles, and `nu_plus` of each kind of attractor as lines, with an inset."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     (panel,) = panels
     inset = ax.inset_axes((0.42, 0.08, 0.55, 0.46))
@@ -284,22 +284,22 @@ def cuspless_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_cuspless_slap(panels: Panels) -> "Figure":
-    """The three graphs with the diagonal."""
+    """Draws the three graphs with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure
 
 
 def whole(ax: "Axes") -> None:
-    """All of the boundary along the abscissa: s from -C to C."""
+    """Sets the abscissa to the whole boundary: `s` from -C to C."""
     ax.set_xlim(-9 * JOIN, 9 * JOIN)
 
 
-STARTS = 200  # random starts among which attractors are looked for
+STARTS = 200  # random starts for the search of attractors
 
 
 def found(map: PinballMap, starts: int = STARTS) -> dict[str, Attractor]:
-    """The attractors by name: `period 3`, `period 3, second`, `chaotic` and so on, the most visited first.
+    """The attractors by name, such as `period 3`, `period 3 (2)` or `chaotic`, the most visited first.
 
     >>> list(found(PinballMap("egg", lam="0.7", alpha="0.08"), 50))
     ['period 3', 'period 3 (2)']
@@ -314,7 +314,7 @@ def found(map: PinballMap, starts: int = STARTS) -> dict[str, Attractor]:
 
 
 def orbit_on(map: PinballMap, attractor: Attractor, bounces: int) -> Orbit:
-    """An orbit on the attractor, as one column; of a cycle, once round and closed."""
+    """An orbit on the attractor, as one column; for a cycle, one closed round."""
     first, turns = attractor.points, attractor.period or bounces
     return map.orbit(first.theta[:1], first.phi[:1], turns, first.component[:1])
 
@@ -327,5 +327,5 @@ def cycle_points(map: PinballMap, attractor: Attractor) -> tuple[Curve, Curve]:
 
 
 def shares(named: dict[str, Attractor]) -> dict[str, float]:
-    """The share of the starts that each attractor draws."""
+    """The share of the starts that each attractor attracts."""
     return {f"share of {name}": a.share.count / a.share.of for name, a in named.items() if a.share is not None}

@@ -1,4 +1,4 @@
-"""The figures by name: what the paper prints below each, what computes it, and what draws it."""
+"""The catalogue of figures: for each the paper's caption, and the functions that compute and draw it."""
 
 import re
 import tomllib
@@ -14,35 +14,35 @@ if TYPE_CHECKING:
     from verification.plots.sheet import Panels
 
 DRAFT, FULL = 1.0, 8.0  # resolutions
-LINES, HEAVY = 2000, 100_000  # points that may be small as lines, and bytes that are not
-WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # of LaTeX; the others are named as they are
+LINES, HEAVY = 2000, 100_000  # the most points drawn as SVG lines, and the most bytes of such a file
+WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # LaTeX commands as text; others keep their names
 
 
-class Drawing(Protocol):
-    """A picture that is still to be drawn: a figure of the paper, or a diagram of what was measured."""
+class FigureSource(Protocol):
+    """A picture that is not drawn yet: a figure of the paper, or a diagram of a measurement."""
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """The name of the picture."""
 
     @property
     def seconds(self) -> float:
-        """What drawing it is said to take."""
+        """The estimated time to draw it, in seconds."""
 
     @property
     def module(self) -> str:
-        """What draws it, with all that it needs."""
+        """The module that draws it."""
 
     def drawn(self) -> bytes:
-        """The image, of any kind that a page shows."""
+        """The image, as a file in some format that HTML pages show."""
 
 
 @dataclass(frozen=True)
-class Picture:
-    """A figure: its name, the module and function that compute its data, and its place in the paper.
+class PaperFigure:
+    """A figure of the paper: its name, the function that computes its data, and its place in the paper.
 
-    `labels` are the paper's own, empty for a figure that it only speaks of; the caption is quoted with its misprints,
-    and `shows` says what is to be seen here. A draft for a page takes some `seconds`.
+    `labels` are the paper's, empty for a figure that it only mentions. The caption is quoted with its misprints;
+    `shows` describes the picture. A draft takes about `seconds`.
     """
 
     name: str
@@ -64,18 +64,18 @@ class Picture:
         return f"verification.paper.figures.{self.made_by.partition('.')[0]}"
 
     def data(self, fine: float = DRAFT) -> "Panels":
-        """The panels at a resolution, 1 for a draft."""
+        """The panels at a resolution; 1 is a draft."""
         return self._pair[0](fine)
 
     def image(self, panels: "Panels", ending: str) -> bytes:
-        """The drawn panels as a file of that kind; the same panels give the same bytes."""
+        """The drawn panels as a file in the format of `ending`; the same panels give the same bytes."""
         from verification.plots.sheet import image, styled
 
         with styled():
             return image(self._pair[1](panels), ending)
 
     def drawn(self) -> bytes:
-        """A draft for a page, on no ground so that it may be dark: lines as SVG, many points as WebP."""
+        """A draft for a page, with transparent background: SVG for lines, WebP for many points."""
         from verification.plots.sheet import SMALL
 
         panels = self.data()
@@ -93,7 +93,7 @@ class Picture:
             return encoded(self._pair[1](panels), ending, transparent=True, **form)
 
     def document(self, panels: "Panels", fine: float) -> dict[str, Any]:
-        """The data as JSON has them."""
+        """The data of the panels, as a JSON object."""
         about = {"figure": self.name, "labels": list(self.labels), "caption": self.caption, "resolution": fine}
         return {**about, "panels": [panel.document() for panel in panels]}
 
@@ -108,7 +108,7 @@ class Picture:
 
 
 def plain(text: str) -> str:
-    """LaTeX as one would type it.
+    """LaTeX as plain text.
 
     >>> plain(r"$s_0 \\defeq -\\sqrt{3}/4$ and $\\mu_{\\pm}$ at $\\lambda = 0.3$")
     's_0 := -sqrt(3)/4 and mu_+- at lambda = 0.3'
@@ -119,19 +119,19 @@ def plain(text: str) -> str:
 
 
 @cache
-def pictures() -> Mapping[str, Picture]:
-    """Every figure, in the order of the paper.
+def pictures() -> Mapping[str, PaperFigure]:
+    """All figures by name, in the order of the paper.
 
     >>> pictures()["ellipse-slap"].labels
     ('fig:slap-ellipse',)
     """
     text = (files("verification.paper.figures") / "captions.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text)["figure"]
-    return {entry["name"]: Picture(**{**entry, "labels": tuple(entry["labels"])}) for entry in entries}
+    return {entry["name"]: PaperFigure(**{**entry, "labels": tuple(entry["labels"])}) for entry in entries}
 
 
 def ending(path: Path) -> str:
-    """What kind of file `path` names; `ValueError` for one that cannot be written.
+    """The ending of `path` in lower case; `ValueError` for a format that cannot be written.
 
     >>> ending(Path("slap.PDF"))
     '.pdf'

@@ -1,7 +1,4 @@
-"""The evolutes of the tables, which every flight of the slap map touches. Paper: section 2.2; no figure there.
-
-The figures on the circle and the ellipse. Paper: section 3.
-"""
+"""Figures on the circle and the ellipse (section 3), and the evolutes of the tables (section 2.2, not in the paper)."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +12,20 @@ from symbolic.tables.table import a as a_letter
 from symbolic.tables.table import lam as lam_letter
 from verification.paper.figures.phase import SEED, facts, flights, outline
 from verification.paper.figures.phase import slap_by_angle as by_angle
-from verification.plots.sheet import BLACK, DARK, FAINT, OUTLINE, Array, Curve, Panel, Panels, graphs, scaled, sheet
+from verification.plots.sheet import (
+    BLACK,
+    DARK,
+    FAINT,
+    OUTLINE,
+    Array,
+    Curve,
+    Panel,
+    Panels,
+    graphs,
+    legend,
+    scaled,
+    sheet,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,9 +40,9 @@ TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
 
 
 def centres(map: PinballMap, theta: Array) -> tuple[Array, Array]:
-    """The centre of curvature of the first component at each `theta`: the curvature's radius along the inward normal.
+    """The centre of curvature of the first component at each `theta`.
 
-    Paper: section 2.2. The boundary must have a curvature there, which a cusp has not.
+    It lies on the inward normal at the distance of the radius of curvature. Paper: section 2.2. A cusp has none.
 
     >>> x, y = centres(PinballMap("ellipse", a=2), np.array([0.0]))  # at the tip of the major axis, b**2/a from it
     >>> float(x[0]), abs(float(y[0]))
@@ -45,10 +55,7 @@ def centres(map: PinballMap, theta: Array) -> tuple[Array, Array]:
 
 
 def evolutes(fine: float = 1.0) -> Panels:
-    """The envelope of the normals, with flights of the slap map that touch it.
-
-    The wall of the cuspless cardioid is straight and has its centre of curvature at infinity.
-    """
+    """The evolutes (envelopes of the normals) and tangent slap-map flights; the straight cuspless wall has none."""
     panels = []
     for table, shape in TABLES:
         map = PinballMap(table, lam=0, **shape)
@@ -66,7 +73,7 @@ def evolutes(fine: float = 1.0) -> Panels:
 
 
 def draw_evolutes(panels: Panels) -> "Figure":
-    """The evolutes thick."""
+    """Draws the evolutes thick, with the boundary and flights."""
     figure, axes = sheet(panels, columns=4, height=2.2)
     for ax, panel in zip(axes, panels, strict=True):
         ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -75,7 +82,7 @@ def draw_evolutes(panels: Panels) -> "Figure":
     return figure
 
 
-LONG = 5  # of the ellipse whose eigenvalues are shown
+LONG = 5  # the semi-axis of the ellipse whose eigenvalues are shown
 
 
 def configuration(fine: float = 1.0) -> Panels:
@@ -97,7 +104,7 @@ def configuration(fine: float = 1.0) -> Panels:
 
 
 def draw_configuration(panels: Panels) -> "Figure":
-    """Later flights are lighter."""
+    """Draws the trajectories, later flights lighter."""
     from matplotlib.collections import LineCollection
 
     figure, axes = sheet(panels, height=3.0)
@@ -127,7 +134,7 @@ def eigenvalues(fine: float = 1.0) -> Panels:
 
 
 def draw_eigenvalues(panels: Panels) -> "Figure":
-    """The two branches, which meet at the dotted line."""
+    """Draws the two branches, which meet at the dotted line."""
     figure, (ax,) = sheet(panels, columns=1, height=3.0)
     (panel,) = panels
     ax.plot(*panel.curves["mu_plus"], color=BLACK, label=r"$|\mu_+|$")
@@ -135,19 +142,19 @@ def draw_eigenvalues(panels: Panels) -> "Figure":
     ax.axvline(float(panel.facts["lambda_minus"]), **FAINT)
     ax.set_xlim(0, 1)
     ax.set_ylim(0, 1)
-    ax.legend()
+    legend(ax)
     return figure
 
 
 def slap(fine: float = 1.0) -> Panels:
-    """The slap map and its second iterate at `a = 1.2`, polar angle against polar angle."""
+    """The slap map and its second iterate at `a = 1.2`, in polar angles."""
     map = PinballMap("ellipse", lam=0, a="1.2")
     curves = {f"T_0{power}": by_angle(map, n, scaled(400, fine, 20)) for n, power in ((1, ""), (2, "^2"))}
     return (Panel("ellipse, $a = 1.2$", "theta", "theta_image", curves, facts=facts(map)),)
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Both graphs with the diagonal."""
+    """Draws both graphs with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure

@@ -1,7 +1,7 @@
-"""The figures on the three-pointed egg. Paper: section 6.
+"""Figures on the egg with three vertices. Paper: section 6.
 
-Elastic collisions, the slap map and cycles of period 3; the plane of parameters with chaos or none; the attractors,
-and where they go as the contraction grows, from a small sweep on all cores.
+They show elastic collisions, the slap map, cycles of period 3, the plane of parameters, and the attractors, also as the
+contraction grows.
 """
 
 from typing import TYPE_CHECKING
@@ -66,7 +66,7 @@ def islands(fine: float = 1.0) -> Panels:
 
 
 def draw_islands(panels: Panels) -> "Figure":
-    """Neighbouring orbits differ in lightness."""
+    """Draws the orbits; neighbouring ones differ in lightness."""
     figure, axes = sheet(panels, columns=3, height=2.6)
     for ax, panel in zip(axes, panels, strict=True):
         for i, curve in enumerate(panel.curves.values()):
@@ -86,7 +86,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Four graphs a panel, with the diagonal."""
+    """Draws four graphs to a panel, with the diagonal."""
     figure, axes = sheet(panels, height=4.0)
     for ax, panel in zip(axes, panels, strict=True):
         graphs(ax, panel)
@@ -116,7 +116,7 @@ def triangle(lam: str) -> float:
 
 
 def draw_period3(panels: Panels) -> "Figure":
-    """The elastic triangle thick, the others lighter as `lam` falls; dotted diameters."""
+    """Draws the elastic triangle thick, the others lighter as `lam` falls, and the diameters dotted."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -145,7 +145,7 @@ def perturbed_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_perturbed_slap(panels: Panels) -> "Figure":
-    """A line, dots, plus signs and crosses, as in the paper; and the diagonal."""
+    """Draws a line, dots, plus signs and crosses, as in the paper, and the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot([-np.pi, np.pi], [-np.pi, np.pi], **(FAINT | {"color": "0.3"}))
@@ -160,11 +160,11 @@ def draw_perturbed_slap(panels: Panels) -> "Figure":
 
 SHADES = (DARK, MIDDLE, LIGHT)
 SHOWN = 250  # flights of a chaotic orbit in one direction
-RANGE = (0.36, 0.46)  # of the bifurcation diagram
+RANGE = (0.36, 0.46)  # contractions of the bifurcation diagram
 
 
 def configurations(fine: float = 1.0) -> Panels:
-    """The attractors in configuration space at four contractions, a chaotic one by an orbit on it."""
+    """The attractors in the table at four contractions; chaotic ones by an orbit on them."""
     panels = []
     for lam in ("0.1", "0.39", "0.43", "0.45"):
         map, bounces = PinballMap("egg", lam=lam, alpha=ALPHA), scaled(4000, min(fine, 1.0), 20)
@@ -179,7 +179,7 @@ def configurations(fine: float = 1.0) -> Panels:
 
 
 def along(curve: Curve, k: int) -> Curve:
-    """The flights that are nearest in direction to the diameter at `k*pi/3`, no more than `SHOWN`, with gaps between.
+    """The flights nearest in direction to the diameter at `k*pi/3`, at most `SHOWN`, separated by gaps.
 
     >>> along(Curve(np.array([0.0, 1.0, 1.0]), np.array([0.0, 0.1, 2.0])), 0).x.tolist()
     [0.0, 1.0, nan]
@@ -192,7 +192,7 @@ def along(curve: Curve, k: int) -> Curve:
 
 
 def draw_configurations(panels: Panels) -> "Figure":
-    """A shade for each of the three directions, so that a merged attractor shows its parts; period 3 black."""
+    """Draws flights in one shade for each of the three diameters that they follow, and period 3 in black."""
     figure, axes = sheet(panels, columns=4, height=2.1)
     for ax, panel in zip(axes, panels, strict=True):
         ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -222,7 +222,7 @@ def attractors(fine: float = 1.0) -> Panels:
 
 
 def draw_attractors(panels: Panels) -> "Figure":
-    """The smaller set on top of the larger one; period 3 as crosses."""
+    """Draws the smaller set on top of the larger one, and period 3 as crosses."""
     figure, (left, right) = sheet(panels, height=3.0)
     whole, enlarged = panels
     for start, color, label in (("0.45", MIDDLE, r"$\lambda = 0.45$"), ("0.43", BLACK, r"$\lambda = 0.43$")):
@@ -245,7 +245,7 @@ def draw_attractors(panels: Panels) -> "Figure":
 
 
 def bifurcation(fine: float = 1.0) -> Panels:
-    """Where particles from random starts are after a long time, for contractions around the cascade and the merging."""
+    """Particles from random starts after a long time, for contractions around the cascade and the merging crisis."""
     from numeric.sweeps.fields import bifurcation as sweep
     from numeric.sweeps.sweep import text_of
     from symbolic.tables.scene import Scene
@@ -267,7 +267,7 @@ def bifurcation(fine: float = 1.0) -> Panels:
 
 
 def draw_bifurcation(panels: Panels) -> "Figure":
-    """A horizontal slice for each contraction, as in the paper."""
+    """Draws a horizontal slice for each contraction, as in the paper."""
     figure, (ax,) = sheet(panels, columns=1, height=4.4)
     (panel,) = panels
     cloud(ax, panel.curves["attractors"], BLACK, size=0.35)
@@ -278,16 +278,16 @@ def draw_bifurcation(panels: Panels) -> "Figure":
 NAMES = ("no chaos found", "chaos", "undecided")
 
 
-EARLY = 200  # bounces after which most orbits are on their cycle; what is there need not be followed on
-FIRST = 8  # starts that are followed before the others: where one of them is chaotic, the pair's sign is known
+EARLY = 200  # bounces after which most orbits have reached a cycle and are dropped
+FIRST = 8  # starts that are followed first: if one of them is chaotic, the pair is decided
 
 
 def parameter_space(fine: float = 1.0) -> Panels:
-    """Which pairs `(alpha, lam)` have a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
+    """The pairs `(alpha, lam)` with a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
 
-    Each sign counts beyond twice its error (`numeric.sweeps.sweep`); a pair with no chaotic orbit and one whose
-    sign its error leaves open is undecided. The starts differ from one `lam` to the next and are those of the elastic
-    egg of the middle shape, which any shape may have.
+    An exponent counts when it exceeds twice its error (`numeric.sweeps.sweep`); a pair without a chaotic orbit, but
+    with an undecided one, is undecided. The starts differ from one `lam` to the next and are those of the elastic egg
+    of the middle shape, which are valid for every shape.
     """
     from symbolic.expressions.text import kernel, load
     from verification.arithmetic.balls import ARRAYS
@@ -307,8 +307,8 @@ def parameter_space(fine: float = 1.0) -> Panels:
 def signs(table: PinballMap, lams: Array, starts: Starts, bounces: int) -> NDArray[np.int64]:
     """For each contraction 1 where one of its starts is chaotic, 2 where that is undecided, else 0.
 
-    Orbits are measured over `bounces` after as many. One that is back where it was after `EARLY` is on a cycle that
-    attracts it, and is not followed on. Where one of the `FIRST` starts is chaotic the others are not asked.
+    Orbits are measured over `bounces` bounces after as many. An orbit that is periodic after `EARLY` bounces is on an
+    attracting cycle and is dropped. Where one of the `FIRST` starts is chaotic, the others are not computed.
 
     >>> starts = interior_starts(PinballMap("egg", lam=1, alpha="0.09"), 8, 1)
     >>> signs(PinballMap("egg", alpha="0.09"), np.array([0.1, 0.3]), starts, 400).tolist()
@@ -327,7 +327,7 @@ def signs(table: PinballMap, lams: Array, starts: Starts, bounces: int) -> NDArr
 
 
 def _signs(map: PinballMap, lam: Array, starts: Starts, bounces: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Which starts are chaotic, and of which it is decided."""
+    """Two masks: which starts are chaotic, and which are decided."""
     early = min(EARLY, bounces)
     soon = followed(map, starts, (early,))
     chaotic, decided = np.zeros(lam.size, dtype=bool), soon.period > 0
@@ -341,7 +341,7 @@ def _signs(map: PinballMap, lam: Array, starts: Starts, bounces: int) -> tuple[N
 
 
 def draw_parameter_space(panels: Panels) -> "Figure":
-    """Crosses and small plus signs, as in the paper; the doubling of period 2 as a black curve."""
+    """Draws crosses and small plus signs, as in the paper, and the doubling of period 2 as a black curve."""
     figure, (ax,) = sheet(panels, columns=1, height=3.6)
     (panel,) = panels
     assert panel.raster is not None

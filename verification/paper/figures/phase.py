@@ -1,7 +1,6 @@
-"""Orbits in the paper's coordinates, long-run behaviour, graphs of slap maps, and any scene in two panels.
+"""Data for figures: orbits in the paper's coordinates, long-run behaviour, graphs of slap maps, and phase portraits.
 
-The slap map's graph has gaps where it jumps (sections 2.2, 3.4, 4.2, 5.4 and 6.2). A scene of one's own is shown in
-two panels: where particles end, in the table and in phase space.
+A graph of a slap map has gaps where the map jumps (sections 2.2, 3.4, 4.2, 5.4 and 6.2).
 """
 
 from collections.abc import Callable
@@ -21,20 +20,20 @@ if TYPE_CHECKING:
 
 
 SEED = 1
-TRANSIENT = 2000  # bounces thrown away: the paper's several thousand, where draft pictures need no more
+TRANSIENT = 2000  # bounces before an orbit is shown
 
 
 class Settled(NamedTuple):
-    """Orbits after their transient, a particle to a column, and the larger exponent of each."""
+    """Orbits after a transient, one particle in each column, and the larger exponent of each."""
 
     orbit: Orbit
     nu_plus: Array
 
 
 def settled(map: PinballMap, particles: int, bounces: int, transient: int = TRANSIENT, seed: int = SEED) -> Settled:
-    """The orbits of particles that start in the interior, long after. A particle that stops is left out.
+    """The orbits of particles from random starts in the interior, after a transient; particles that stop are omitted.
 
-    The exponent is that of the last quarter of the transient.
+    The exponent is measured over the last quarter of the transient.
 
     >>> found = settled(PinballMap("ellipse", lam="1/2", a=2), 5, 8)
     >>> bool(np.all(np.abs(np.cos(found.orbit.theta)) < 1e-9)), bool(np.all(found.nu_plus < 0))
@@ -50,12 +49,12 @@ def settled(map: PinballMap, particles: int, bounces: int, transient: int = TRAN
 
 
 def particles_of(orbit: Orbit, chosen: Any) -> Orbit:
-    """Some of the particles, by an index of columns."""
-    return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their kinds
+    """Some of the particles of an orbit, by an index of columns."""
+    return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their types
 
 
 def arc_length(map: PinballMap, component: NDArray[np.int64], theta: Array) -> Array:
-    """The paper's `s`, from `-L/2` to `L/2`, `L` the perimeter.
+    """The paper's arc length `s`, from `-L/2` to `L/2` with the perimeter `L`.
 
     >>> cuspless = PinballMap("cuspless")
     >>> arc_length(cuspless, np.array([0, 0]), np.array([-0.001, 0.001])).round(2).tolist()
@@ -66,7 +65,7 @@ def arc_length(map: PinballMap, component: NDArray[np.int64], theta: Array) -> A
 
 
 def polar(map: PinballMap, theta: Array) -> Array:
-    """The polar angle, in [-pi, pi], of points on the first component: `theta` itself but for the ellipse.
+    """The polar angle, in [-pi, pi], of points on the first component; it differs from `theta` on the ellipse only.
 
     >>> polar(PinballMap("ellipse", a=2), np.array([np.pi / 4])).round(4).tolist()
     [0.4636]
@@ -97,19 +96,19 @@ def outline(map: PinballMap) -> Curve:
 
 
 def facts(map: PinballMap, **more: Fact) -> dict[str, Fact]:
-    """Table, shape and contraction of a panel, and whatever else its data were computed from."""
+    """Table, shape and contraction of a panel, and further data, by name."""
     shape = {entry.name: float(value) for entry, value in zip(map.ir.shape, map.shape, strict=True)}
     lam: dict[str, Fact] = {"lam": float(map.lam)} if map.lam.size == 1 else {}
     return {"table": map.ir.table, **shape, **lam, **more}
 
 
-FINEST = 1e-9  # of the abscissa: a jump that survives is no slope
-JUMP = 0.02  # of the range of the values: larger steps are halved
-MOST = 200_000  # points of a graph
+FINEST = 1e-9  # the least step of the abscissa: larger changes over it are jumps
+JUMP = 0.02  # relative to the range of the values: larger steps are halved
+MOST = 200_000  # the most points of a graph
 
 
 def graph(f: Callable[[Array], Array], low: float, high: float, points: int) -> Curve:
-    """`f` over the open interval, halved until its steps are small; a gap where one stays large.
+    """The graph of `f` over an open interval, refined until its steps are small, with gaps at jumps.
 
     >>> stairs = graph(np.floor, 0.0, 2.0, 5)
     >>> int(np.isnan(stairs.y).sum()), np.unique(stairs.y[~np.isnan(stairs.y)]).tolist()
@@ -130,7 +129,7 @@ def graph(f: Callable[[Array], Array], low: float, high: float, points: int) -> 
 
 
 def slap_by_arc_length(map: PinballMap, iterate: int, points: int) -> Curve:
-    """The slap map's iterate, arc length against arc length."""
+    """The graph of an iterate of the slap map, in arc length."""
     half = map.arclength.perimeter / 2
 
     def image(s: Array) -> Array:
@@ -142,7 +141,7 @@ def slap_by_arc_length(map: PinballMap, iterate: int, points: int) -> Curve:
 
 
 def slap_by_angle(map: PinballMap, iterate: int, points: int) -> Curve:
-    """The slap map's iterate, polar angle against polar angle, in [-pi, pi); for tables of one component."""
+    """The graph of an iterate of the slap map, in polar angles in [-pi, pi); for tables of one component."""
 
     def image(theta: Array) -> Array:
         return polar(map, map.slap(theta, iterate).theta[-1])
@@ -151,11 +150,11 @@ def slap_by_angle(map: PinballMap, iterate: int, points: int) -> Curve:
     return Curve(polar(map, found.x), found.y)
 
 
-PARTICLES, FLIGHTS = 300, 3  # orbits in phase space, and of those drawn in the table
+PARTICLES, FLIGHTS = 300, 3  # orbits in phase space, and orbits drawn in the table
 
 
 def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
-    """The flights of a few particles and the bounces of many, long after their start.
+    """The flights of a few particles and the bounces of many after a transient, as two panels.
 
     >>> room, space = portrait(PinballMap("ellipse", lam="1/2", a=2), 0.1)
     >>> space.x, space.y
@@ -172,7 +171,7 @@ def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
 
 
 def draw_portrait(panels: Panels) -> "Figure":
-    """Both panels side by side."""
+    """Draws both panels side by side."""
     figure, (room, space) = sheet(panels)
     room.plot(*panels[0].curves["flights"], color=BLACK, lw=0.3)
     room.plot(*panels[0].curves["outline"], **OUTLINE)

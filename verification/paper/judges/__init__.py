@@ -1,4 +1,4 @@
-"""The judges of the sentences that are not on the egg: the map, circle and ellipse, the cardioids, what is sampled."""
+"""Judges of claims on the map, the circle, the ellipse and the cardioids, and of sampled claims."""
 
 import lazy_loader
 

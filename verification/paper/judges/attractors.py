@@ -1,8 +1,7 @@
-"""Claims on which attractors there are: existence proved by certified cycles, the rest sampled. Sections 1, 2, 5, 6, 7.
+"""Judges of claims on which attractors exist. Paper: sections 1, 2, 5, 6, 7.
 
-A certified attracting cycle is a witness: it refutes "only" and "all", and proves "is found". That nothing else
-attracts is sampled: none of `n` random starts reached anything else, so the share of those that do is below
-`3/n` with 95 per cent confidence.
+A certified attracting cycle refutes "only" and "all", and proves "is found". That nothing else attracts is sampled: if
+none of `n` random starts reaches anything else, the share of those that do is below `3/n` with 95 per cent confidence.
 """
 
 from collections.abc import Iterable
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from flint import acb, arb
-from sympy import Rational, Symbol, lambdify, limit, oo, pi
+from sympy import Expr, Rational, Symbol, lambdify, limit, oo, pi
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
@@ -22,7 +21,7 @@ from symbolic.cycles.cycle import cuspless_horizontal, is_double_normal
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.splitting import splits
-from symbolic.expressions.signs import Finding, Outcome
+from symbolic.expressions.signs import Outcome, SignFinding
 from symbolic.motion.flight import flight
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha as letter
@@ -34,76 +33,81 @@ from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown
 from verification.paper.judges.ellipse import settles, two_cycles
 from verification.proofs.global_dynamics.branch import exact
-from verification.proofs.global_dynamics.fates import Fate
+from verification.proofs.global_dynamics.fates import AlmostEveryOrbit
 from verification.proofs.global_dynamics.returns import every_return
 from verification.proofs.manifolds.enclosed import attracting, complex_balls
-from verification.proofs.manifolds.known import TRIANGLE, bands, boundary, table, touching
-from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.manifolds.known import TRIANGLE, bands, boundary, earliest, table, touching
+from verification.proofs.manifolds.saddle import SaddleCycle
+from verification.proofs.starts.below_star import HORIZONTAL
 
 SEED, STARTS, FEW, BITS, STEPS = 1, 200, 40, 160, 200
 SHAPE = "0.08"
+SEEN = ("0.43", "0.66", "0.7", "0.99")
 JOIN = 3**0.5 / 4
 
 
 @cache
 def found(name: str, contraction: str, starts: int = STARTS, **shape: Any) -> tuple[Attractor, ...]:
-    """The attractors that random starts reach, with the images under the table's symmetries."""
+    """The attractors that random starts reach, and their images under the table's symmetries."""
     return find(PinballMap(name, lam=contraction, **shape), starts, SEED, bounces=1000, images=True)
 
 
 def egg(contraction: str, starts: int = STARTS, alpha: str = SHAPE) -> tuple[Attractor, ...]:
-    """Those of the egg."""
+    """The attractors of the egg that random starts reach."""
     return found("egg", contraction, starts, alpha=alpha)
 
 
 def unsettled(attractors: Iterable[Attractor], starts: int = STARTS) -> int:
-    """How many of the starts reached none of them."""
+    """The number of starts that reached none of the attractors."""
     return starts - sum(a.share.count for a in attractors if a.share)
 
 
 def chaotic(attractors: Iterable[Attractor]) -> list[Attractor]:
-    """The chaotic ones."""
+    """The chaotic ones among attractors."""
     return [a for a in attractors if a.kind is Kind.CHAOTIC]
 
 
 def cycles(attractors: Iterable[Attractor], period: int = 0) -> list[Attractor]:
-    """The cycles, of one period when it is given."""
+    """The cycles among attractors, with the given period unless it is 0."""
     return [a for a in attractors if a.kind is Kind.CYCLE and period in (0, a.period)]
 
 
 @cache
-def proved_at(contraction: str, period: int, name: str = "egg", alpha: str = SHAPE, starts: int = STARTS) -> Finding:
-    """Every cycle of a period that was found, and its images, proved to exist and to attract at a contraction."""
+def proved_at(
+    contraction: str, period: int, name: str = "egg", alpha: str = SHAPE, starts: int = STARTS
+) -> SignFinding:
+    """The finding that all sampled cycles of a period, and their images, are proved to attract."""
     shape = {"alpha": alpha} if name == "egg" else {}
     table, some = tables.named(name).at(**shape), cycles(found(name, contraction, starts, **shape), period)
     proofs = [certificate(table, Rational(contraction), a.points) for a in some]
     good = bool(proofs) and all(proof.proved for proof in proofs)
     said = f"{len(some)} attracting cycles of period {period} are proved at lam = {contraction}"
-    return Finding(Outcome.PROVED if good else Outcome.UNKNOWN, said)
+    return SignFinding(Outcome.PROVED if good else Outcome.UNKNOWN, said)
 
 
 @cache
-def strange(alpha: str, kind: str = "boundary") -> tuple[Finding, arb]:
-    """That the egg of a shape has strange attractors near one of its tangencies, and the contraction there.
+def strange(alpha: str, kind: str = "boundary") -> tuple[SignFinding, arb]:
+    """The finding of strange attractors of the egg near a tangency, and the contraction there.
 
-    The shape is `SHAPE`, but for the `boundary` tangency, which is known at more, and that of `bands`, at 1/10.
+    The shape is `SHAPE`, except for the `boundary` tangency, known at further shapes, and `bands`, at 1/10.
     """
-    found = boundary(Rational(alpha)) if kind == "boundary" else bands() if kind == "bands" else touching(kind)
-    held = found.certified and all(found.strange.values())
+    alone = {"boundary": lambda: boundary(Rational(alpha)), "bands": bands, "earliest": earliest}
+    found = alone[kind]() if kind in alone else touching(kind)
+    held = found.proved and found.strange.proved
     said = (
         f"in every neighbourhood of lam = {found.value.str(9, radius=False)}, at alpha = {alpha}, strange attractors "
         f"exist for a set of contractions of positive measure: manifolds of the dissipative "
-        f"{found.claim.contact.unstable.name} touch there, quadratically, and the theorem of Mora and Viana applies"
+        f"{found.contact.unstable.name} touch there, quadratically, and the theorem of Mora and Viana applies"
     )
     return answer(held or None, said), found.value
 
 
 @judges("map.two_attractor_types")
 def two_types(claim: Claim) -> Judgement:
-    """Refuted in the egg: a strange attractor next to a tangency has no dominated splitting; true in the other tables.
+    """Refuted in the egg: a strange attractor near a tangency has no dominated splitting; true in the other tables.
 
-    In the place where such an attractor lives areas shrink. It is the closure of an unstable manifold with a dense
-    orbit, and of such a set in a disc `docs/global.md` proves that it has no dominated splitting.
+    The attractor lies in a disc where areas shrink. It is the closure of an unstable manifold with a dense orbit, and
+    `docs/global.md` proves that such a set has no dominated splitting.
     """
     chaos, where = strange(SHAPE)
     tangency = f"lambda = {where.str(6, radius=False)}"
@@ -118,21 +122,21 @@ def two_types(claim: Claim) -> Judgement:
         "invariant set of orbits off the cusp and the joins has dominated splitting, for 0 <= lam < 1; the egg has "
         "strange attractors, for a set of contractions of positive measure next to the tangency of a saddle's "
         "manifolds, and these have none: each is the closure of an unstable manifold that folds in a disc in which "
-        "areas shrink. Of the chaotic attractors seen in the egg this decides nothing",
+        "areas shrink",
         by("the circle, the ellipses, both cardioids", settles(), two_cycles(), splits()),
         "There is a third type: in every neighbourhood of a homoclinic tangency, as at "
         f"alpha = {SHAPE}, {tangency}, the egg has strange attractors without dominated splitting, for a set of lambda "
-        "of positive measure.",
+        "of positive measure. Of the chaotic attractors that are seen in the egg this decides nothing.",
     )
 
 
 @cache
-def rotating() -> Finding:
-    """Attracting closed curves of the egg on which the rotation is irrational, which refute that there are none."""
+def rotating() -> tuple[SignFinding, dict[Symbol, Expr]]:
+    """The finding of attracting closed curves of the egg with irrational rotation, and the parameters of birth."""
     found = invariant_circle()
     shape, contraction = (x.str(15, radius=False) for x in found.enclosure.zero[-2:])
     holds = found.certified and found.attracting and found.side > 0 and found.problem.irrational
-    return counterexample(
+    finding = by(
         f"the egg at alpha = {shape}..., for some contractions above lam = {contraction}..., as near to it as one "
         "likes: an attracting curve, diffeomorphic to a circle, surrounds each point of a cycle of period 17, and the "
         "17th iterate of the map on it is conjugate to an irrational rotation",
@@ -142,28 +146,33 @@ def rotating() -> Finding:
             "that omega/(2*pi) is irrational; their size grows with lam at the rate "
             f"{found.growth.str(6, radius=False)}, the Lyapunov coefficient is {found.lyapunov.str(6, radius=False)}",
         ),
-        at={letter: Rational(shape), lam: Rational(contraction)},
     )
+    return finding, {letter: Rational(shape), lam: Rational(contraction)}
 
 
 @judges("map.no_irrational_rotation")
 def no_rotation(claim: Claim) -> Judgement:
-    """Some are born in the egg, at a torus bifurcation; excluded where every orbit tends to a cycle or stretches."""
-    return Judgement(
-        rotating(),
-        "in the egg there are some, which attract; none for lam < 1 in the circle and the ellipses (lam > 0), where "
+    """Random starts reach no invariant circle, as the paper reports; where circles exist, and where not, is proved."""
+    circles, _ = rotating()
+    excluded = by(
+        "the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits(), every_return()
+    )
+    return sampled(
+        "not in what random starts reach. In the egg there are some, which attract, proved; none for lam < 1 in "
+        "the circle and the ellipses (lam > 0), where "
         "every orbit tends to a cycle; none that attracts in the cardioid, and in the cuspless one for lam >= 1/10, "
         "where every orbit off the cusp and the joins stretches exponentially, as none does along or near a smooth "
         "curve with such a rotation; at lam = 1 the lines of the circle are such curves (theta -> theta + pi - 2*phi)",
-        by("the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits(), every_return()),
-        "The behaviour that was not observed occurs in the egg: next to alpha = 0.06873034, lambda = 0.96378998 "
-        "attracting invariant circles with an irrational rotation surround the points of a cycle of period 17.",
+        f"sampled: of {STARTS} random starts in the egg at lam = {', '.join(SEEN)} each ends on a cycle or on a "
+        "chaotic "
+        f"set. Answered, proved: {circles.reason}; none elsewhere: {excluded.reason}",
+        bool(circles) and bool(excluded) and all(a.kind in (Kind.CYCLE, Kind.CHAOTIC) for x in SEEN for a in egg(x)),
     )
 
 
 @judges("map.whispering_gallery")
 def whispering_gallery(claim: Claim) -> Judgement:
-    """In the circle the angle is multiplied by `lam`, passes pi/2 after finitely many bounces, and the map ends."""
+    """A counterexample: in the circle the angle grows by `lam > 1` beyond pi/2, where the map ends."""
     more, n = Symbol("more", positive=True), Symbol("n", positive=True)
     exit = flight()[1]
     rule = equal(exit, lam * phi, {})
@@ -189,17 +198,16 @@ def whispering_gallery(claim: Claim) -> Judgement:
 
 
 NEAR_ZERO = Fraction(1, 20)
-HORIZONTAL = ((0, 0.0, 0.0), (1, 0.0, 0.0))  # component, theta, phi: of the arc's rightmost point and the wall's middle
 
 
 @cache
-def near_zero() -> Fate:
-    """Boxes of all of phase space for all small contractions at once."""
-    return Fate(Scene("cuspless"), (Fraction(0), NEAR_ZERO), (2048, 128), 8, (HORIZONTAL,))
+def near_zero() -> AlmostEveryOrbit:
+    """The theorem on almost every orbit of the cuspless table for `lam <= NEAR_ZERO`."""
+    return AlmostEveryOrbit(Scene("cuspless"), (Fraction(0), NEAR_ZERO), (2048, 128), 8, (HORIZONTAL,))
 
 
-def settles_near_zero() -> Finding:
-    """Almost every orbit converges to the horizontal one."""
+def settles_near_zero() -> SignFinding:
+    """The finding that almost every orbit converges to the horizontal one for small `lam`."""
     return by(
         f"for 0 < lam <= {NEAR_ZERO} almost every orbit converges to the horizontal one of period 2",
         answer(
@@ -213,7 +221,7 @@ def settles_near_zero() -> Finding:
 
 @judges("cuspless.period2_attracts")
 def period2_attracts(claim: Claim) -> Judgement:
-    """Almost every start, for all small contractions: those that come to the vertical orbit have no area."""
+    """Almost every start converges to period 2 for small contractions; starts of the vertical orbit have no area."""
     return Judgement(
         settles_near_zero(),
         f"proved for 0 < lam <= {NEAR_ZERO}: all but a set of starts of no area, which holds the stable manifold of "
@@ -223,8 +231,8 @@ def period2_attracts(claim: Claim) -> Judgement:
 
 @judges("cuspless.compact_near_zero")
 def compact_near_zero(claim: Claim) -> Judgement:
-    """Where the boxes lie to which orbits may return."""
-    parts, bounds = near_zero().parts, [1.1, 0.1]  # the joins are at 2*pi/3 on the arc and at 0.433 on the wall
+    """The recurrent boxes lie in four rectangles away from joins and grazing."""
+    parts, bounds = near_zero().parts, [1.1, 0.1]  # joins: at 2*pi/3 on the arc, at 0.433 on the wall
     ends = [np.maximum(-p.boxes.x[0], p.boxes.x[1]) < np.array(bounds)[p.boxes.chart] for p in parts or ()]
     inside = all(map(np.all, ends)) if ends else None
     return Judgement(
@@ -240,54 +248,56 @@ def compact_near_zero(claim: Claim) -> Judgement:
 
 @judges("cuspless.attractors_nonsmooth")
 def nonsmooth(claim: Claim) -> Judgement:
-    """The jump of the attractor's slope is `lam` times that of the curvature: at the joins, and not at `s = 0`."""
+    """The attractor's slope jumps at the joins by `lam` times the jump of the curvature, and not at `s = 0`."""
     said = []
     for contraction in ("0.5", "0.8"):
         map = PinballMap("cuspless", lam=contraction)
         jumps = [jump(*slopes(map, STARTS // 2, SEED), place) for place in (-JOIN, 0.0, JOIN)]
         said.append(f"at lam = {contraction}: {', '.join(f'{x:+.3f}' for x in jumps)}")
     return Judgement(
-        Finding(
+        SignFinding(
             Outcome.UNKNOWN,
             "the slope dphi/ds of the attractor jumps by lam times the jump of the curvature (from the derivative "
             "matrix), that is by 3*lam/2 at the joins and by 0 at s = 0; measured at -sqrt(3)/4, 0, sqrt(3)/4: "
             f"{'; '.join(said)}. So it has corners at the joins, and none is seen at s = 0",
         ),
-        "corners at s = +-sqrt(3)/4, where the slope dphi/ds jumps by 3*lam/2; no corner at s = 0",
+        "a curve of the attractor that crosses s = +-sqrt(3)/4 has a corner there, where the slope dphi/ds jumps by "
+        "3*lam/2; at s = 0 none is seen. That there are such curves for every lam, and that the attractor expands, is "
+        "not proved",
     )
 
 
 @judges("egg.higher_period_attractors")
 def higher_periods(claim: Claim) -> Judgement:
-    """A witness near `lam = 1`: cycles of period 21."""
+    """Attractors of higher period exist: cycles of period 21 near `lam = 1`."""
     return Judgement(
         by("at alpha = 0.08", proved_at("0.99", 21)),
         "found at lam = 0.99: period 21; at 0.999 also periods 24, 30, 51; at 0.82 to 0.88 periods 12 and 24",
     )
 
 
-TENTH, RANGE = "0.1", (Fraction(295, 1000), Fraction(472, 1000))  # a shape, and contractions where triangles attract
-BETWEEN = ("0.4", "0.45")  # of these, where both are sampled
+TENTH, RANGE = "0.1", (Fraction(295, 1000), Fraction(472, 1000))  # a shape, and a range of lam where triangles attract
+BETWEEN = ("0.4", "0.45")  # contractions of this range, where both are sampled
 
 
 @cache
-def triangles_attract(low: Fraction, high: Fraction) -> Finding:
-    """At that shape a cycle of period 3 attracts at every contraction of a range, halved until each part is proved."""
+def triangles_attract(low: Fraction, high: Fraction) -> SignFinding:
+    """The finding that at `alpha = 1/10` a cycle of period 3 attracts at every contraction of a range, by halving."""
     bounce, parts, tried = lambdify(lam, near_flat().subs(letter, Rational(TENTH)), "cmath"), [(low, high)], 0
     with working(BITS):
         map = table(Rational(TENTH)).over(complex_balls(BITS))
         while parts and tried < STEPS:
             (a, b), tried = parts.pop(), tried + 1
             middle = (a + b) / 2
-            orbit = Orbit("triangle", (complex(bounce(float(middle))).real,), TRIANGLE.closure)
+            orbit = SaddleCycle("triangle", (complex(bounce(float(middle))).real,), TRIANGLE.closure)
             if not attracting(orbit, map, acb(exact(a).real.union(exact(b).real))):
                 parts += [(middle, b), (a, middle)]
     return answer(not parts, f"a triangle of period 3 attracts at every lam from {float(low)} to {float(high)}")
 
 
 @cache
-def both_near_tenth() -> tuple[Finding, list[arb]]:
-    """Strange attractors next to two contractions of a range over which the triangles of period 3 attract."""
+def both_near_tenth() -> tuple[SignFinding, list[arb]]:
+    """The finding of strange attractors near two contractions at which the triangles of period 3 attract."""
     low, high = RANGE
     (first, one), (last, other) = strange(TENTH, "bands"), strange(TENTH)
     inside = exact(low).real < one < other < exact(high).real
@@ -297,10 +307,10 @@ def both_near_tenth() -> tuple[Finding, list[arb]]:
 
 @judges("egg.coexistence_near_tenth")
 def near_tenth(claim: Claim) -> Judgement:
-    """A range over which triangles attract, and in which, next to both of its ends, strange attractors are.
+    """Triangles attract over a range of contractions, and strange attractors exist near both of its ends.
 
-    Both last for all shapes nearby: the zeros are regular, the rest are strict inequalities over a closed range. Sets
-    of positive measure next to two contractions are no range: chaos in between is sampled.
+    Both persist for all nearby shapes, since zeros are regular and inequalities strict over a closed range. Sets of
+    positive measure near two contractions are not a range: chaos in between is sampled.
     """
     (proof, values), each = both_near_tenth(), {x: egg(x, FEW, TENTH) for x in BETWEEN}
     low, high = map(float, RANGE)
@@ -317,7 +327,7 @@ def near_tenth(claim: Claim) -> Judgement:
 
 @judges("egg.figure_chaos")
 def figure_chaos(claim: Claim) -> Judgement:
-    """Panels (c) and (d): a chaotic attractor at one diameter, and one that visits all three."""
+    """Panels (c) and (d): chaotic attractors at one diameter each, and one that visits all three."""
     local, wide = chaotic(egg("0.43")), chaotic(egg("0.45"))
     good = [len(vertices(a)) for a in local] == [1, 1, 1] and [len(vertices(a)) for a in wide] == [3]
     rates = [f"{max((a.nu_plus for a in some), default=np.nan):.2f}" for some in (local, wide)]
@@ -329,7 +339,7 @@ def figure_chaos(claim: Claim) -> Judgement:
 
 
 def vertices(attractor: Attractor) -> set[int]:
-    """The vertices of the egg, at `2*pi*k/3`, to which points of an attractor come within 0.3 radians.
+    """The indices `k` of vertices, at `2*pi*k/3`, to which points of an attractor come within 0.3 radians.
 
     >>> from types import SimpleNamespace
     >>> sorted(vertices(SimpleNamespace(points=SimpleNamespace(theta=np.array([0.1, 3.1, -2.0])))))
@@ -342,7 +352,7 @@ def vertices(attractor: Attractor) -> set[int]:
 
 @judges("egg.only_smooth_chaos")
 def only_smooth(claim: Claim) -> Judgement:
-    """In the circle and the ellipses only cycles of period 2 attract, and the egg has strange attractors: proved."""
+    """In the circle and the ellipses only cycles of period 2 attract, and the egg has strange attractors, proved."""
     others = by(
         "for 0 < lam < 1 every orbit of an ellipse converges to one of two cycles, and every orbit of the circle to a "
         "diameter, since |phi| falls by the factor lam",

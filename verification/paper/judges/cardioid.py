@@ -1,4 +1,4 @@
-"""Claims on the cardioid. Paper: section 4."""
+"""Judges of claims on the cardioid. Paper: section 4."""
 
 from sympy import Expr, Function, Interval, Matrix, Rational, S, Symbol, cancel, cos, pi, sin, sqrt
 
@@ -16,7 +16,7 @@ from symbolic.cycles.cardioid_slap import (
 )
 from symbolic.cycles.cycle import Cycle, cardioid_vertical, is_double_normal
 from symbolic.cycles.thresholds import stability_number
-from symbolic.expressions.signs import Finding, conjunction, positive
+from symbolic.expressions.signs import SignFinding, conjunction, positive
 from symbolic.motion.collision import determinant, growth_defects, telescoped
 from symbolic.tables import cardioid
 from symbolic.tables.curves import trigonometric
@@ -36,20 +36,20 @@ def position(angle: Expr) -> Expr:
 
 @judges("cardioid.polar")
 def radius(claim: Claim) -> Judgement:
-    """The distance from the pole along the direction `theta`."""
+    """The printed polar equation, from the distance to the pole in the direction `theta`."""
     x, y = BOUNDARY.point
     return identity(claim, trigonometric(x * cos(theta) + y * sin(theta)))
 
 
 @judges("cardioid.arc_length")
 def length(claim: Claim) -> Judgement:
-    """The integral of the speed `sqrt(2 + 2*cos(theta))`."""
+    """The printed arc length, from the integral of the speed `sqrt(2 + 2*cos(theta))`."""
     return identity(claim, arc_length(BOUNDARY))
 
 
 @judges("cardioid.flattest_point", "cardioid.minimal_curvature")
 def flattest(claim: Claim) -> Judgement:
-    """`x = C*(1 + C)` and `kappa**2 = 9/(8*(1 + C))` with `C = cos(theta)`."""
+    """The flattest point is the rightmost: `x = C*(1 + C)` and `kappa**2 = 9/(8*(1 + C))` with `C = cos(theta)`."""
     rest = Interval.Ropen(-1, 1)
     squared = cancel(curvature(BOUNDARY) ** 2).subs(cos(theta), C)
     return Judgement(
@@ -65,19 +65,19 @@ def flattest(claim: Claim) -> Judgement:
 
 @judges("cardioid.cusp_s")
 def cusp_position(claim: Claim) -> Judgement:
-    """Both ends of the closed form."""
+    """The printed arc lengths of the cusp, from both ends of the closed form."""
     return identity(claim, Matrix([position(-pi), position(pi)]))
 
 
 @judges("cardioid.vertical_orbit_s")
 def vertical_position(claim: Claim) -> Judgement:
-    """The bounces of the vertical cycle."""
+    """The printed arc lengths of the bounces of the vertical cycle."""
     return identity(claim, Matrix([position(angle) for _, angle in cardioid_vertical().bounces]))
 
 
 @judges("cardioid.curvature_polar")
 def polar_curvature(claim: Claim) -> Judgement:
-    """The curvature of `rho(theta)` for an undetermined function `rho`."""
+    """The printed curvature of `rho(theta)`, for an undetermined function `rho`."""
     rho = Function("rho", real=True)(theta)
     general = curvature(Component("polar", (rho * cos(theta), rho * sin(theta)), -pi, pi))
     orders = {rho.diff(theta, 2): claim.names["rho2"], rho.diff(theta): claim.names["rho1"], rho: claim.names["rho"]}
@@ -88,13 +88,13 @@ def polar_curvature(claim: Claim) -> Judgement:
 
 @judges("cardioid.curvature")
 def own_curvature(claim: Claim) -> Judgement:
-    """Derived from the definition."""
+    """The printed curvature of the cardioid, derived from the definition."""
     return identity(claim, curvature(BOUNDARY))
 
 
 @judges("cardioid.cusp_undefined")
 def cusp_undefined(claim: Claim) -> Judgement:
-    """The velocity is `2*cos(theta/2)*(-sin, cos)(3*theta/2)`: it stops at the cusp and turns back."""
+    """The map is undefined at the cusp: the velocity `2*cos(theta/2)*(-sin, cos)(3*theta/2)` vanishes and reverses."""
     half = Symbol("half", real=True)
     moving = velocity(BOUNDARY).subs(theta, 2 * half)
     direction = Matrix([-sin(3 * half), cos(3 * half)])
@@ -111,7 +111,7 @@ def cusp_undefined(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_sum_area")
 def exponent_sum(claim: Claim) -> Judgement:
-    """Determinants multiply, so their logarithms add along an orbit."""
+    """The sum of exponents is the mean of `log|det DT|`, since determinants multiply along an orbit."""
     return Judgement(
         by(
             "the growth rates of both normalising factors of D(T^n) add up to that of |det D(T^n)|, which is the mean "
@@ -123,14 +123,14 @@ def exponent_sum(claim: Claim) -> Judgement:
     )
 
 
-def slap_facts() -> tuple[Finding, Finding]:
-    """The parametrisation of the slap map, and that it covers each landing point once."""
+def slap_facts() -> tuple[SignFinding, SignFinding]:
+    """The findings that the parametrisation of the slap map is correct and covers each landing point once."""
     return parametrised(), forward_once()
 
 
 @judges("cardioid.slap_slow", "cardioid.slap_fast")
 def slow_and_fast(claim: Claim) -> Judgement:
-    """`T0'` at two landing points, and the region between the roots of `T0' = 1`."""
+    """The slap map's slope `T0'` at two landing points, and the region between the roots of `T0' = 1`."""
     first, last = (edge.n(6) for edge in slow_region())
     return Judgement(
         by(
@@ -146,7 +146,7 @@ def slow_and_fast(claim: Claim) -> Judgement:
 
 @judges("cardioid.slap_slow_caption")
 def slow_caption(claim: Claim) -> Judgement:
-    """The cusp is at the other end of the boundary."""
+    """The caption confuses the cusp with the flattest point, at the other end of the boundary."""
     first, last = (edge.n(6) for edge in slow_region())
     return Judgement(
         counterexample("s = 0 is the flattest point; the cusp is at s = +-4", zero("", position(pi) - 4)),
@@ -156,8 +156,8 @@ def slow_caption(claim: Claim) -> Judgement:
     )
 
 
-def expansion() -> Finding:
-    """`|(T0**2)'| > 3/2` on the whole table, and `expansion_infimum` is its least value."""
+def expansion() -> SignFinding:
+    """The finding that the slap map `T0` has `|(T0**2)'| > 3/2` everywhere, with `expansion_infimum` as the minimum."""
     return by(
         "(T0^2)' > 3/2 at every point whose two flights are defined, and its infimum is attained",
         *slap_facts(),
@@ -168,7 +168,7 @@ def expansion() -> Finding:
 
 @judges("cardioid.slap_expanding_caption")
 def expanding_caption(claim: Claim) -> Judgement:
-    """The caption has `T0'` for `(T0^2)'`."""
+    """The caption prints the slope of the slap map `T0` for that of `T0^2`."""
     slow = positive(1 - slope_squared(Rational(-3, 5)), {})
     return Judgement(
         counterexample(
@@ -186,7 +186,7 @@ def expanding_caption(claim: Claim) -> Judgement:
 
 @judges("cardioid.slap_expanding", "cardioid.slap_second_derivative")
 def expanding(claim: Claim) -> Judgement:
-    """Sturm on the algebraic parametrisation; the infimum is an algebraic number."""
+    """The second iterate expands, by Sturm's theorem on an algebraic parametrisation, with an algebraic infimum."""
     return Judgement(expansion(), "inf (T0^2)' = 1.506262..., on orbits that cross the axis", value=expansion_infimum())
 
 
@@ -196,8 +196,8 @@ def q_landing(cycle: Cycle) -> Expr:
     return sin(half) / sqrt(1 + 7 * cos(half) ** 2)
 
 
-def alone(landing: Expr) -> tuple[Finding, Finding]:
-    """Has `T0^2` one mirror pair of fixed points, the one that lands at `q = landing`?"""
+def alone(landing: Expr) -> tuple[SignFinding, SignFinding]:
+    """The findings that the slap map's square `T0^2` has one mirror pair of fixed points, landing at `q = landing`."""
     found = fixed_points()
     here = [zero("it is the one that was counted", end - landing) for ends in found for end in ends]
     return answer(len(found) == 1, "Sturm: T0^2 has one mirror pair of fixed points"), conjunction(*here)
@@ -205,7 +205,7 @@ def alone(landing: Expr) -> tuple[Finding, Finding]:
 
 @judges("cardioid.vertical_orbit")
 def vertical_orbit(claim: Claim) -> Judgement:
-    """A double normal with `P > 1`, and the only fixed points of `T0^2`, by counting."""
+    """The vertical orbit is an unstable double normal, and gives the only fixed points of the slap map's square."""
     cycle = cardioid_vertical()
     P = stability_number(cycle)
     return Judgement(
@@ -222,7 +222,7 @@ def vertical_orbit(claim: Claim) -> Judgement:
 
 @judges("cardioid.evolute")
 def cardioid_evolute(claim: Claim) -> Judgement:
-    """The centre of curvature is `2/3 - z(theta + pi)/3`."""
+    """The evolute is a cardioid: the centre of curvature is `2/3 - z(theta + pi)/3`."""
     mirrored = [-coordinate.subs(theta, theta + pi) / 3 for coordinate in BOUNDARY.point]
     return Judgement(
         by(

@@ -1,39 +1,33 @@
-"""Claims on the attractors and exponents of both cardioids, proved or sampled. Paper: sections 4.1 to 5.3.
+"""Judges of claims on attractors and exponents of both cardioids, proved or sampled. Paper: sections 4.1 to 5.3.
 
 `symbolic.cycles.defocusing` shows, with `g = 1 + tan((1 - lam)*pi/8)**2/2`, for every `lam < 1` of the cardioid: on
 every orbit off the cusp the lower limit of `log|D(T**n) (1, 0)|/n` is at least `log(g)`.
 `symbolic.cycles.almost_every` shows for almost every start that its upper limit is at most `log(2)`, and that vectors
-of one direction shrink. Not shown for `0 < lam < 1`: that the limits exist, a natural (SRB) measure, transitivity. At
-`lam = 1` the exponents exist for almost every start; at `lam = 0` the natural measure and its exponent are proved.
+of one direction shrink. For `0 < lam < 1` finitely many natural (SRB) measures have basins that hold almost every
+start, and exponents exist there (`docs/exponents.md`, Theorem 11); that there is one is not shown. At `lam = 1` the
+exponents exist for almost every start; at `lam = 0` the natural measure and its exponent are proved.
 """
 
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Rational, S, log, sin
+from sympy import S, log, sin
 
-from numeric import PinballMap
-from numeric.backends import elementary
-from numeric.pinball.sampling import Growth, interior_starts
 from symbolic.cycles.almost_every import largest_exponent, two_rates
 from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
 from symbolic.cycles.defocusing import expands, least_exponent
 from symbolic.cycles.normal_forms import a, coefficient, least_bend, return_map
-from symbolic.expressions.signs import Finding
+from symbolic.expressions.signs import SignFinding
 from symbolic.motion.collision import log_cosine_mean
-from symbolic.tables import cardioid
-from symbolic.tables.geometry import arc_length, curvature, velocity
+from symbolic.tables import cardioid, cuspless
+from symbolic.tables.geometry import arc_length, turning
 from symbolic.tables.table import theta
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import answer, by, equal, greater, judges, sampled, shown, zero
+from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown, zero
 from verification.paper.judges.attractors import NEAR_ZERO, settles_near_zero
 from verification.paper.judges.exponents import (
-    BALLS,
-    BOUNCES,
     CELLS,
-    EARLY,
-    SEED,
     Spectrum,
     spectrum,
     uneven,
@@ -41,23 +35,24 @@ from verification.paper.judges.exponents import (
 )
 from verification.paper.judges.hyperbolicity import chaos
 from verification.paper.judges.located import TENTHS, at_most_zero
+from verification.proofs.global_dynamics.one_step import ONE_STEP
 from verification.proofs.slap_map.exponent import ChaoticProof, slap_exponent
 
 FIFTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
-LONG = 12_000  # bounces: 20 to a cell, if every cell is visited
-DUE = 15  # visits of one orbit to a cell, below which it may miss it by chance
+LONG = 12_000  # bounces of an orbit: 20 for each cell
+DUE = 15  # the least expected number of visits to a cell for which a miss is not chance
 Array = NDArray[np.float64]
 
 
 @cache
 def slap_proof() -> ChaoticProof:
-    """The natural measure at `lam = 0` and its exponent, proved."""
+    """The proved natural measure at `lam = 0` and its exponent."""
     return slap_exponent()
 
 
 @judges("cardioid.slap_ergodic")
 def slap_ergodic(claim: Claim) -> Judgement:
-    """One invariant measure has a density: it is ergodic, and natural."""
+    """Ergodicity at `lam = 0`: the only invariant measure with a density is ergodic and natural."""
     proof = slap_proof()
     missing = [name for name, holds in proof.checks.items() if holds is not True]
     return Judgement(
@@ -73,13 +68,13 @@ def slap_ergodic(claim: Claim) -> Judgement:
 
 @cache
 def coverage(table: str) -> Array:
-    """Visits to cells at every fifth of a contraction, 16 orbits each."""
+    """The numbers of visits of 16 orbits to cells, at each of the contractions `FIFTHS`."""
     return visited(table, FIFTHS, 16, LONG)
 
 
 @judges("cardioid.attractor_grows", "cuspless.attractor_fills")
 def grows(claim: Claim) -> Judgement:
-    """The share of cells visited, against the contraction."""
+    """The share of cells that are visited grows with the contraction."""
     counts = coverage(claim.id.partition(".")[0])
     shares = [float(np.mean(c.sum(axis=0) > 0)) for c in counts]
     rough = uneven(counts[-1])
@@ -94,7 +89,7 @@ def grows(claim: Claim) -> Judgement:
 
 @judges("cardioid.transitive")
 def transitive(claim: Claim) -> Judgement:
-    """Single orbits visit the same cells, equally often."""
+    """Single orbits visit the same cells, equally often, by a sample."""
     worst = 1.0
     for counts in coverage("cardioid"):
         often = counts.sum(axis=0) > len(counts) * DUE
@@ -109,38 +104,11 @@ def transitive(claim: Claim) -> Judgement:
     return sampled(derived, said, worst > 0.999 and proof.certified)
 
 
-@cache
-def approaches(contraction: str) -> Array:
-    """The smallest distance to the cusp after so many bounces, one column for each of 256 particles."""
-    map = PinballMap("cardioid", lam=contraction)
-    start = interior_starts(map, 256, SEED)
-    growth = Growth(map, start.theta, start.phi if map.law != "slap" else 0 * start.phi, start.component)
-    growth.skip(EARLY)
-    orbit = map.orbit(growth.theta, growth.phi, 4096)
-    return np.asarray(np.minimum.accumulate(np.hypot(orbit.x, orbit.y), axis=0))
+NOT_SHOWN = "not shown for 0 < lam < 1: that there is one natural (SRB) measure, hence transitivity"
 
 
-def nearing() -> str:
-    """How the smallest distance to the cusp falls with the number of bounces, in words.
-
-    At `lam = 0` a landing at the distance `d` has come from `s` of the order `d**(3/2)`, so `d` falls like `n**(-2/3)`.
-    """
-    told, powers = [], []
-    for contraction in ("0", "3/10", "8/10"):
-        first, last = np.median(approaches(contraction)[[64, 4096]], axis=1)
-        powers.append(f"{elementary.log(last / first) / elementary.log(64):.2f}")
-        told.append(f"{first:.1e} after 64 bounces and {last:.1e} after 4096 at lam = {contraction}")
-    return (
-        f"sampled, the median of the smallest distance to the cusp is {'; '.join(told)}: it falls like the bounces to "
-        f"the powers {', '.join(powers)} (-2/3 follows at lam = 0, -1 for the elastic measure)"
-    )
-
-
-NOT_SHOWN = "not shown for 0 < lam < 1: that the limits exist, a natural (SRB) measure, transitivity"
-
-
-def stretching() -> Finding:
-    """Every orbit off the cusp stretches exponentially, by a cone of beams that each bounce maps into itself."""
+def stretching() -> SignFinding:
+    """The finding that every orbit off the cusp stretches exponentially, by a cone that bounces map into itself."""
     return by(
         "beams that focus before D = cos(phi)/|K| form a cone that every bounce maps into itself at any lam, since "
         "t*(t - D0 - d1) = (4/3)*sin(delta)^4 >= 0 on every chord; their width in units of D grows by (t - D0)/d1 >= 1 "
@@ -150,8 +118,8 @@ def stretching() -> Finding:
     )
 
 
-def elastic() -> Finding:
-    """At `lam = 1` the exponents exist and are not 0, for almost every start."""
+def elastic() -> SignFinding:
+    """The finding that at `lam = 1` the exponents exist and are not 0, for almost every start."""
     return by(
         "at lam = 1 the gain exceeds 1 on every chord, so its mean logarithm is positive for almost every start "
         "(Birkhoff); log(cos(phi)) and log|K| have finite means in the measure that the map keeps, so the exponents "
@@ -163,8 +131,8 @@ def elastic() -> Finding:
     )
 
 
-def both_signs() -> Finding:
-    """On every orbit off the cusp one direction stretches and one shrinks, at rates that keep off 0."""
+def both_signs() -> SignFinding:
+    """The finding that on every orbit off the cusp one direction stretches and one shrinks, at bounded rates."""
     return by(
         "the direction that no bounce takes into the cone shrinks by the gain of the chord run backwards, by g at "
         "least from the second bounce on, and keeps apart from the cone, on every orbit off the cusp; a horizontal "
@@ -178,53 +146,58 @@ def both_signs() -> Finding:
 
 
 def measured() -> str:
-    """The sampled range of both exponents, for comparison."""
+    """The sampled range of both exponents, as text."""
     (low, high), (least, most) = ranges()
     return f"sampled at lam = 0.1, ..., 1: nu_+ from {low:.3f} to {high:.3f}, nu_- from {least:.2f} to {most:.3f}"
 
 
 def ranges() -> tuple[tuple[float, float], tuple[float, float]]:
-    """The least and the largest `nu_plus` and `nu_minus` of single orbits at `lam = 0.1, ..., 1`."""
+    """The least and the largest `nu_plus`, then `nu_minus`, of single orbits at `lam = 0.1, ..., 1`."""
     found = spectrum("cardioid", TENTHS)
     plus, minus = found.plus[1:], found.minus[1:]
     return (float(plus.min()), float(plus.max())), (float(minus.min()), float(minus.max()))
 
 
-def settling() -> tuple[float, str]:
-    """By what factor the spread of `nu_plus` over single orbits falls when they are four times as long, and words."""
-    short, long = (spectrum("cardioid", TENTHS, BALLS, n).plus[1:] for n in (BOUNCES // 4, BOUNCES))
-    ratio = float(np.max(np.std(long, axis=1) / np.std(short, axis=1)))
-    return ratio, (
-        f"sampled at lam = 0.1, ..., 1, the spread of nu_+ over {BALLS} orbits falls by a factor of {1 / ratio:.1f} or "
-        f"more from {BOUNCES // 4} to {BOUNCES} bounces (2 is due if the limits exist and are the same)"
+def natural_measures() -> SignFinding:
+    """For `0 < lam < 1` finitely many natural measures; almost every start is in the basin of one, with exponents."""
+    return by(
+        "for 0 < lam < 1 a short curve along the cone is cut in two pieces at most, and the sum of the inverses of "
+        "their stretches is below 1; what comes within e of the cusp's curve at any one time measures O(e) on it, so "
+        "almost every point has a stable curve, and lengths of curves that such curves join are comparable. A set that "
+        "these curves and the map keep, of positive area, has full length on a curve of a fixed length: there are "
+        "finitely many, each with one ergodic natural measure, for which Birkhoff's theorem gives the limits, the same "
+        "for almost every start in the set (docs/exponents.md, Theorem 11)",
+        stretching(),
+        two_rates(),
+        answer(ONE_STEP.proved, "one-step expansion at every 0 <= lam < 1"),
     )
 
 
 @judges("cardioid.lyapunov_exist")
 def existence(claim: Claim) -> Judgement:
-    """Proved at `lam = 1` alone; sampled elsewhere."""
-    ratio, said = settling()
-    return sampled(
-        "they exist for almost every start at lam = 1; for 0 < lam < 1 that the limits exist is not shown",
-        f"proved at lam = 1 (Oseledets); {said}",
-        ratio < 0.8 and bool(elastic()),
+    """By natural measures below `lam = 1`, by Oseledets' theorem at 1."""
+    return Judgement(
+        by("below lam = 1 and at 1", natural_measures(), elastic()),
+        "for every 0 < lam <= 1 almost every start has both exponents, as limits; for lam < 1 they take finitely many "
+        f"pairs of values, with nu_+ from {least_exponent()} to {largest_exponent()}, nu_- <= log(lam) and "
+        f"nu_+ + nu_- <= 0",
     )
 
 
 @judges("cardioid.lyapunov_signs")
 def signs(claim: Claim) -> Judgement:
-    """Signs of the lower limit of one rate and the upper limit of the other, whether or not the limits exist."""
+    """The signs of the lower limit of one rate and the upper limit of the other, whether or not the limits exist."""
     return Judgement(
         both_signs(),
         f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "
         f"{least_exponent()} on every orbit off the cusp, and that of the smallest an upper limit of at most minus "
-        f"that; at lam = 1 nu_+ = -nu_- > 0 for almost every start; {NOT_SHOWN}; {measured()}",
+        f"that and, for lam > 0, at most log(lam); at lam = 1 nu_+ = -nu_- > 0 for almost every start; {measured()}",
     )
 
 
 @judges("cardioid.exponents_bounded_away")
 def bounded_away(claim: Claim) -> Judgement:
-    """At each `lam < 1` by a bound for all orbits, which tends to 0; one bound for all `lam` is sampled."""
+    """Exponents are not near 0: proved at each `lam < 1`, by a bound that tends to 0 with `1 - lam`; else sampled."""
     (least, _), (_, most) = ranges()
     return sampled(
         f"proved at each lam < 1: {least_exponent()} bounds all orbits; it tends to 0 as lam tends to 1, so neither "
@@ -236,18 +209,18 @@ def bounded_away(claim: Claim) -> Judgement:
 
 @judges("cardioid.nonuniformly_hyperbolic")
 def nonuniformly_hyperbolic(claim: Claim) -> Judgement:
-    """More than that: every orbit that misses the cusp is hyperbolic, with bounds that depend on `lam < 1` alone."""
+    """Every orbit that misses the cusp is hyperbolic, with bounds that depend on `lam < 1` only."""
     return Judgement(
         both_signs(),
         "for every lam < 1 every orbit off the cusp is hyperbolic, and uniformly so in |K|*ds and dphi: the rate of "
         f"one direction has a lower limit of at least {least_exponent()}, that of the other an upper limit of at most "
-        f"minus that and at most log(2*lam); at lam = 1 limits exist for almost every start; {NOT_SHOWN}",
+        f"minus that and at most log(lam); limits exist for almost every start, at lam = 1 too",
     )
 
 
 @judges("cardioid.chaotic_attractor")
 def chaotic_attractor(claim: Claim) -> Judgement:
-    """The likely limit set [Milnor1985]: no finite union of cycles, and almost every orbit towards it is unstable."""
+    """The likely limit set [Milnor1985] is no finite union of cycles, and almost every orbit there is unstable."""
     proof = slap_proof()
     return Judgement(
         by(
@@ -260,53 +233,58 @@ def chaotic_attractor(claim: Claim) -> Judgement:
         ),
         "for every lam < 1 an attractor in Milnor's sense that is no finite union of cycles; almost every orbit "
         f"converges to no cycle and stretches at a rate from {least_exponent()} to {largest_exponent()} a bounce; for "
-        f"lam < 1/4 it has no area. {NOT_SHOWN[0].upper()}{NOT_SHOWN[1:]}; {measured()}",
+        f"lam < 1/2 it has no area. {NOT_SHOWN[0].upper()}{NOT_SHOWN[1:]}; {measured()}",
     )
 
 
 @judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
 def near_cusp(claim: Claim) -> Judgement:
-    """A curve that no point leaves into the cusp would grow beyond the length of the boundary."""
-    boundary = cardioid.components[0]
-    turned = curvature(boundary) ** 2 * velocity(boundary).dot(velocity(boundary))
+    """Almost every orbit comes near the cusp: curves grow although the cusp cuts them, and long ones come near it."""
     return Judgement(
         by(
-            "a curve along the cone is monotone in s, so it measures at most 3*pi in |K|*ds; it grows by g at each "
-            "bounce but the first until one of its points hits the cusp, whose neighbours on one side land arbitrarily "
-            "near it. So the starts that come as near to the cusp as wanted, as late as wanted, are open and dense "
-            "(lam < 1) among those that miss it, and no compact set off the cusp attracts an open set",
+            "a short curve along the cone is cut in two pieces at most, and the sum of the inverses of their stretches "
+            "is below 1; so, as distortion is bounded, the points of a curve whose pieces stay short have length 0. A "
+            "fixed share of each long piece comes next to the cusp, where 0 < h' <= cos(theta/2) < h, within a fixed "
+            "number of bounces, since what never does would outgrow the wall; so those that do not, from some time on, "
+            "have no point of density (docs/exponents.md)",
             stretching(),
-            zero("|K|*ds = (3/2)*d theta, 3*pi in all", turned - Rational(9, 4)),
+            answer(ONE_STEP.proved, "one-step expansion at every 0 <= lam < 1"),
         ),
-        "for a dense set of starts (a countable intersection of open dense ones) the orbit comes arbitrarily near the "
-        "cusp again and again, so no compact set off the cusp holds the attractor; that almost every start does is not "
-        f"shown; {nearing()}",
+        "for every 0 <= lam < 1 the orbit of almost every start has limit points off the cusp as near to it as wanted; "
+        "so the attractor, the closed set of limit points of almost every orbit, does, and is not compact off the cusp",
     )
 
 
 @judges("cuspless.stable_if_flatter")
 def stable_if_flatter(claim: Claim) -> Judgement:
-    """The normal form of the flip in the wall's jets: its sign changes when the wall bends away from its centre."""
+    """No wall is flatter than a straight one; a wall that bends changes the sign of the flip's normal form."""
     free, bent = coefficient()
     M, _ = return_map()
     trace, det = trace_and_determinant(cuspless_horizontal())
     return Judgement(
+        counterexample(
+            "around s = 0 the wall is straight: its curvature is 0, and no table has one of smaller modulus",
+            zero("", turning(cuspless.component("wall"))),
+        ),
+        "stable when the curvature at s = 0 stays 0 and its modulus grows beside it, kappa''(0) < "
+        f"{-24 * least_bend()}",
         by(
             "with the wall x = -1/4 + b*y^4 the orbit, its multipliers and lambda_c stay, and the flip has the "
             f"coefficient c = {free} + {bent}*b: negative for the straight wall, positive, and the period-4 orbit "
-            f"stable, for b > {least_bend()}; b > 0 makes the curvature -12*b*s^2, smaller around s = 0",
+            f"stable, for b > {least_bend()}; b > 0 makes the curvature -12*b*s^2 next to s = 0, which focuses",
             zero("", M.subs(a, 0).trace() - trace, M.subs(a, 0).det() - det),
             greater(-free, S.Zero),
             greater(bent, S.Zero),
             greater(least_bend(), S.Zero),
         ),
-        f"stable when the curvature at s = 0 stays 0 and has kappa''(0) < {-24 * least_bend()}",
+        "Around s = 0 the wall is straight, so its curvature cannot be smaller. The period-4 orbit becomes stable when "
+        f"the wall is bent to focus beside s = 0: x = -1/4 + b*y^4 with b > {least_bend()}.",
     )
 
 
 @judges("cuspless.nontrivial_larger")
 def nontrivial_larger(claim: Claim) -> Judgement:
-    """Nothing but the period-2 orbit near 0; from `lambda_star` on a region in which no cycle attracts."""
+    """Only the period-2 orbit attracts near 0; above `lambda_star` there is a region without stable cycles."""
     return Judgement(
         by("none near 0, and one above", settles_near_zero(), chaos()),
         f"no attractor but the period-2 orbit for 0 < lam <= {NEAR_ZERO}; a chaotic one for lambda_star < lam <= 0.1, "
@@ -316,7 +294,7 @@ def nontrivial_larger(claim: Claim) -> Judgement:
 
 @judges("cuspless.visits_more_boundary")
 def visits_more(claim: Claim) -> Judgement:
-    """The share of cells along the boundary that 16 orbits visit."""
+    """The share of cells along the boundary that 16 orbits visit grows with the contraction."""
     counts = coverage("cuspless").reshape(len(FIFTHS), -1, CELLS, CELLS).sum(axis=(1, 3))
     shares = np.mean(counts > 0, axis=1)
     said = (
@@ -329,7 +307,7 @@ def visits_more(claim: Claim) -> Judgement:
 
 @judges("cardioid.error_bars")
 def error_bars(claim: Claim) -> Judgement:
-    """Over 100 starts, as in the paper's figure, whose symbols are taken to be a hundredth of the axis."""
+    """The error bars of 100 starts, as in the paper's figure, against symbols a hundredth of the axis wide."""
     exponents = spectrum("cardioid", TENTHS, 100)
     values = np.stack([exponents.plus[1:], exponents.minus[1:]])
     spread, error = float(np.max(np.std(values, axis=-1))), float(np.max(Spectrum.error(values)))
@@ -343,12 +321,13 @@ def error_bars(claim: Claim) -> Judgement:
 
 @judges("cardioid.finitely_many_attractors")
 def finitely_many(claim: Claim) -> Judgement:
-    """For the slap map: one, since it has one invariant density, on which almost every start settles."""
+    """For the slap map one, since it has one invariant density; finitely many natural measures for `0 < lam < 1`."""
     proof = slap_proof()
     return Judgement(
         by(
             "T_0 has exactly one invariant density, and the time averages of almost every start are its own",
             shown("the certificate of the slap map's exponent holds", bool(proof.certified) or None),
+            natural_measures(),
         ),
-        "exactly one at lam = 0; nothing is proved on their number for lam > 0",
+        "exactly one at lam = 0; for 0 < lam < 1 there are finitely many, whose basins hold almost every start",
     )

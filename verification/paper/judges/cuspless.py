@@ -1,4 +1,4 @@
-"""Claims on the cuspless cardioid, and on where the map is defined. Paper: sections 2 and 5."""
+"""Judges of claims on the cuspless cardioid, and on the domain of the map. Paper: sections 2 and 5."""
 
 from sympy import Expr, Interval, Matrix, Rational, S, Symbol, cos, diff, pi, simplify
 
@@ -13,7 +13,7 @@ from symbolic.cycles.cycle import (
     trace_and_determinant,
 )
 from symbolic.cycles.thresholds import lambda_c, stability_number
-from symbolic.expressions.signs import Finding, nonnegative, positive
+from symbolic.expressions.signs import SignFinding, nonnegative, positive
 from symbolic.motion.collision import derivative_matrix, exit_angle
 from symbolic.tables import cardioid, cuspless
 from symbolic.tables.geometry import perimeter, positions, speed, turning, velocity
@@ -38,29 +38,29 @@ C = Symbol("C", real=True)  # cos(theta) on the arc
 
 
 def wrapped(s: Expr) -> Expr:
-    """An arc length moved into the paper's range, from `-C` to `C`."""
+    """An arc length reduced to the paper's range, from `-C` to `C`."""
     return s - perimeter(cuspless) if s > perimeter(cuspless) / 2 else s
 
 
 def on_arc(angle: Expr) -> Expr:
-    """The paper's arc length of a point of the arc."""
+    """The paper's arc length of a point of the arc, from its polar angle."""
     return wrapped(simplify(positions(cuspless)[0].subs(theta, angle)))
 
 
 def horizontal() -> tuple[Expr, Expr]:
-    """Trace and determinant of the horizontal cycle."""
+    """Trace and determinant of the horizontal cycle's monodromy matrix."""
     return trace_and_determinant(cuspless_horizontal())
 
 
 @judges("cuspless.wall_x")
 def wall_x(claim: Claim) -> Judgement:
-    """Where the arc ends."""
+    """The printed abscissa of the wall, from the end of the arc."""
     return identity(claim, ARC.at(UPPER_JOIN)[0])
 
 
 @judges("cuspless.wall_y")
 def wall_y(claim: Claim) -> Judgement:
-    """Where the arc starts and ends."""
+    """The printed ends of the wall, from the ends of the arc."""
     return identity(claim, Matrix([ARC.at(LOWER_JOIN)[1], ARC.at(UPPER_JOIN)[1]]))
 
 
@@ -69,8 +69,8 @@ def arc_turning() -> Expr:
     return turning(ARC).subs(cos(theta), C)
 
 
-def joined_smoothly() -> Finding:
-    """The unit tangents agree at both joins."""
+def joined_smoothly() -> SignFinding:
+    """The finding that the unit tangents agree at both joins."""
     gaps = []
     for angle, end in ((UPPER_JOIN, WALL.start), (LOWER_JOIN, WALL.end)):
         gaps += list(frame(cuspless, 0, angle, {}).tangent - frame(cuspless, 1, end, {}).tangent)
@@ -79,7 +79,7 @@ def joined_smoothly() -> Finding:
 
 @judges("cuspless.convex")
 def convex(claim: Claim) -> Judgement:
-    """Turning left on the arc, straight on the wall, and no corner."""
+    """The table is convex: the arc turns left, the wall is straight, and there is no corner."""
     return Judgement(
         by(
             "the arc turns left, the wall is straight, and the tangent is continuous at the joins",
@@ -93,7 +93,7 @@ def convex(claim: Claim) -> Judgement:
 
 @judges("cuspless.smooth_except_joins")
 def smooth(claim: Claim) -> Judgement:
-    """Each component is analytic with non-zero velocity."""
+    """The boundary is smooth off the joins: each component is analytic with non-zero velocity."""
     squared = (speed(ARC) ** 2).subs(cos(theta), C)
     return Judgement(
         by("the speed does not vanish on the arc", positive(squared, {C: Interval(Rational(-1, 2), 1)})),
@@ -103,7 +103,7 @@ def smooth(claim: Claim) -> Judgement:
 
 @judges("cuspless.joins_C1", "cuspless.joins_curvature")
 def joins(claim: Claim) -> Judgement:
-    """The same tangent, but curvature -3/2 on the arc and 0 on the wall."""
+    """At the joins the tangent is continuous, but the curvature is -3/2 on the arc and 0 on the wall."""
     arc, wall = frame(cuspless, 0, UPPER_JOIN, {}).curvature, frame(cuspless, 1, WALL.start, {}).curvature
     return Judgement(
         by(
@@ -117,7 +117,7 @@ def joins(claim: Claim) -> Judgement:
 
 @judges("cuspless.rightmost_s")
 def rightmost(claim: Claim) -> Judgement:
-    """`theta = 0`, half a perimeter from the wall's centre."""
+    """The rightmost point is `theta = 0`, half a perimeter from the wall's centre."""
     half = perimeter(cuspless) / 2
     return Judgement(
         by(
@@ -131,26 +131,26 @@ def rightmost(claim: Claim) -> Judgement:
 
 @judges("cuspless.C")
 def half_perimeter(claim: Claim) -> Judgement:
-    """Both printed forms are half the perimeter."""
+    """Both printed forms of `C` are half the perimeter."""
     half = perimeter(cuspless) / 2
     return identity(claim, Matrix([half, half]))
 
 
 @judges("cuspless.joins_s")
 def joins_positions(claim: Claim) -> Judgement:
-    """The ends of the wall."""
+    """The printed arc lengths of the joins."""
     return identity(claim, Matrix([on_arc(UPPER_JOIN), on_arc(LOWER_JOIN)]))
 
 
 @judges("cuspless.upper_join_s")
 def upper_join(claim: Claim) -> Judgement:
-    """Counterclockwise, the upper join comes before the wall's centre."""
+    """The printed arc length of the upper join, which comes before the wall's centre counterclockwise."""
     return identity(claim, on_arc(UPPER_JOIN))
 
 
 @judges("cuspless.no_unfolding")
 def no_unfolding(claim: Claim) -> Judgement:
-    """Unfolding replaces a bounce by a straight passage, which needs `phi = -eta`."""
+    """Unfolding fails, since it replaces a bounce by a straight passage, which needs `phi = -eta`."""
     gap = (exit_angle() + eta) / eta
     return Judgement(
         by(
@@ -163,7 +163,7 @@ def no_unfolding(claim: Claim) -> Judgement:
 
 @judges("cuspless.vertical_orbit")
 def vertical(claim: Claim) -> Judgement:
-    """The cardioid's chord lies on the arc, with the same stability number above 1."""
+    """The vertical orbit is the cardioid's, with the same stability number above 1."""
     P = stability_number(cuspless_vertical())
     return Judgement(
         by(
@@ -178,13 +178,13 @@ def vertical(claim: Claim) -> Judgement:
 
 @judges("cuspless.lambda_c_caption", "cuspless.lambda_c_digits")
 def lambda_c_digits(claim: Claim) -> Judgement:
-    """The closed form."""
+    """The printed digits of `lambda_c`, from its closed form."""
     return digits(claim, lambda_c())
 
 
 @judges("cuspless.horizontal_orbit", "cuspless.opposite_point")
 def horizontal_orbit(claim: Claim) -> Judgement:
-    """A double normal exists for every contraction."""
+    """The horizontal chord is a double normal, so it is an orbit for every contraction."""
     cycle = cuspless_horizontal()
     return Judgement(
         by(
@@ -211,25 +211,25 @@ def horizontal_monodromy(claim: Claim) -> Judgement:
 
 @judges("cuspless.mu")
 def horizontal_multipliers(claim: Claim) -> Judgement:
-    """The roots of the characteristic polynomial."""
+    """The printed multipliers, from the characteristic polynomial."""
     return identity(claim, Matrix(multipliers(*horizontal())))
 
 
-def real_multipliers() -> Finding:
-    """The discriminant is positive on the closed range."""
+def real_multipliers() -> SignFinding:
+    """The finding that the discriminant is positive on the closed range."""
     trace, det = horizontal()
     return positive(trace**2 - 4 * det, {lam: Interval(0, 1)})
 
 
 @judges("cuspless.mu_real")
 def mu_real(claim: Claim) -> Judgement:
-    """The discriminant."""
+    """The multipliers are real, since the discriminant is positive."""
     return Judgement(real_multipliers(), "real and distinct")
 
 
 @judges("cuspless.mu_nonpositive")
 def mu_nonpositive(claim: Claim) -> Judgement:
-    """Real, with a negative sum and a product that is not negative."""
+    """The multipliers are real, with a negative sum and a non-negative product."""
     trace, det = horizontal()
     box = {lam: Interval(0, 1)}
     return Judgement(
@@ -240,12 +240,12 @@ def mu_nonpositive(claim: Claim) -> Judgement:
 
 @judges("cuspless.mu_above_minus_one")
 def mu_above_minus_one(claim: Claim) -> Judgement:
-    """The characteristic polynomial at -1 factors with `lambda_c` and its inverse."""
+    """The multipliers exceed -1 below `lambda_c`, a root of the characteristic polynomial at -1."""
     return Judgement(attracting_below(), "-1 < mu for 0 <= lam < lambda_c")
 
 
-def attracting_below() -> Finding:
-    """The horizontal orbit attracts below `lambda_c`: real multipliers, not positive, above -1."""
+def attracting_below() -> SignFinding:
+    """The finding that the horizontal orbit attracts below `lambda_c`: multipliers between -1 and 0."""
     trace, det = horizontal()
     factored = Rational(5, 16) * (lam - lambda_c()) * (lam - 1 / lambda_c())
     return by(
@@ -259,14 +259,14 @@ def attracting_below() -> Finding:
 
 @judges("cuspless.lambda_c")
 def period_doubling(claim: Claim) -> Judgement:
-    """`P = -((1 - lam)/(1 + lam))**2` with `P = -11/16`."""
+    """The printed `lambda_c`, from `P = -((1 - lam)/(1 + lam))**2` with `P = -11/16`."""
     judgement = identity(claim, lambda_c())
     return Judgement(judgement.printed, judgement.derived, value=lambda_c())
 
 
 @judges("cuspless.mu_minus_at_lambda_c")
 def mu_at_lambda_c(claim: Claim) -> Judgement:
-    """-1 is a root there, and the smaller one because the product is `lambda_c**2 < 1`."""
+    """At `lambda_c` the smaller multiplier is -1, because the product is `lambda_c**2 < 1`."""
     trace, det = (x.subs(lam, lambda_c()) for x in horizontal())
     root = zero("", 1 + trace + det)
     return Judgement(
@@ -276,7 +276,7 @@ def mu_at_lambda_c(claim: Claim) -> Judgement:
 
 @judges("cuspless.map_nondifferentiable")
 def map_nondifferentiable(claim: Claim) -> Judgement:
-    """The derivative depends on the curvature where the ball leaves, which jumps."""
+    """The derivative depends on the curvature at the start, which jumps at the joins."""
     jump = simplify(diff(derivative_matrix(), K1))
     leaves = derivative_matrix(lam=0)[0, 0]
     return Judgement(
@@ -291,7 +291,7 @@ def map_nondifferentiable(claim: Claim) -> Judgement:
 
 @judges("map.noncompact_domain")
 def noncompact(claim: Claim) -> Judgement:
-    """The cardioid: a ball from the rightmost point along the normal hits the cusp, its neighbours do not."""
+    """The cardioid's phase space: the normal at the rightmost point hits the cusp, neighbouring ones do not."""
     arc = cardioid.components[0]
     start, cusp = arc.at(0), arc.at(pi)
     return Judgement(
@@ -308,7 +308,7 @@ def noncompact(claim: Claim) -> Judgement:
 
 @judges("cuspless.noncompact")
 def cuspless_noncompact(claim: Claim) -> Judgement:
-    """The normal is unique at the joins, so nothing is removed there; the derivative alone does not exist."""
+    """No point is removed at the joins, since the normal is unique; only the derivative does not exist."""
     return Judgement(
         counterexample(
             "the normal is unique at every point, joins included, so by the definition of section 2 no point is "

@@ -1,9 +1,9 @@
-"""Claims on the chaos of the cuspless cardioid, from `lambda*` to 1. Paper: section 5.
+"""Judges of claims on the chaos of the cuspless cardioid, from `lambda*` to 1. Paper: section 5.
 
-`symbolic.cycles.returns` and `splitting` show, for every `1/10 <= lam < 1`, that each return to the arc stretches beams
-of a cone, so that every orbit that misses the joins is unstable; a trapping polygon shows chaos from `lambda*` to 1/10.
-Not shown is that what attracts has one dense orbit: claims that there is a chaotic attractor are settled, claims that
-one attracts globally, or that it is the only one, are not.
+A *chaotic attractor* is defined in the report (`senses` of its `paper.toml`). `symbolic.cycles.returns` and `splitting`
+prove for every `1/10 <= lam < 1` that each return to the arc stretches beams of a cone, so every orbit that misses the
+joins is unstable; a trapping polygon proves chaos from `lambda*` to 1/10. It is not proved that the attractor has a
+dense orbit, so neither that it is unique nor that it attracts globally.
 """
 
 from fractions import Fraction
@@ -14,13 +14,12 @@ from flint import arb
 
 from symbolic.cycles.returns import HIGHEST, LOWEST
 from symbolic.cycles.splitting import least_rate, splits
-from symbolic.expressions.signs import Finding
+from symbolic.expressions.signs import SignFinding
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import real_ball
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
 from verification.paper.judges.attractors import (
-    HORIZONTAL,
     NEAR_ZERO,
     STARTS,
     chaotic,
@@ -30,11 +29,19 @@ from verification.paper.judges.attractors import (
 )
 from verification.paper.judges.cuspless import attracting_below
 from verification.paper.judges.hyperbolicity import PROVED_TO, chaos
-from verification.paper.judges.located import certified, value
-from verification.proofs.global_dynamics.fates import Fate
+from verification.paper.judges.located import certified, settled, value
+from verification.proofs.global_dynamics.fates import AlmostEveryOrbit
 from verification.proofs.global_dynamics.returns import every_return
-from verification.proofs.starts.below_star import ANGLE, NEXT, BelowStar
-from verification.proofs.starts.core import Core
+from verification.proofs.starts.below_star import (
+    ANGLE,
+    HORIZONTAL,
+    NEXT,
+    TOP,
+    AlmostEveryOrbitBelowLambdaStar,
+    AlmostEveryOrbitBesideLambdaStar,
+    ConvergenceBelowLambdaStar,
+)
+from verification.proofs.starts.core import AbsorbingTube
 from verification.proofs.starts.mean import HIGH, LOW, MULTIPLIER, RATE, average
 
 NEAR_ONE = ("0.7", "0.8", "0.9", "0.95", "0.99")
@@ -42,8 +49,8 @@ ABOVE = ("0.0935", "0.1", "0.15", "0.25", "0.4", "0.6", "0.8", "0.95")
 ONE_PIECE = "that what attracts has one dense orbit is not shown"
 
 
-def unstable() -> Finding:
-    """Every orbit that misses the joins is unstable, for every contraction from 1/10 to 1."""
+def unstable() -> SignFinding:
+    """The finding that every orbit that misses the joins is unstable, for every contraction from 1/10 to 1."""
     return by(
         f"for {LOWEST} <= lam <= {HIGHEST} each return to the arc, in at most two bounces, multiplies a form of beams "
         "that "
@@ -55,8 +62,8 @@ def unstable() -> Finding:
     )
 
 
-def attracted() -> Finding:
-    """What attracts every orbit is compact and connected, and its orbits that miss the joins are unstable."""
+def attracted() -> SignFinding:
+    """The finding that a compact connected set attracts every orbit, and its orbits off the joins are unstable."""
     return by(
         "the map is continuous and takes the strip abs(phi) <= lam*pi/2 into itself; what its images have in common "
         "is "
@@ -66,7 +73,7 @@ def attracted() -> Finding:
 
 
 def one_set(lams: tuple[str, ...]) -> str:
-    """What random starts reach, in words."""
+    """The set that random starts reach, as text."""
     each = [found("cuspless", x) for x in lams]
     single = all(len(some) == len(chaotic(some)) == 1 and not unsettled(some) for some in each)
     least = min(a.nu_plus for some in each for a in some)
@@ -75,9 +82,9 @@ def one_set(lams: tuple[str, ...]) -> str:
 
 
 def one_attractor(lams: tuple[str, ...]) -> Judgement:
-    """Chaos attracts every orbit, proved; that it is one attractor, as "a globally attracting" one has to be, sampled.
+    """Chaos attracts every orbit, proved; that it is one attractor is sampled.
 
-    Two chaotic attractors would be in the compact set too, and neither would attract globally.
+    Two chaotic attractors would lie in the compact set too, and neither would attract globally.
     """
     seen = one_set(lams)
     return sampled(
@@ -91,47 +98,94 @@ def one_attractor(lams: tuple[str, ...]) -> Judgement:
 
 @judges("cuspless.global_near_one")
 def global_near_one(claim: Claim) -> Judgement:
-    """Near 1: a compact set whose orbits off the joins are unstable attracts every orbit; one attractor is sampled."""
+    """Near 1 a compact set of orbits unstable off the joins attracts every orbit; one attractor is sampled."""
     return one_attractor(NEAR_ONE)
 
 
 @judges("cuspless.chaotic_above_tenth")
 def above_tenth(claim: Claim) -> Judgement:
-    """From 1/10 on, for every contraction below 1, likewise."""
+    """The same for every contraction from 1/10 to 1."""
     return one_attractor(ABOVE)
 
 
 @judges("cuspless.only_attractor")
 def only_attractor(claim: Claim) -> Judgement:
-    """No cycle off the joins attracts from 1/10 on; that chaos has one attractor is sampled."""
+    """No cycle off the joins attracts from 1/10 on; that there is one chaotic attractor is sampled."""
     said = (
         f"proved for {LOWEST} <= lam < 1: every orbit that misses the joins is unstable, so no cycle off the joins "
         f"attracts; {one_set(ABOVE)}; a share below {3 / STARTS:.0%} of others is not excluded"
     )
     return sampled(
-        "one chaotic attractor, from lambda_c = 0.0934... on, for lam < 1; that no cycle attracts beside it is proved "
-        f"from lam = {LOWEST} on",
+        f"no cycle that misses the joins attracts for {LOWEST} <= lam < 1: proved; that there is one chaotic "
+        f"attractor, and that nothing else attracts from lambda_c = 0.0934... to {LOWEST}, is not shown",
         said,
         "one and the same" in said and bool(unstable()),
     )
 
 
 @cache
-def below() -> BelowStar:
-    """What leaves the upper join at small angles below `lambda*`: three graphs of boxes, and the corners from there on.
+def almost_every() -> AlmostEveryOrbitBelowLambdaStar:
+    """The theorem on almost every orbit below `lambda*`, from three graphs of boxes."""
+    scene = Scene("cuspless")
+    middle = AlmostEveryOrbit(scene, (NEAR_ZERO, NEXT), (4096, 512), 8, (HORIZONTAL,), 30)
+    last = AlmostEveryOrbitBesideLambdaStar(scene, (NEXT, TOP), (4096, 512), 8, (HORIZONTAL,), 60)
+    return AlmostEveryOrbitBelowLambdaStar((near_zero(), middle, last))
 
-    The cores are about the horizontal orbit; those of graphs are small, the last one comes near to the joins.
+
+@judges("cuspless.lambda_star_caption")
+def alone_below_star(claim: Claim) -> Judgement:
+    """The printed digits of `lambda*`, and that almost every orbit below ends on the horizontal orbit."""
+    digits = settled(claim, "lambda-star")
+    return Judgement(
+        by(
+            "for every 0 <= lam < lambda* almost every orbit converges to the horizontal one of period 2",
+            digits.printed,
+            answer(
+                almost_every().proved,
+                "every orbit ends in boxes about it, where the map contracts, or about the vertical one, where it "
+                "stretches, so that those which stay have no area; none stays beside the corner orbit, where half a "
+                "return moves landings along the wall, away from the corner. At lam = 0, where the map has no inverse, "
+                "those which stay have no length on any line of one exit angle, and each flight moves the landing at "
+                "a speed above 0",
+            ),
+            splits(),
+            attracting_below(),
+        ),
+        f"lambda* = {digits.derived}; almost every start ends on the horizontal orbit, for every 0 <= lam < lambda*",
+        value=digits.value,
+    )
+
+
+@judges("cuspless.lambda_star_body")
+def persists_above_star(claim: Claim) -> Judgement:
+    """The printed digits, and above `lambda*` a region in which all orbits stretch, beside the stable orbit."""
+    digits = settled(claim, "lambda-star")
+    return Judgement(
+        by("from lambda* on, while the orbit of period 2 attracts", digits.printed, chaos(), attracting_below()),
+        f"lambda* = {digits.derived}; for every lambda* < lam < lambda_c there are a chaotic attractor and the orbit "
+        "of period 2, which attracts",
+        value=digits.value,
+    )
+
+
+@cache
+def below() -> ConvergenceBelowLambdaStar:
+    """The theorem on orbits from the upper join at small angles below `lambda*`.
+
+    The tubes lie around the horizontal orbit; those of the graphs are small, the last one almost reaches the joins.
     """
     cuts, grids = (NEAR_ZERO, Fraction("0.06"), NEXT), ((2048, 128), (4096, 256))
-    graphs = (Fate(Scene("cuspless"), x, g, 8, (HORIZONTAL,)) for x, g in zip(pairwise(cuts), grids, strict=True))
-    small = Core(1, 0.056, -0.0202, 0.0025, 0.06, 0.2, 200), Core(1, 0.0649, -0.0227, 0.002, 0.06, 0.2, 200)
-    wide = Core(1, 0.0702, -0.0241, 0.0012, 0.05, 0.41, 410, ((0.405, 0.003), (0.4, 0.006), (0.38, 0.012)))
-    return BelowStar(((near_zero(), None), *zip(graphs, small, strict=True)), wide)
+    parts, scene = zip(pairwise(cuts), grids, strict=True), Scene("cuspless")
+    graphs = (AlmostEveryOrbit(scene, lam, grid, 8, (HORIZONTAL,)) for lam, grid in parts)
+    small = (0.056, -0.0202, 0.0025, 0.06, 0.2, 200), (0.0649, -0.0227, 0.002, 0.06, 0.2, 200)
+    wide = AbsorbingTube(1, 0.0702, -0.0241, 0.0012, 0.05, 0.41, 410, ((0.405, 0.003), (0.4, 0.006), (0.38, 0.012)))
+    pairs = zip(graphs, (AbsorbingTube(1, *one) for one in small), strict=True)
+    return ConvergenceBelowLambdaStar(((near_zero(), None), *pairs), wide)
 
 
 @judges("cuspless.below_star_converges")
 def below_star(claim: Claim) -> Judgement:
-    """From the join, at angles near 0, for every contraction below `lambda_star`."""
+    """Orbits from the join at small angles converge to the horizontal orbit, for every contraction below `lambda*`."""
     return Judgement(
         by(
             f"for every 0 <= lam < lambda* and every exit angle up to {ANGLE}",
@@ -150,9 +204,17 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.chaotic_above_star")
 def chaotic_above_star(claim: Claim) -> Judgement:
-    """By a polygon up to 1/10 and by the form of beams from there on; that it is one and the same is not claimed."""
+    """Chaos is proved by a polygon up to 1/10 and by a cone of beams above; not that it is the same attractor."""
     return Judgement(
-        by("from lambda* to 1/10, and from there to 1", chaos(), attracted()),
+        by(
+            "from lambda* to 1/10, and from there to 1, almost every start of an open set stretches, and "
+            "converges to no "
+            "cycle: of two points of a short curve along the cone that stay near a cycle, all points between them stay "
+            "there, since the map is continuous and images are monotone in s, and that piece would grow for ever; so "
+            "each such curve has one point at most that stays, and those of all curves have no area",
+            chaos(),
+            attracted(),
+        ),
         f"for lambda* < lam <= {PROVED_TO} an open set of angles at the join leads to a chaotic attractor next to the "
         f"corner orbit; for {LOWEST} <= lam < 1 every orbit is attracted by a compact set, and each that misses the "
         f"joins is unstable; {ONE_PIECE}; at lam = 1, which is taken not to be meant, areas are kept",
@@ -161,7 +223,7 @@ def chaotic_above_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.nu_crosses_zero")
 def crosses_zero(claim: Claim) -> Judgement:
-    """Nearly all starts are proved to end on period 2 when the chaotic attractor appears."""
+    """The mean exponent is negative at `lambda*`, where nearly all starts are proved to end on period 2."""
     found, born = average(), real_ball(value("lambda-star"), 20)
     first, last = (arb(end.numerator) / end.denominator for end in (LOW, HIGH))
     settled = all(found.checks.values())
@@ -186,7 +248,7 @@ def crosses_zero(claim: Claim) -> Judgement:
 
 @judges("cuspless.accumulates_on_joins")
 def accumulates(claim: Claim) -> Judgement:
-    """A curve along the cone that no point leaves onto a join would grow beyond all bounds."""
+    """Orbits accumulate at the joins: a curve along the cone without landing there would grow without bound."""
     return Judgement(
         by(
             "a curve along the cone that never meets a join lies on one component at each bounce, where its length is "

@@ -1,4 +1,4 @@
-"""Claims on the circle and the ellipse: their orbits, limit sets and slap maps. Paper: sections 3.1, 3.2 and 3.4."""
+"""Judges of claims on the circle and the ellipse: orbits, limits and slap maps. Paper: sections 3.1, 3.2 and 3.4."""
 
 from sympy import (
     Expr,
@@ -20,7 +20,7 @@ from sympy import (
 
 from symbolic.cycles.cycle import is_double_normal, major_axis, minor_axis, saddle, trace_and_determinant
 from symbolic.cycles.thresholds import stability_number, stable_while_nonnegative
-from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive
+from symbolic.expressions.signs import Box, SignFinding, conjunction, nonnegative, positive
 from symbolic.motion.collision import derivative_matrix, exit_angle, gradient, joachimsthal_defect
 from symbolic.motion.flight import flight, iterate, limit_position
 from symbolic.tables import ellipse
@@ -33,16 +33,16 @@ n = Symbol("n", integer=True, nonnegative=True)
 more = Symbol("more", positive=True)  # 1/lam - 1
 
 
-def explicit_map() -> Finding:
-    """The chord from arc length `s` at exit angle `phi` ends at `s + pi - 2*phi`, on the circle and along the ray."""
+def explicit_map() -> SignFinding:
+    """The finding that in the circle the chord from arc length `s` at the angle `phi` ends at `s + pi - 2*phi`."""
     landing, _ = flight(s, phi)
     ray = (2 * cos(phi) * cos(s + pi - phi), 2 * cos(phi) * sin(s + pi - phi))
     gap = (cos(s) + ray[0] - cos(landing), sin(s) + ray[1] - sin(landing))
     return zero("the landing point is q0 + 2*cos(phi)*v", *gap)
 
 
-def settles() -> Finding:
-    """By induction: the closed form of the state after `n` bounces, and how far an even bounce is off its limit."""
+def settles() -> SignFinding:
+    """The finding that every orbit of the circle converges to a diameter, by a closed form of the state."""
     position, angle = after(n)
     even, small = after(2 * n)
     return conjunction(
@@ -61,13 +61,13 @@ def settles() -> Finding:
 
 
 def after(bounces: Expr) -> tuple[Expr, Expr]:
-    """The state after `bounces` bounces: `s + pi*n - 2*phi*(1 + lam + ... + lam**(n-1))` and `lam**n*phi`."""
+    """The state of the circle after `bounces` bounces, in closed form."""
     return s + pi * bounces - 2 * phi * (1 - lam**bounces) / (1 - lam), lam**bounces * phi
 
 
 @judges("circle.elastic_angles", "circle.elastic_integrable")
 def elastic(claim: Claim) -> Judgement:
-    """`phi1 = lam*phi`."""
+    """The elastic circle preserves `phi`, since `phi1 = lam*phi`."""
     return Judgement(
         by("phi is conserved at lam = 1", explicit_map(), zero("", flight()[1].subs(lam, 1) - phi)),
         "T_1(s, phi) = (s + pi - 2*phi, phi)",
@@ -76,20 +76,20 @@ def elastic(claim: Claim) -> Judgement:
 
 @judges("circle.exit_angle")
 def exit_angle_of_circle(claim: Claim) -> Judgement:
-    """A chord meets the circle at equal angles, `eta1 = -phi0`."""
+    """The printed exit angle in the circle, where a chord makes equal angles: `eta1 = -phi0`."""
     return identity(claim, exit_angle().subs(eta, -phi))
 
 
 @judges("circle.nearer_diameter")
 def nearer(claim: Claim) -> Judgement:
-    """The angle from the diameter shrinks by `lam`."""
+    """The angle from the diameter shrinks by the factor `lam` at each bounce."""
     shrinks = positive(1 - lam, {lam: Interval.Ropen(0, 1)})
     return Judgement(by("|phi1| = lam*|phi| < |phi| for phi != 0", explicit_map(), shrinks), "|phi1| = lam*|phi|")
 
 
 @judges("circle.converges", "circle.limit_set")
 def converges(claim: Claim) -> Judgement:
-    """The map is explicit, so its limit is."""
+    """The limit of every orbit, from the explicit map."""
     return Judgement(
         by(
             "phi_n tends to 0 and s_2n to s - 2*phi/(1 - lam); a state with phi = 0 has period 2",
@@ -112,7 +112,7 @@ def diameters(claim: Claim) -> Judgement:
 
 @judges("circle.dominated_splitting")
 def splitting(claim: Claim) -> Judgement:
-    """The derivative on `phi = 0` is one constant matrix."""
+    """The splitting of the circle's derivative on `phi = 0`, which is one constant matrix."""
     matrix = derivative_matrix(K0=-1, K1=-1, t=2, cos_phi0=1, cos_eta1=1)
     along, across = Matrix([1, 0]), Matrix([2, 1 - lam])
     return Judgement(
@@ -128,30 +128,31 @@ def splitting(claim: Claim) -> Judgement:
 
 @judges("circle.slap")
 def slap(claim: Claim) -> Judgement:
-    """The explicit map at `phi = 0`."""
+    """The printed slap map of the circle, the explicit map at `phi = 0`."""
     return identity(claim, flight()[0].subs(phi, 0))
 
 
 @judges("ellipse.parametrisation")
 def parametrisation(claim: Claim) -> Judgement:
-    """The definition of the table."""
+    """The printed parametrisation of the ellipse."""
     return identity(claim, Matrix(ellipse.components[0].point))
 
 
 @judges("ellipse.shape_range")
 def shape_range(claim: Claim) -> Judgement:
-    """Scale by the shorter half axis and exchange the axes if need be."""
+    """Shapes `a >= 1` suffice, after scaling by the shorter half axis and exchanging the axes if necessary."""
     p, q = symbols("p q", positive=True)
     x, y = p * cos(theta) / q, q * sin(theta) / q
     scaled = Matrix(ellipse.components[0].point).subs(a, p / q)
     return Judgement(
-        by("half axes p >= q, divided by q, give a = p/q >= 1", equal(Matrix([x, y]), scaled, {})), "a = p/q"
+        by("half axes p >= q, divided by q, give a = p/q >= 1", equal(Matrix([x, y]), scaled, {})),
+        "half axes p >= q are a = p/q and 1 in another unit of length",
     )
 
 
 @judges("ellipse.elastic_integrable")
 def integrable(claim: Claim) -> Judgement:
-    """Joachimsthal's product survives the flight, and the elastic reflection."""
+    """The elastic ellipse is integrable: Joachimsthal's product is preserved by flight and reflection."""
     return Judgement(
         by("g(q)*cos(phi) is conserved at lam = 1", zero("", joachimsthal_defect())), "J = |(x/a^2, y)|*cos(phi)"
     )
@@ -159,12 +160,12 @@ def integrable(claim: Claim) -> Judgement:
 
 @judges("ellipse.two_period2")
 def two_period2(claim: Claim) -> Judgement:
-    """There are two double normals."""
+    """The ellipse has two orbits of period 2, its double normals."""
     return Judgement(axes_alone(claim.box), "the chords of the two axes, and no other")
 
 
-def axes_alone(box: Box) -> Finding:
-    """A chord with ends at `m + B`, `m - B` that is normal at both lies on an axis."""
+def axes_alone(box: Box) -> SignFinding:
+    """The finding that a chord with the parameters `m + B`, `m - B` that is normal at both lies on an axis."""
     m, B = symbols("m B", real=True)
     x, y = ellipse.components[0].point
     chord = Matrix([x, y]).subs(theta, m + B) - Matrix([x, y]).subs(theta, m - B)
@@ -183,22 +184,22 @@ def axes_alone(box: Box) -> Finding:
 
 @judges("ellipse.minor_axis_stable")
 def minor_axis_stable(claim: Claim) -> Judgement:
-    """Jury's criterion over the whole range."""
+    """The minor axis is stable over the whole range, by Jury's criterion."""
     P = stability_number(minor_axis())
     return on_range(claim, lambda box: stable_while_nonnegative(P, box), "|mu| < 1")
 
 
 @judges("ellipse.major_axis_invariant")
 def major_axis_invariant(claim: Claim) -> Judgement:
-    """The chord is normal at both ends."""
+    """The major axis is an orbit, since it is normal at both ends."""
     return Judgement(
         answer(is_double_normal(major_axis()), "the major axis is normal to the boundary at both ends"),
         "phi = 0 forever",
     )
 
 
-def lyapunov() -> list[Finding]:
-    """`J = g*cos(phi)` never decreases, and is larger on the minor axis than on the major."""
+def lyapunov() -> list[SignFinding]:
+    """The findings that `J = abs(gradient)*cos(phi)` never falls, and is larger on the minor axis than on the major."""
     ends = [gradient(*ellipse.components[0].at(angle)).norm() for angle in (S.Zero, pi / 2)]
     return [
         zero("J survives the flight (Joachimsthal)", joachimsthal_defect()),
@@ -216,12 +217,12 @@ LIMIT = (
 
 @judges("ellipse.limit_set")
 def limit_set(claim: Claim) -> Judgement:
-    """A Lyapunov function, and the two double normals."""
+    """The limit set consists of the two double normals, by a Lyapunov function."""
     return Judgement(two_cycles(claim.box), "the stable minor and the unstable major axis, for every a > 1")
 
 
-def two_cycles(box: Box | None = None) -> Finding:
-    """Is every limit point of an orbit, for `a > 1` and `0 < lam < 1`, on the stable or the unstable axis?"""
+def two_cycles(box: Box | None = None) -> SignFinding:
+    """The finding that for `a > 1` and `0 < lam < 1` every orbit converges to the stable or the unstable axis."""
     open_box = {**BEYOND, **(box or {lam: Interval.open(0, 1)})}
     return by(
         LIMIT,
@@ -233,7 +234,7 @@ def two_cycles(box: Box | None = None) -> Finding:
 
 @judges("ellipse.basin", "ellipse.major_axis_leaves")
 def basin(claim: Claim) -> Judgement:
-    """The unstable orbit is a saddle: it has a stable manifold."""
+    """A counterexample: the unstable orbit is a saddle, and the points of its stable manifold converge to it."""
     open_box = {**BEYOND, lam: Interval.open(0, 1)}
     is_saddle = saddle(*major(), open_box)
     return Judgement(
@@ -248,25 +249,25 @@ def basin(claim: Claim) -> Judgement:
 
 @judges("ellipse.curvature")
 def curvature_formula(claim: Claim) -> Judgement:
-    """Derived from the parametrisation."""
+    """The printed curvature, derived from the parametrisation."""
     return identity(claim, curvature(ellipse.components[0]))
 
 
 @judges("ellipse.curvature_major")
 def curvature_major(claim: Claim) -> Judgement:
-    """At the tip."""
+    """The printed curvature at an end of the major axis."""
     return identity(claim, major_axis().frames[0].curvature)
 
 
 @judges("ellipse.curvature_minor")
 def curvature_minor(claim: Claim) -> Judgement:
-    """At the flank."""
+    """The printed curvature at an end of the minor axis."""
     return identity(claim, minor_axis().frames[0].curvature)
 
 
 @judges("ellipse.major_axis_eigenvalues")
 def major_eigenvalues(claim: Claim) -> Judgement:
-    """The characteristic polynomial is positive at 0 and negative at 1."""
+    """The printed bounds of the eigenvalues: the characteristic polynomial is positive at 0, negative at 1."""
     trace, det = major()
     return on_range(
         claim,
@@ -279,14 +280,14 @@ def major_eigenvalues(claim: Claim) -> Judgement:
 
 @judges("ellipse.major_axis_unstable")
 def major_unstable(claim: Claim) -> Judgement:
-    """The characteristic polynomial is negative at 1, so one multiplier exceeds 1."""
+    """One multiplier of the major axis exceeds 1, since the characteristic polynomial is negative at 1."""
     trace, det = major()
     return on_range(claim, lambda box: positive(trace - 1 - det, box), "mu_+ > 1")
 
 
 @judges("ellipse.evolute")
 def ellipse_evolute(claim: Claim) -> Judgement:
-    """`x = (a**2-1)/a*cos**3`, `y = -(a**2-1)*sin**3`."""
+    """The evolute is the astroid `x = (a**2-1)/a*cos**3`, `y = -(a**2-1)*sin**3`."""
     centre = centre_of_curvature(ellipse.components[0])
     astroid = Matrix([(a**2 - 1) / a * cos(theta) ** 3, -(a**2 - 1) * sin(theta) ** 3])
     return Judgement(
@@ -296,13 +297,13 @@ def ellipse_evolute(claim: Claim) -> Judgement:
 
 
 def axis_slope(P: Expr, shape: Expr) -> Expr:
-    """`(T0^2)'` on a double normal: the stability number."""
+    """The slope `(T0^2)'` on a double normal at the half axis `a = shape`: its stability number `P(a)`."""
     return P.subs(a, shape)
 
 
 @judges("ellipse.slap_unstable_points")
 def slap_unstable(claim: Claim) -> Judgement:
-    """`(T0^2)' = P` on a double normal."""
+    """The ends of the major axis are unstable under the slap map `T0`: the stability number `(T0^2)'` is above 1."""
     slope = axis_slope(stability_number(major_axis()), Rational(6, 5))
     return Judgement(
         by(f"(T0^2)' = {slope} at both ends of the major axis", positive(slope - 1, {})), f"(T0^2)' = {slope}"
@@ -311,7 +312,7 @@ def slap_unstable(claim: Claim) -> Judgement:
 
 @judges("ellipse.slap_stable_orbits")
 def slap_stable(claim: Claim) -> Judgement:
-    """Two points, one orbit."""
+    """The two stable points are one orbit, along the minor axis."""
     slope = axis_slope(stability_number(minor_axis()), Rational(6, 5))
     stable = positive(1 - slope**2, {})
     return Judgement(
@@ -327,7 +328,7 @@ def slap_stable(claim: Claim) -> Judgement:
 
 @judges("ellipse.slap_not_expanding")
 def slap_not_expanding(claim: Claim) -> Judgement:
-    """`(T0^2)' = P <= 1` at the flanks."""
+    """The slap map `T0` is not expanding: the stability number `(T0^2)'` is at most 1 on the minor axis."""
     P = stability_number(minor_axis())
     return Judgement(by("(T0^2)' = ((a^2-2)/a^2)^2 <= 1 on the minor axis", nonnegative(1 - P, claim.box | {})), str(P))
 
@@ -336,10 +337,10 @@ BEYOND = {a: Interval.open(1, oo)}
 
 
 def minor() -> tuple[Expr, Expr]:
-    """Trace and determinant on the minor axis."""
+    """Trace and determinant of the monodromy matrix on the minor axis."""
     return trace_and_determinant(minor_axis())
 
 
 def major() -> tuple[Expr, Expr]:
-    """Trace and determinant on the major axis."""
+    """Trace and determinant of the monodromy matrix on the major axis."""
     return trace_and_determinant(major_axis())

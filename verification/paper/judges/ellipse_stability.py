@@ -1,4 +1,4 @@
-"""Claims on the eigenvalues of the ellipse's minor axis. Paper: section 3.3."""
+"""Judges of claims on the eigenvalues of the ellipse's minor axis. Paper: section 3.3."""
 
 from collections.abc import Callable
 
@@ -6,7 +6,7 @@ from sympy import Expr, Integer, Interval, Matrix, S, Symbol, cancel, diag, eye,
 
 from symbolic.cycles.cycle import discriminant, major_axis, minor_axis, monodromy, multipliers, saddle
 from symbolic.cycles.thresholds import lambda_minus, lambda_plus, stability_number, stable_while_nonnegative
-from symbolic.expressions.signs import Box, Finding, conjunction, nonnegative, positive
+from symbolic.expressions.signs import Box, SignFinding, conjunction, nonnegative, positive
 from symbolic.tables.table import a, lam
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, digits, equal, greater, identity, judges, zero
@@ -17,13 +17,13 @@ w = Symbol("w", positive=True)  # sqrt(a**2 - 1)
 
 
 def critical_factor() -> Expr:
-    """`trace - 2*det**(1/2)` on the minor axis times `a**4`: the factor of P_2 that changes sign."""
+    """The factor of the paper's P_2 that changes sign: `a**4*(trace - 2*det**(1/2))` on the minor axis."""
     trace, _ = minor()
     return (a**4 * (trace - 2 * lam)).expand()
 
 
-def both_sides_of_sqrt2(prove: Callable[[Box], Finding], box: Box) -> Finding:
-    """A statement for every `a > 1` but `sqrt(2)`, in the variable `w = sqrt(a**2 - 1) != 1`."""
+def both_sides_of_sqrt2(prove: Callable[[Box], SignFinding], box: Box) -> SignFinding:
+    """The finding of a statement for every `a > 1` but `sqrt(2)`, in the variable `w = sqrt(a**2 - 1)`."""
     return conjunction(prove({**box, w: Interval.open(0, 1)}), prove({**box, w: Interval.open(1, oo)}))
 
 
@@ -34,13 +34,13 @@ def in_w(expression: Expr) -> Expr:
 
 @judges("ellipse.monodromy")
 def minor_monodromy(claim: Claim) -> Judgement:
-    """The product of two flights; the same at both ends, by symmetry."""
+    """The printed monodromy matrix, a product of two flights; it is the same at both ends by symmetry."""
     return identity(claim, monodromy(minor_axis()))
 
 
 @judges("ellipse.mu")
 def minor_multipliers(claim: Claim) -> Judgement:
-    """The printed roots with the derived P_1 and P_2 put in."""
+    """The printed roots, with the derived P_1 and P_2 inserted."""
     trace, det = minor()
     derived = {Symbol("P1", real=True): a**4 * trace, Symbol("P2", real=True): a**8 * discriminant(trace, det)}
     finding = equal(claim.formula.subs(derived), Matrix(multipliers(trace, det)), claim.box)
@@ -49,19 +49,19 @@ def minor_multipliers(claim: Claim) -> Judgement:
 
 @judges("ellipse.P1")
 def first_polynomial(claim: Claim) -> Judgement:
-    """`a**4` times the trace."""
+    """The printed P_1 is `a**4` times the trace."""
     return identity(claim, (a**4 * minor()[0]).expand())
 
 
 @judges("ellipse.P2")
 def second_polynomial(claim: Claim) -> Judgement:
-    """`a**8` times the discriminant."""
+    """The printed P_2 is `a**8` times the discriminant."""
     return identity(claim, (a**8 * discriminant(*minor())).factor())
 
 
 @judges("ellipse.complex_near_one")
 def complex_near_one(claim: Claim) -> Judgement:
-    """The discriminant at `lam = 1`, and the end `a = 1` where 1 is a multiplier."""
+    """Multipliers are complex near `lam = 1`, except at `a = 1`, where 1 is a multiplier, and `a = sqrt(2)`."""
     trace, det = minor()
     circle = 1 - trace.subs(a, 1) + det
     near = 4 * det - trace**2
@@ -80,7 +80,7 @@ def complex_near_one(claim: Claim) -> Judgement:
 
 @judges("ellipse.mu_to_one", "ellipse.elastic_modulus")
 def modulus_at_one(claim: Claim) -> Judgement:
-    """At `lam = 1` the determinant is 1 and `|trace| <= 2`: both multipliers lie on the unit circle."""
+    """At `lam = 1` both multipliers lie on the unit circle: the determinant is 1 and `|trace| <= 2`."""
     trace, det = (x.subs(lam, 1) for x in minor())
     circle = nonnegative(4 - trace**2, {a: claim.box[a]})
     return Judgement(
@@ -91,23 +91,22 @@ def modulus_at_one(claim: Claim) -> Judgement:
 
 @judges("ellipse.elastic_elliptic")
 def elastic_elliptic(claim: Claim) -> Judgement:
-    """`|trace| < 2` except at the two parabolic shapes."""
-    trace = minor()[0].subs(lam, 1)
+    """The orbit is elliptic at `lam = 1` in the sense of section 6.4; at two shapes the eigenvalues are real."""
+    trace, det = (x.subs(lam, 1) for x in minor())
     return Judgement(
-        counterexample(
-            "at a = 1 and a = sqrt(2), |trace| = 2",
-            zero("", trace.subs(a, 1) - 2, trace.subs(a, sqrt(2)) + 2),
-            at={a: S.One},
+        by(
+            "at lam = 1 the determinant is 1 and |trace| <= 2, with equality at a = 1 and a = sqrt(2) alone",
+            zero("", det - 1, trace.subs(a, 1) - 2, trace.subs(a, sqrt(2)) + 2),
+            both_sides_of_sqrt2(lambda box: positive(in_w(4 - trace**2), box), {}),
         ),
-        "elliptic at lam = 1 for every a > 1 except a = sqrt(2)",
-        both_sides_of_sqrt2(lambda box: positive(in_w(4 - trace**2), box), {}),
-        "The orbit is parabolic, not elliptic, at a = 1 (trace 2) and at a = sqrt(2) (trace -2).",
+        "eigenvalues on the unit circle, as section 6.4 defines elliptic, for every a >= 1; they are real at a = 1 "
+        "(both 1) and at a = sqrt(2) (both -1), where stricter definitions say parabolic",
     )
 
 
 @judges("ellipse.P2_crossing")
 def crossing(claim: Claim) -> Judgement:
-    """`P_2` is the discriminant times a positive factor."""
+    """`P_2` has the sign of the discriminant, its multiple by a positive factor."""
     return Judgement(
         by("P_2 = a^8*(trace^2 - 4*det) and a^8 > 0", positive(a**8, {a: claim.box[a]})),
         "real where P_2 > 0, complex where P_2 < 0",
@@ -116,7 +115,7 @@ def crossing(claim: Claim) -> Judgement:
 
 @judges("ellipse.P2_sqrt2")
 def touching(claim: Claim) -> Judgement:
-    """`P_2` has the square of `a**2 - 2` as a factor."""
+    """`P_2` touches 0 at `a = sqrt(2)` without crossing, with the factor `(a**2 - 2)**2`."""
     P2 = (a**8 * discriminant(*minor())).factor()
     rest = P2 / ((1 + lam) ** 2 * (a**2 - 2) ** 2)
     same_side = {lam: Interval.Lopen(0, 1)}
@@ -128,20 +127,24 @@ def touching(claim: Claim) -> Judgement:
             at={a: sqrt(2), lam: S.Half},
         ),
         "P_2 touches 0 at a = sqrt(2) without changing sign: Q = -16*lam there",
-        by("Q < 0 on both sides of a = sqrt(2)", zero("", critical_factor().subs(a, sqrt(2)) + 16 * lam)),
-        "At a = sqrt(2) P_2 touches 0 but does not cross it; the eigenvalues are complex on both sides.",
+        by(
+            "Q = -16*lam at a = sqrt(2), so Q < 0 on both sides of it for lam > 0; at lam = 0 Q is a square",
+            zero("", critical_factor().subs(a, sqrt(2)) + 16 * lam, critical_factor().subs(lam, 0) - (a**2 - 2) ** 2),
+        ),
+        "At a = sqrt(2) P_2 touches 0 but does not cross it; for lambda > 0 the eigenvalues are complex on both sides, "
+        "and at lambda = 0 real on both.",
     )
 
 
 @judges("ellipse.lambda_plus")
 def upper_root(claim: Claim) -> Judgement:
-    """The inverse of the lower one."""
+    """The printed `lambda_+`, the inverse of `lambda_-`."""
     return identity(claim, lambda_plus())
 
 
 @judges("ellipse.lambda_minus")
 def lower_root(claim: Claim) -> Judgement:
-    """`((w-1)/(w+1))**2`, and it annihilates the critical factor."""
+    """The printed `lambda_-` is `((w-1)/(w+1))**2`, a root of the critical factor."""
     judgement = identity(claim, lambda_minus())
     vanishing = zero("P_2 vanishes there", critical_factor().subs(lam, lambda_minus()))
     return Judgement(conjunction(judgement.printed, vanishing), "((w - 1)/(w + 1))^2 with w = sqrt(a^2 - 1)")
@@ -149,7 +152,7 @@ def lower_root(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_plus_outside")
 def upper_outside(claim: Claim) -> Judgement:
-    """`(w+1)**2 - (w-1)**2 = 4*w`, zero only at the circle."""
+    """`lambda_+ > 1` except for the circle, since `(w+1)**2 - (w-1)**2 = 4*w`."""
     above = (w + 1) ** 2 - (w - 1) ** 2
     return Judgement(
         counterexample("at a = 1, lambda_+ = 1", zero("", lambda_plus().subs(a, 1) - 1), at={a: S.One}),
@@ -161,28 +164,28 @@ def upper_outside(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_minus_range")
 def lower_range(claim: Claim) -> Judgement:
-    """A square, not above 1."""
+    """`lambda_-` lies in [0, 1], since it is a square and at most 1."""
     inside = nonnegative((w + 1) ** 2 - (w - 1) ** 2, {w: Interval(0, oo)})
     return Judgement(by("lambda_- = ((w-1)/(w+1))^2 is a square and at most 1", inside), "0 <= lambda_- <= 1")
 
 
 @judges("ellipse.lambda_minus_sqrt2")
 def lower_limit_at_sqrt2(claim: Claim) -> Judgement:
-    """Continuous there."""
+    """The printed limit of `lambda_-` at `sqrt(2)`, where it is continuous."""
     reached = lambda_minus().subs(a, sqrt(2))
     return Judgement(by("lambda_- is continuous at a = sqrt(2)", equal(claim.formula, reached, {})), str(reached))
 
 
 @judges("ellipse.lambda_minus_oo")
 def lower_limit_at_infinity(claim: Claim) -> Judgement:
-    """A rational function of `w` with equal leading coefficients."""
+    """The printed limit of `lambda_-`, a rational function of `w` with equal leading coefficients."""
     reached = limit(((w - 1) / (w + 1)) ** 2, w, oo)
     return Judgement(by("the limit of ((w-1)/(w+1))^2 as w -> oo", equal(claim.formula, reached, {})), str(reached))
 
 
 @judges("ellipse.stable_node")
 def stable_node(claim: Claim) -> Judgement:
-    """The critical factor is a quadratic in `lam` with roots `lambda_-` and `lambda_+`."""
+    """The orbit is a stable node below `lambda_-`: the critical factor has the roots `lambda_-` and `lambda_+`."""
     trace, det = minor()
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())
     inside = stable_while_nonnegative(stability_number(minor_axis()), {**BEYOND, lam: Interval.Ropen(0, 1)})
@@ -198,7 +201,7 @@ def stable_node(claim: Claim) -> Judgement:
 
 @judges("ellipse.complex_above")
 def complex_above(claim: Claim) -> Judgement:
-    """Between the roots, except where the other factor of `P_2` vanishes."""
+    """Multipliers are complex between the roots, except where the other factor of `P_2` vanishes."""
     trace, det = minor()
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())
     share = Symbol("share", positive=True)  # lam = lambda_- + share*(1 - lambda_-)
@@ -218,7 +221,7 @@ def complex_above(claim: Claim) -> Judgement:
 
 @judges("ellipse.splitting_nonreal")
 def splitting_nonreal(claim: Claim) -> Judgement:
-    """A matrix with an invariant real line has a real eigenvalue."""
+    """No splitting without real eigenvalues, since an invariant real line has one."""
     mu, v, m12, m22 = symbols("mu v m12 m22", real=True)
     kept = Matrix([[mu - m12 * v, m12], [(mu - m22) * v, m22]])  # every matrix that maps (1, v) to mu*(1, v)
     return Judgement(
@@ -232,7 +235,7 @@ def splitting_nonreal(claim: Claim) -> Judgement:
 
 
 def eigenline_defects() -> list[Expr]:
-    """With `B*A*v = mu*v`, the flight `A` takes `v` to an eigenvector of `A*B`: zeros. Written for `v = (1, 0)`."""
+    """Zeros which show that if `B*A*v = mu*v`, then `A*v` is an eigenvector of `A*B`; with `v = (1, 0)`."""
     a11, a12, a21, a22, b12, b22, mu = symbols("a11 a12 a21 a22 b12 b22 mu", real=True)
     A = Matrix([[a11, a12], [a21, a22]])
     B = Matrix([[mu, b12], [0, b22]]) * A.inv()  # every B with B*A*(1, 0) = mu*(1, 0)
@@ -242,7 +245,7 @@ def eigenline_defects() -> list[Expr]:
 
 @judges("ellipse.splitting_hyperbolic")
 def splitting_hyperbolic(claim: Claim) -> Judgement:
-    """The minor axis at `lam = lambda_-(a)`: equal real multipliers, one eigenvector."""
+    """A counterexample: the minor axis at `lam = lambda_-(a)`, with equal multipliers and one eigenvector."""
     at_threshold = monodromy(minor_axis()).subs(a, 3).subs(lam, lambda_minus().subs(a, 3))
     trace, det = at_threshold.trace(), at_threshold.det()
     open_box = {**BEYOND, lam: Interval.open(0, 1)}
@@ -268,7 +271,7 @@ def splitting_hyperbolic(claim: Claim) -> Judgement:
 
 @judges("ellipse.dominated_splitting")
 def dominated_splitting(claim: Claim) -> Judgement:
-    """Real and distinct below `lambda_-`, one Jordan block at it, complex above."""
+    """The splitting: real distinct multipliers below `lambda_-`, a Jordan block at it, complex ones above."""
     corner = monodromy(minor_axis())[0, 1]
     off = both_sides_of_sqrt2(lambda box: positive(in_w(corner**2), box), {lam: Interval(0, 1)})
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())
@@ -292,13 +295,13 @@ def dominated_splitting(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_minus_5")
 def lower_root_at_5(claim: Claim) -> Judgement:
-    """The closed form at `a = 5`."""
+    """The printed digits of `lambda_-(5)`, from the closed form."""
     return digits(claim, lambda_minus().subs(a, Integer(5)))
 
 
 @judges("ellipse.major_by_inversion")
 def major_by_inversion(claim: Claim) -> Judgement:
-    """The ellipse with `1/a`, turned and enlarged `a` times; arc lengths grow with it, angles do not."""
+    """The major axis is the minor axis of the ellipse with `1/a`, rotated and enlarged `a` times."""
     enlarged = diag(a, 1) * monodromy(minor_axis()).subs(a, 1 / a) * diag(1 / a, 1)
     return Judgement(
         by("an identity, with arc length in units of a", zero("", *(enlarged - monodromy(major_axis())))),

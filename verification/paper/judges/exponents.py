@@ -1,4 +1,4 @@
-"""Claims on Lyapunov exponents and on sizes of basins: proved for cycles, else sampled with its error.
+"""Judges of claims on Lyapunov exponents and sizes of basins: proved for cycles, else sampled with an error.
 
 Paper: sections 5.3, 6.4, 6.6 and the appendix. Exponents of cycles are proved from certified multipliers, those of
 chaotic orbits sampled with standard errors.
@@ -22,22 +22,23 @@ from symbolic import tables
 from symbolic.cycles.cycle import contracting_norm, major_axis
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.expressions.signs import Finding, Outcome
+from symbolic.expressions.signs import Outcome, SignFinding
 from symbolic.motion.collision import area_factor, steepening, weak_dissipation
 from symbolic.tables.table import a, alpha, eta, lam
 from verification.arithmetic.balls import enclose, working
 from verification.cycles.cascade import cascade, cycle_at, doubled
-from verification.named.attractors import Certificate, certificate, exponents
+from verification.named.attractors import certificate, exponents
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, digits, greater, judges, rounded, sampled, zero
 from verification.paper.judges.attractors import strange
+from verification.proofs.periodic.cycle_in_box import AttractingCycle
 
 SHAPE = Rational(2, 25)
 SEED = 1
 
 
 def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:
-    """The share of random starts that end on period 3: their neighbourhood shrinks, off the diameters."""
+    """The share of random starts that end on period 3: a negative exponent, away from the diameters."""
     map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
     ball = phase_starts(map, starts, SEED)
     end = map.exponents(ball.theta, ball.phi, 200, bounces, ball.component)
@@ -46,7 +47,7 @@ def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float
 
 @judges("egg.period3_end_caption")
 def end_of_period_3(claim: Claim) -> Judgement:
-    """The fold in closed form, and why sampling sees it late: the basins are born with size 0."""
+    """The digits of the fold, in closed form; samples see it late, since the basins are born with size 0."""
     shares = ", ".join(f"{share_of_period_3(lam):.1%} at {lam}" for lam in ("0.3785", "0.38", "0.39", "0.42"))
     found = digits(claim, saddle_node().subs(alpha, SHAPE), ("0.39", "0.378"))
     return replace(found, derived=f"{found.derived}; random starts that reach period 3: {shares}, so plots see it late")
@@ -59,7 +60,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Exponents of single orbits at several contractions: orbits along the last axis."""
+    """The exponents of single orbits at several contractions; orbits are along the last axis."""
 
     lams: Array
     plus: Array
@@ -67,12 +68,12 @@ class Spectrum:
 
     @property
     def total(self) -> Array:
-        """The sum of both."""
+        """The sum of both exponents."""
         return self.plus + self.minus
 
     @staticmethod
     def error(values: Array) -> Array:
-        """Standard errors of the means over orbits, which start independently."""
+        """The standard errors of the means over orbits."""
         return np.asarray(np.std(values, axis=-1, ddof=1) / np.sqrt(values.shape[-1]))
 
 
@@ -87,7 +88,7 @@ def spectrum(table: str, lams: tuple[float, ...], particles: int = BALLS, bounce
 
 
 def settled(table: str, lams: Array, particles: int) -> Growth:
-    """The same particles, started as in the paper's appendix, on their attractors at each contraction in turn."""
+    """The same particles after a transient at each contraction, started as in the paper's appendix."""
     map = PinballMap(table, lam=np.repeat(lams, particles))
     starts = interior_starts(map.at(1), particles, SPECTRA_SEED)
     growth = Growth(map, *(np.tile(field, len(lams)) for field in (starts.theta, starts.phi, starts.component)))
@@ -96,7 +97,7 @@ def settled(table: str, lams: Array, particles: int) -> Growth:
 
 
 def visited(table: str, lams: tuple[float, ...], particles: int, bounces: int) -> Array:
-    """How often each ball is in each cell of `(s, sin(phi))`: contraction, ball, cell."""
+    """The number of visits of each ball to each cell of `(s, sin(phi))`, of shape `(contractions, balls, cells)`."""
     growth = settled(table, np.array(lams), particles)
     map = growth.map
     orbit = map.orbit(growth.theta, growth.phi, bounces, growth.component)
@@ -110,12 +111,12 @@ def visited(table: str, lams: tuple[float, ...], particles: int, bounces: int) -
 
 @cache
 def coverage(table: str, lams: tuple[float, ...]) -> Array:
-    """The counts that the judges below share."""
+    """The visits of 16 orbits of 4000 bounces, cached for several judges."""
     return visited(table, lams, 16, 4000)
 
 
 def uneven(counts: Array) -> float:
-    """The relative standard deviation of the cells' counts, beyond that of counting."""
+    """The relative standard deviation of the cells' counts in excess of that of random counting."""
     whole = counts.sum(axis=0)
     mean = float(np.mean(whole))
     return float(np.sqrt(max(np.var(whole) / mean - 1, 0.0) / mean))
@@ -125,14 +126,14 @@ BITS = 128
 DISCRETE = ("exists", "unique", "admissible", "minimal_period")
 
 
-def proved(proof: Certificate) -> bool:
-    """Does the cycle exist, is it admissible and of least period?"""
+def proved(proof: AttractingCycle) -> bool:
+    """True if the cycle is proved to exist, to be admissible and to have this minimal period."""
     return all(proof.checks[name] is True for name in DISCRETE)
 
 
 @judges("cuspless.lyapunov_signs")
 def cuspless_signs(claim: Claim) -> Judgement:
-    """On the chaotic attractor; below `lambda_c` the period-2 attractor has two negative exponents."""
+    """The signs of the exponents on the chaotic attractor; below `lambda_c` period 2 has two negative ones."""
     lams = tuple(k / 10 for k in range(1, 11))
     found = spectrum("cuspless", lams)
     least, most = float(np.min(found.plus)), float(np.max(found.minus))
@@ -148,7 +149,7 @@ def cuspless_signs(claim: Claim) -> Judgement:
 
 @cache
 def averaged(contraction: str, orbits: int = 1500) -> tuple[float, float, float]:
-    """`nu_plus` over random starts, its standard error, and the share of them that no cycle attracts."""
+    """The mean `nu_plus` over random starts, its standard error, and the share of starts on no cycle."""
     map = PinballMap("cuspless", lam=contraction)
     start = interior_starts(map, orbits, SEED)
     plus = map.exponents(start.theta, start.phi, 500, 4000, start.component).nu_plus
@@ -156,14 +157,14 @@ def averaged(contraction: str, orbits: int = 1500) -> tuple[float, float, float]
 
 
 def listed(contractions: tuple[str, ...]) -> str:
-    """The averages in words."""
+    """The means at contractions, as text."""
     rows = [(x, *averaged(x)) for x in contractions]
     return "; ".join(f"{m:+.4f} +- {e:.0e} at {x} ({c:.1%} chaotic)" for x, m, e, c in rows)
 
 
 @judges("cuspless.nu_jump")
 def jumps(claim: Claim) -> Judgement:
-    """The basin of period 2 shrinks to nothing, so the average rises steeply, and joins on."""
+    """The mean has a steep rise but no jump, since the basin of period 2 shrinks to nothing."""
     points = ("0.09", "0.092", "0.093", "0.0933", "0.095")
     exact = float(lambda_c())
     gaps, shares = [exact - float(x) for x in points[:4]], [1 - averaged(x)[2] for x in points[:4]]
@@ -178,9 +179,9 @@ def jumps(claim: Claim) -> Judgement:
 
 
 def triangle_rate() -> Expr:
-    """`nu_plus = nu_minus` of the egg's triangles while their multipliers are complex: half of `log(g(eta))`.
+    """The exponents `nu_plus = nu_minus` of the egg's triangles while their multipliers are complex: `log(g(eta))/2`.
 
-    The exits of an equilateral triangle open `pi/3`, so `eta + lam*eta = pi/3`.
+    At a corner of an equilateral triangle the chords make the angle `pi/3`, so `eta + lam*eta = pi/3`.
 
     >>> round(float(triangle_rate().subs(lam, Rational(3937, 10000))), 4)
     -0.3314
@@ -188,16 +189,16 @@ def triangle_rate() -> Expr:
     return log(area_factor().subs(eta, pi / (3 * (1 + lam)))) / 2
 
 
-def agree(one: arb, other: arb) -> Finding:
-    """Do two balls for one number, of at most `1e-15`, meet? They refute each other when they do not."""
+def agree(one: arb, other: arb) -> SignFinding:
+    """The finding that two balls for one number, with radii up to 1e-15, meet; refuted when they do not."""
     if not one.overlaps(other):
-        return Finding(Outcome.REFUTED, f"{one} and {other} are different")
+        return SignFinding(Outcome.REFUTED, f"{one} and {other} are different")
     return answer(max(one.rad(), other.rad()) < arb("1e-15"), "both agree to 1e-15")
 
 
 @judges("egg.exponent_period3")
 def period3(claim: Claim) -> Judgement:
-    """A closed form, at the contraction where the paper compares it; it is 0 at birth and at `lam = 1`."""
+    """The printed exponent of period 3, against a closed form at the contraction of the paper's comparison."""
     here = Rational(3937, 10000)
     value = triangle_rate().subs(lam, here)
     born = enclose(saddle_node().subs(alpha, SHAPE)).real
@@ -222,7 +223,7 @@ def period3(claim: Claim) -> Judgement:
 
 @cache
 def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
-    """The cycle of period 32 at a share of the way from its birth to its doubling: proved, `lam`, `nu_plus`."""
+    """The cycle of period 32 at a share of the way from birth to doubling: True if proved, `lam`, `nu_plus`."""
     table = tables.egg(3).at(alpha=SHAPE)
     _, _, born, dies = proved_doublings()
     theta, contraction = doubled(born.problem, born.start, (dies.lam - born.lam) / 50)
@@ -238,13 +239,13 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
 
 @cache
 def proved_doublings() -> list:  # type: ignore[type-arg]
-    """`lambda_3` to `lambda_6` in float64."""
+    """The doublings `lambda_3` to `lambda_6` in float64."""
     return list(islice(cascade(SHAPE), 4))
 
 
 @judges("egg.exponent_period32")
 def period32(claim: Claim) -> Judgement:
-    """Along its window the exponent goes from 0 down and back to 0."""
+    """The exponent of period 32 falls from 0 and returns to 0 along its window."""
     shares = [Fraction(k, 20) for k in (1, 3, 10, 17, 19)]
     rows = [period_32(share) for share in shares]
     fits = next(row for row in rows if row[0] and round(float(row[2].mid()), 2) == -0.01)
@@ -261,26 +262,24 @@ def period32(claim: Claim) -> Judgement:
 
 @judges("egg.chaos_by")
 def chaos_by(claim: Claim) -> Judgement:
-    """Strange attractors at contractions that round to the printed one; at that itself a sample with its error."""
-    chaos, value = strange("0.08", "band-merging-16")
-    fits = rounded(str(claim.printed), lambda bits: value)
-    map = PinballMap("egg", lam=str(claim.printed), alpha=str(SHAPE))
-    start = interior_starts(map, 64, SEED)
-    end = map.exponents(start.theta, start.phi, 20_000, 5000, start.component)
-    plus = end.nu_plus[end.nu_plus > float(triangle_rate().subs(lam, Rational(str(claim.printed)))) / 2]
-    mean, error = float(np.mean(plus)), float(np.std(plus) / np.sqrt(plus.size))
-    said = (
-        f"for a set of contractions of positive measure, in every neighbourhood of {value.str(9, radius=False)}; "
-        f"sampled, at lam = {claim.printed} itself nu_+ = {mean:.5f} +- {error:.0e} over the {plus.size} of 64 orbits "
-        f"of 20000 bounces that do not end on period 3; period 64 is born at lam = {proved_doublings()[-1].lam:.6f}"
+    """A tangency below the printed contraction, near which strange attractors are proved."""
+    chaos, value = strange("0.08", "earliest")
+    where = value.str(9, radius=False)
+    return Judgement(
+        by(
+            f"before lam = {claim.printed} there are strange attractors, next to a tangency of a cycle of period 32",
+            chaos,
+            answer(value < enclose(Rational(str(claim.printed))).real, f"{where} < {claim.printed}"),
+        ),
+        "strange attractors, which hold a dense orbit along which some vectors grow exponentially, for a set of "
+        f"contractions of positive measure in every neighbourhood of {where}; period 64 is born at lam = "
+        f"{proved_doublings()[-1].lam:.6f}. For one given contraction, as {claim.printed} is, no theorem says it",
     )
-    proof = "a strange attractor holds a dense orbit along which some vectors grow exponentially"
-    return Judgement(by(proof, chaos, answer(bool(fits), fits.reason)), said)
 
 
 @judges("egg.weak_dissipation_attracts")
 def weak_dissipation_attracts(claim: Claim) -> Judgement:
-    """An elliptic hexagon of the egg that becomes a repeller: its bounces are too oblique."""
+    """A counterexample: an elliptic hexagon of the egg becomes repelling, as its bounces are oblique."""
     table = tables.egg(3).at(alpha=Rational(1, 20))
     six = [-3.0849, -2.0728, -0.9905, 0.0216, 1.1038, 2.1160]
     damped, elastic = (certificate(table, x, phase_points(six, 0.0), 20) for x in (Rational(99, 100), S.One))
@@ -313,7 +312,7 @@ def weak_dissipation_attracts(claim: Claim) -> Judgement:
 
 @judges("appendix.chaotic_sign")
 def chaotic_sign(claim: Claim) -> Judgement:
-    """The ellipse's major axis: a positive exponent in a table without chaos."""
+    """A counterexample: the ellipse's major axis has a positive exponent in a table without chaos."""
     from symbolic.cycles.cycle import monodromy
 
     here = {a: S(2), lam: S.Half}

@@ -1,12 +1,10 @@
-"""Claims on the hyperbolicity of the two cardioids: splitting, and what the orbit through both corners bears.
+"""Judges of claims on hyperbolicity of both cardioids, and on the orbit through both corners. Paper: sections 4 to 5.2.
 
-Dominated splitting, elastic hyperbolicity (paper: sections 4, 4.1 and 5): what is proved lies in
-`symbolic.cycles.splitting` and `symbolic.cycles.defocusing`; what is sampled says so.
-
-The orbit through both corners (section 5.2): "chaotic" is proved in this sense, that a region around it is thrown
-into itself, and every orbit in it has an exponent above a positive bound, so that no cycle in it is stable.
-
-The egg's map with a Newton-Raphson iteration that stops early (appendix): how far values in section 6.6 depend on it.
+Dominated splitting and elastic hyperbolicity are proved in `symbolic.cycles.splitting` and
+`symbolic.cycles.defocusing`. Near the orbit through both corners "chaotic" is proved in this sense: a region around it
+is mapped into itself, and every orbit in it has an exponent above a positive bound, so no cycle in it is stable. The
+module also iterates the egg's map with a Newton iteration that stops early (appendix), to measure its effect on values
+in section 6.6.
 """
 
 from collections.abc import Sequence
@@ -22,7 +20,7 @@ from numeric.pinball.sampling import phase_starts
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.splitting import grazing, radius_defects, rate, splits
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.expressions.signs import Finding, Outcome
+from symbolic.expressions.signs import Outcome, SignFinding
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, cos_eta1, cos_phi0, lam
 from symbolic.tables.table import lam as letter
@@ -33,18 +31,18 @@ from verification.paper.claims.judges import by, counterexample, judges, sampled
 from verification.paper.judges.cuspless import attracting_below
 from verification.paper.judges.exponents import SPECTRA_SEED as SEED
 from verification.paper.judges.located import certified, located, subcritical
-from verification.proofs.corner.border_collision import Kind
+from verification.proofs.corner.border_collision import FixedPointChange
 from verification.proofs.corner.corner import ARC
-from verification.proofs.corner.evidence import Attractor, border, measured, saddles, strips_of_the_map
-from verification.proofs.corner.half_return import TrappingRegion, trapping_region
+from verification.proofs.corner.evidence import ScaledAttractor, border, measured, saddles, strips_of_the_map
+from verification.proofs.corner.half_return import ChaosAboveLambdaStar
 from verification.proofs.corner.return_map import fourth_on_wall, kink_falls, minimum_at_kink
 
 BALLS, BOUNCES, BLOCK, LAG = 64, 20_000, 500, 100
 Array = NDArray[np.float64]
 
 
-def cones() -> Finding:
-    """The cone of beams that focus within `D` is mapped strictly into itself, for every contraction below 1."""
+def cones() -> SignFinding:
+    """The finding that a cone of beams is mapped strictly into itself, for every contraction below 1."""
     return by(
         "a cone of beams is mapped strictly into itself at every return to the arc, at most two bounces, with a bound "
         "on the projective diameter of its image; for 0 <= lam < 1, off the points where DT does not exist",
@@ -54,7 +52,7 @@ def cones() -> Finding:
 
 @judges("cuspless.dominated_splitting", "cardioid.dominated_splitting")
 def dominated(claim: Claim) -> Judgement:
-    """Not by exponents: by a cone field. Curvature is bounded on the cuspless cardioid, not on the cardioid."""
+    """Dominated splitting holds by a cone field; curvature is bounded on the cuspless cardioid only."""
     here = Rational(1, 2)
     scope = "with one C and one nu for every invariant set of orbits that miss the two joins, where DT does not exist"
     if claim.id.startswith("cardioid"):
@@ -67,8 +65,8 @@ def dominated(claim: Claim) -> Judgement:
     )
 
 
-def elastic_growth() -> Finding:
-    """At `lam = 1` beams of the cone widen at every return to the arc; with an invariant measure, `nu_plus > 0`."""
+def elastic_growth() -> SignFinding:
+    """The finding that at `lam = 1` beams of the cone widen at every return to the arc, so `nu_plus > 0`."""
     return by(
         "at lam = 1 the width of a beam in units of D grows at every return to the arc: by a gain above 1 along it, "
         "by 38/27 or more by way of the wall. The map preserves a finite measure, so almost every start comes back to "
@@ -80,7 +78,7 @@ def elastic_growth() -> Finding:
 
 @judges("cuspless.splitting_by_exponents")
 def by_exponents(claim: Claim) -> Judgement:
-    """The same table at `lam = 1` has exponents of both signs and no dominated splitting."""
+    """A counterexample: at `lam = 1` the table has exponents of both signs and no dominated splitting."""
     sheared = zero("", *(grazing() ** 2 - Matrix([[1, 4 / K0], [0, 1]])))
     return Judgement(
         counterexample(
@@ -99,7 +97,7 @@ def by_exponents(claim: Claim) -> Judgement:
 
 @judges("cuspless.unfolded_defocusing")
 def unfolded(claim: Claim) -> Judgement:
-    """Both halves of Wojtkowski's condition, on an arc and from an arc to its mirror image."""
+    """Both halves of Wojtkowski's condition hold, on an arc and from an arc to its mirror image."""
     return Judgement(
         by(
             "d^2 rho/ds^2 < 0 on the arc, and t >= D0 + d1 on every chord of the unfolded table: along an arc as in "
@@ -114,7 +112,7 @@ def unfolded(claim: Claim) -> Judgement:
 
 @judges("cuspless.elastic_hyperbolic", "cardioid.elastic_hyperbolic")
 def hyperbolic(claim: Claim) -> Judgement:
-    """The cones of either table at `lam = 1`."""
+    """The elastic tables are hyperbolic, by their cones at `lam = 1`."""
     finding = by("every bounce widens the beams of a cone, by a gain above 1", expands())
     if claim.id.startswith("cuspless"):
         finding = elastic_growth()
@@ -122,10 +120,10 @@ def hyperbolic(claim: Claim) -> Judgement:
 
 
 def averages(table: str, law: str = "1") -> tuple[Array, Array, Array]:
-    """Averages of three functions along orbits, their errors, and their correlation after `LAG` bounces.
+    """Averages of three functions along orbits, their errors, and their correlations after `LAG` bounces.
 
-    The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`; for the elastic measure
-    `cos(phi) ds dphi` the mean of each is 0.
+    The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`, `S` the perimeter, with
+    mean 0 in the elastic measure `cos(phi) ds dphi`.
     """
     map = PinballMap(table, lam=law)
     start = phase_starts(map, BALLS, SEED)
@@ -142,7 +140,7 @@ def averages(table: str, law: str = "1") -> tuple[Array, Array, Array]:
 
 @judges("cuspless.elastic_ergodic", "cardioid.elastic_ergodic")
 def ergodic(claim: Claim) -> Judgement:
-    """Proved in the literature for billiards with this condition; here time averages against those over the space."""
+    """Ergodicity is cited from the literature; here time averages agree with means over phase space."""
     means, errors, later = averages(claim.id.partition(".")[0])
     chi = np.mean((means / errors) ** 2, axis=1)
     good = bool(np.all(chi < 2)) and bool(np.max(np.abs(later)) < 0.02)
@@ -151,24 +149,25 @@ def ergodic(claim: Claim) -> Judgement:
         "sin(phi)^2, cos(2*pi*s/S) and sin(phi)*sin(2*pi*s/S) over the whole phase space, reduced chi^2 "
         f"{', '.join(f'{x:.2f}' for x in chi)}; correlations after {LAG} bounces: {np.max(np.abs(later)):.0e} at most"
     )
-    return sampled("ergodic at lam = 1 by the theorems cited, whose defocusing condition is proved here", said, good)
+    what = "ergodic and mixing" if claim.id.startswith("cardioid") else "ergodic"
+    return sampled(f"{what} at lam = 1 by the theorems cited, whose defocusing condition is proved here", said, good)
 
 
-MOST = 30  # steps of Newton's method
+MOST = 30  # the most steps of Newton's method
 
 
 def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float | Array) -> tuple[Array, Array]:
-    """The next bounce; Newton's method on `cross(z1 - z0, v) = 0` ends with the first step below `tolerance`.
+    """The next bounce of the egg, as `(theta, phi)`, by Newton steps until one is below `tolerance`.
 
-    Of many rows of particles each ends by itself, with the first of its steps of which all are below its tolerance.
+    Each row of particles ends by itself, when all its steps are below its tolerance.
 
     >>> quarter = np.array([0.3])
     >>> [float(x.round(6)[0]) for x in bounced(quarter, quarter, np.array([0.5]), 0.0, 1e-9)]  # the circle
     [2.841593, 0.15]
     """
     z, tangent = _boundary(theta, alpha)
-    v = 1j * tangent / np.abs(tangent) * _turned(-phi)  # the inward normal, turned by phi towards the tangent
-    landing = theta + np.pi - 2 * phi  # as in the circle; then Newton's method
+    v = 1j * tangent / np.abs(tangent) * _turned(-phi)  # the inward normal, rotated by phi towards the tangent
+    landing = theta + np.pi - 2 * phi  # the landing in the circle, as a start
     going: NDArray[np.bool_] = np.array(True)
     for _ in range(MOST):
         there, along = _boundary(landing, alpha)
@@ -191,9 +190,9 @@ def ends_of_period(
     bounces: int,
     apart: float,
 ) -> list[Array]:
-    """For each tolerance the contractions at which an orbit is not back after a period, to `apart`.
+    """For each tolerance the contractions at which an orbit does not return within `apart` after `period` bounces.
 
-    It is looked at once the transient is over, after so many bounces.
+    The return is tested after a transient of `bounces` bounces.
     """
     least = np.array(tolerances)[:, None]
     theta, phi = (np.full((least.size, lams.size), x) for x in start)
@@ -218,46 +217,46 @@ def _cross(a: NDArray[np.complex128], b: NDArray[np.complex128]) -> Array:
     return np.asarray((np.conj(a) * b).imag)
 
 
-PROVED_TO, NEAR = 0.1, 1e-6  # a contraction, and a distance from lambda-star
-ANGLE = 0.04  # what "phi close to 0" is taken for: phi-star is -0.029
+PROVED_TO, NEAR = 0.1, 1e-6  # the end of the proof in lam; a distance from lambda-star
+ANGLE = 0.04  # the meaning given to "phi close to 0"; phi-star is -0.029
 
 
-def answer(holds: bool | None, reason: str) -> Finding:
-    """A three-valued proof as a finding; a proof that fails refutes nothing."""
-    return Finding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
+def answer(holds: bool | None, reason: str) -> SignFinding:
+    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
-def corner(check: str, reason: str) -> Finding:
-    """One item of the checklist of the orbit through both corners."""
+def corner(check: str, reason: str) -> SignFinding:
+    """The finding of one item of the checklist of the orbit through both corners."""
     return answer(located("lambda-star").checks[check], reason)
 
 
 @cache
-def born() -> TrappingRegion:
-    """The trapping region and the expanding cone, from `lambda-star` on."""
-    return trapping_region(PROVED_TO, tick=telling("trapping regions"))
+def born() -> ChaosAboveLambdaStar:
+    """The theorem on the trapping region and the expanding cone, above `lambda-star`."""
+    return ChaosAboveLambdaStar(PROVED_TO, tick=telling("trapping regions"))
 
 
-def chaos() -> Finding:
-    """A chaotic attractor near the corner orbit for `lambda-star < lam <= 0.1`."""
+def chaos() -> SignFinding:
+    """The finding of a chaotic attractor near the corner orbit for `lambda-star < lam <= 0.1`."""
     found = born()
     least, most = found.exponent
     return answer(
-        found.proved,
+        found.proved or None,
         f"for lambda* < lam <= {PROVED_TO} a polygon proportional to lam - lambda* is mapped into its interior and a "
         f"cone of directions stretched, so every exponent there is at least {least:.3f} a bounce (at most {most:.3f})",
     )
 
 
 @cache
-def sizes() -> list[Attractor]:
-    """The attractor at a few distances, measured in float64."""
+def sizes() -> list[ScaledAttractor]:
+    """The attractor at a few distances from `lambda-star`, measured in float64."""
     return measured([1e-5, 1e-3, 8.8e-3, 0.0288], 20_000)
 
 
 @judges("cuspless.corner_orbit_unstable")
 def corner_orbit_unstable(claim: Claim) -> Judgement:
-    """On one side of the join a direction is stretched and kept on that side, so that orbits leave along it."""
+    """Orbits leave the corner orbit along a direction that is stretched and stays on one side of the join."""
     arc = border().pieces[ARC]
     return Judgement(
         by(
@@ -271,7 +270,7 @@ def corner_orbit_unstable(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_below")
 def fourth_collision_below(claim: Claim) -> Judgement:
-    """Boxes of angle and contraction up to 0.06; from there on the minimum is at a kink, whose value falls to 0."""
+    """Proved by boxes up to `lam = 0.06`; above, the minimum is at a kink whose value falls to 0."""
     far = fourth_on_wall(ANGLE, 0.0, 0.06, tick=telling("boxes of phi and lam"))
     near = minimum_at_kink(ANGLE, 0.06, 0.0713, tick=telling("slopes of s_4"))
     return Judgement(
@@ -289,7 +288,7 @@ def fourth_collision_below(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_above")
 def fourth_collision_above(claim: Claim) -> Judgement:
-    """At a contraction well above, every small angle lands beyond the upper join again."""
+    """A counterexample: at a larger contraction every small angle lands beyond the upper join again."""
     far = fourth_on_wall(0.05, 0.9, 0.9, or_lower=True)
     return Judgement(
         counterexample(
@@ -310,7 +309,7 @@ def fourth_collision_above(claim: Claim) -> Judgement:
 
 @judges("cuspless.coexistence")
 def coexistence(claim: Claim) -> Judgement:
-    """Both ends of the printed range are left out: at `lambda_c` the orbit repels, by the sign of its flip."""
+    """At the upper end the orbit repels, by the sign of its flip; at the lower end chaos begins."""
     repels = subcritical("lambda-c")
     end = answer(bool(enclose(lambda_c()).real < PROVED_TO), f"lambda_c < {PROVED_TO}")
     return Judgement(
@@ -320,16 +319,19 @@ def coexistence(claim: Claim) -> Judgement:
             repels,
             at={letter: lambda_c()},
         ),
-        "they coexist for lambda* < lam < lambda_c",
+        "both attract for every lambda* < lam < lambda_c, and at lambda_c the orbit of period 2 repels; what "
+        "attracts at "
+        "lambda* itself, and whether a chaotic attractor exists below, is not settled here",
         by("both attract", chaos(), end, attracting_below()),
-        "The range is open: at lambda_c the period-2 orbit has the multiplier -1 and, the flip being subcritical, "
-        "repels; at lambda* the corner orbit has just appeared and nothing near it attracts.",
+        "At the upper end they do not coexist: at lambda_c the period-2 orbit has the multiplier -1 and, the "
+        "flip being "
+        "subcritical, repels. Both attract for every lambda between lambda* and lambda_c.",
     )
 
 
 @judges("cuspless.thin_at_birth")
 def thin_at_birth(claim: Claim) -> Judgement:
-    """The region of the proof for the place, the images of its two sides for the thickness."""
+    """The position of the attractor is proved by a trapping region, its thickness by the images of both sides."""
     limit, thin = border(), strips_of_the_map(NEAR)
     (low, high), (arc, wall) = limit.extent.inner, limit.pieces.values()
     widths = " and ".join(f"{width:.2g}" for _, width in limit.extent.strips)
@@ -344,7 +346,9 @@ def thin_at_birth(claim: Claim) -> Judgement:
             chaos(),
             answer(bool(thin), f"up to lambda* + {NEAR} in two strips, {within} in units of lam - lambda*"),
             answer(bool(saddles()), "two unstable orbits of period 4 appear with it (arc only; arc and wall)"),
-            answer(limit.kind is Kind.FOLD and limit.robust, "a border collision: two saddles and robust chaos"),
+            answer(
+                limit.kind is FixedPointChange.FOLD and limit.robust, "a border collision: two saddles and robust chaos"
+            ),
         ),
         "a border collision: in the piecewise linear limit the half return has no fixed point for lam < lambda*, and "
         "for lam > lambda* two saddles (orbits of period 4: arc only; arc and wall) and robust chaos; traces "

@@ -1,7 +1,4 @@
-"""Claims that certified values settle: where something happens, and what the contraction of phase space implies.
-
-Paper: sections 4.1, 5.1, 5.2, 6.3 and 6.6.
-"""
+"""Judges of claims on certified parameter values and phase-space contraction. Sections 4.1, 5.1, 5.2, 6.3 and 6.6."""
 
 from collections.abc import Callable
 from functools import cache
@@ -13,7 +10,7 @@ from sympy import Expr, Integer, Rational, log, pi, sin
 from numeric.dynamics.phase_points import phase_points
 from symbolic import tables
 from symbolic.cycles.almost_every import largest_sum, two_rates
-from symbolic.expressions.signs import Finding, conjunction
+from symbolic.expressions.signs import SignFinding, conjunction
 from symbolic.motion.collision import area_factor, image_share, log_cosine_mean, telescoped
 from symbolic.tables.table import lam
 from verification.named.attractors import certificate
@@ -21,24 +18,24 @@ from verification.named.locate import Located, locate
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, digits, judges, sampled, zero
 from verification.paper.judges.exponents import Spectrum, spectrum
-from verification.proofs.periodic.bifurcation import Proof
+from verification.proofs.periodic.cycle_in_box import UniqueCycle
 
 SHAPE = Rational(2, 25)
 
 
 @cache
 def located(name: str, wanted: int = 20, **given: Expr) -> Located:
-    """A certified value; each is computed once a run."""
+    """A certified value by its name, computed once in a run."""
     return locate(name, wanted, **given)
 
 
 def value(name: str, **given: Expr) -> Callable[[int], arb]:
-    """The value as balls of as many digits as asked for."""
+    """A function from a number of digits to a ball of the certified value."""
     return lambda wanted: located(name, max(wanted, 20), **given).ball
 
 
-def certified(name: str, **given: Expr) -> Finding:
-    """The whole checklist of a certificate."""
+def certified(name: str, **given: Expr) -> SignFinding:
+    """The finding that all items of a certificate's checklist are proved."""
     found = located(name, **given)
     missing = [check for check, holds in found.checks.items() if holds is not True]
     reason = f"{name}: not proved: {', '.join(missing)}" if missing else f"{name} certified: {', '.join(found.checks)}"
@@ -46,18 +43,18 @@ def certified(name: str, **given: Expr) -> Finding:
 
 
 def supercritical(name: str, **given: Expr) -> bool | None:
-    """Does a flip bear a stable cycle? The sign of its normal form in balls; None when they do not decide it."""
+    """True if a flip is proved to give birth to a stable cycle, False if to an unstable one, None if open."""
     found = located(name, **given)
-    return found.proof.supercritical if found.certified and isinstance(found.proof, Proof) else None
+    return found.proof.supercritical if found.certified and isinstance(found.proof, UniqueCycle) else None
 
 
-def subcritical(name: str, **given: Expr) -> Finding:
-    """Is the cycle that a flip bears unstable? So is the old one at the flip itself."""
+def subcritical(name: str, **given: Expr) -> SignFinding:
+    """The finding that the cycle born at a flip is unstable; so is the old one at the flip."""
     return answer(supercritical(name, **given) is False, f"{name}: the normal form bears an unstable cycle")
 
 
 def settled(claim: Claim, name: str, mend: tuple[str, str] | None = None, **given: Expr) -> Judgement:
-    """Printed digits beside a certified value."""
+    """The judgement of printed digits against a certified value."""
     judgement = digits(claim, value(name, **given), mend)
     proof = certified(name, **given)
     weakest = conjunction(proof, judgement.printed)
@@ -72,25 +69,19 @@ def settled(claim: Claim, name: str, mend: tuple[str, str] | None = None, **give
 
 @judges("cuspless.lambda_star")
 def lambda_star(claim: Claim) -> Judgement:
-    """The orbit through both corners, by interval Newton on the chord system."""
+    """The digits of `lambda*`, by interval Newton on the orbit through both corners."""
     return settled(claim, "lambda-star", ("0.0712173", "0.0712172"))
 
 
 @judges("cuspless.phi_star")
 def phi_star(claim: Claim) -> Judgement:
-    """Its exit angle at the upper corner."""
+    """The digits of `phi*`, the exit angle of that orbit at the upper corner."""
     return settled(claim, "phi-star", ("-0.0289796", "-0.0289795"))
-
-
-@judges("cuspless.lambda_star_caption", "cuspless.lambda_star_body")
-def lambda_star_rounded(claim: Claim) -> Judgement:
-    """The same, to fewer digits."""
-    return settled(claim, "lambda-star")
 
 
 @judges("cuspless.corner_orbit")
 def corner_orbit(claim: Claim) -> Judgement:
-    """Existence, uniqueness in a box, first hits and minimal period."""
+    """The orbit through both corners: existence, uniqueness in a box, first hits and minimal period."""
     return Judgement(
         by("exactly one such orbit in a box around the printed values", certified("lambda-star")),
         "the orbit through both joins at lambda*",
@@ -100,7 +91,7 @@ def corner_orbit(claim: Claim) -> Judgement:
 
 @judges("cuspless.unstable_period4", "cuspless.no_stable_period4")
 def unstable_period4(claim: Claim) -> Judgement:
-    """The sign of the flip's normal-form coefficient."""
+    """The period-4 orbits are unstable, by the sign of the flip's normal-form coefficient."""
     return Judgement(
         by("the flip at lambda_c is subcritical", certified("lambda-c"), subcritical("lambda-c")),
         "an unstable cycle of twice the period is born, on the side where the period-2 orbit is stable",
@@ -109,25 +100,25 @@ def unstable_period4(claim: Claim) -> Judgement:
 
 @judges("egg.doubling.3")
 def doubling_3(claim: Claim) -> Judgement:
-    """Period 4 to 8."""
+    """The printed doubling of period 4 to 8."""
     return settled(claim, "doubling", ("0.372", "0.371"), alpha=SHAPE, n=Integer(3))
 
 
 @judges("egg.doubling.4")
 def doubling_4(claim: Claim) -> Judgement:
-    """Period 8 to 16."""
+    """The printed doubling of period 8 to 16."""
     return settled(claim, "doubling", alpha=SHAPE, n=Integer(4))
 
 
 @judges("egg.doubling.5")
 def doubling_5(claim: Claim) -> Judgement:
-    """Period 16 to 32."""
+    """The printed doubling of period 16 to 32."""
     return settled(claim, "doubling", alpha=SHAPE, n=Integer(5))
 
 
 @judges("egg.doubling.6")
 def doubling_6(claim: Claim) -> Judgement:
-    """Period 32 to 64."""
+    """The printed doubling of period 32 to 64."""
     return settled(claim, "doubling", ("0.3935", "0.3933"), alpha=SHAPE, n=Integer(6))
 
 
@@ -135,8 +126,8 @@ TENTHS = tuple(k / 10 for k in range(11))
 NINE = [-2.2794, 0.0999, 2.9941, 2.5028, 1.9891, 1.3928, 0.7008, -0.1020, -1.0494]  # a cycle at lam = 9/10
 
 
-def at_most_zero() -> Finding:
-    """The upper limit of `log|det D(T^n)|/n` is at most 0 for almost every start, on every table, for `lam > 0`.
+def at_most_zero() -> SignFinding:
+    """The finding that `limsup log|det D(T^n)|/n <= 0` for almost every start, on every table, for `lam > 0`.
 
     At `lam = 0` the determinant is 0. The end term `log(cos(phi_0)/cos(phi_n))` is bounded for `lam < 1`, where
     `|phi_n| <= lam*pi/2`; at `lam = 1` it grows slower than `n` for almost every start, since its mean is finite.
@@ -151,8 +142,8 @@ def at_most_zero() -> Finding:
     )
 
 
-def at_least_log() -> Finding:
-    """`nu_plus + nu_minus >= log(lam)` on every orbit."""
+def at_least_log() -> SignFinding:
+    """The finding that `nu_plus + nu_minus >= log(lam)` on every orbit."""
     return by(
         "log|det D(T^n)| = n*log(lam) + sum of log(cos(lam*eta)/cos(eta)) + a term bounded below, and "
         "cos(lam*eta) >= cos(eta)",
@@ -162,7 +153,7 @@ def at_least_log() -> Finding:
 
 @cache
 def expanding_cycle() -> tuple[bool, arb]:
-    """A certified cycle of period 9 at `lam = 9/10`: proved or not, and its determinant."""
+    """A cycle of period 9 at `lam = 9/10`: True if it is proved, and its determinant."""
     proof = certificate(tables.cardioid, Rational(9, 10), phase_points(NINE, 0.0), 20)
     wanted = ("exists", "unique", "admissible", "minimal_period")
     return all(proof.checks[name] is True for name in wanted), proof.determinant
@@ -170,7 +161,7 @@ def expanding_cycle() -> tuple[bool, arb]:
 
 @judges("cardioid.contraction_implies")
 def contraction_implies(claim: Claim) -> Judgement:
-    """Contraction of phase space as a whole bounds almost every orbit, and not every orbit."""
+    """Contraction of phase space as a whole bounds exponents of almost every orbit, but not of every orbit."""
     proved, determinant = expanding_cycle()
     rate = determinant.log() / 9
     return Judgement(
@@ -190,22 +181,27 @@ def contraction_implies(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_sum_negative")
 def sum_negative(claim: Claim) -> Judgement:
-    """`<= 0` is proved for almost every start; the strict sign is sampled."""
+    """The sum of exponents is proved non-positive for almost every start; that it is negative is sampled."""
     found = spectrum("cardioid", TENTHS)
     total, error = np.mean(found.total, axis=1)[1:-1], Spectrum.error(found.total)[1:-1]
     ratio = float(np.max(total / error))
     said = (
-        f"proved for almost every start: <= 0, and <= {largest_sum()}, negative for lam < 1/4; sampled, the sum is "
+        f"proved for almost every start: <= 0, and <= {largest_sum()}, negative for lam < 1/2; sampled, the sum is "
         f"negative by {-ratio:.0f} standard errors or more at lam = 0.1, ..., 0.9 (nearest to 0 at 0.9: "
         f"{total[-1]:.4f} +- {error[-1]:.0e})"
     )
     good = bool(at_most_zero()) and bool(two_rates()) and ratio < -10
-    return sampled("nu_+ + nu_- < 0 for almost every start and lam < 1", said, good)
+    return sampled(
+        "for almost every start nu_+ + nu_- <= 0 for lam < 1, and < 0 for lam < 1/2: proved; that it is negative from "
+        "there on is sampled",
+        said,
+        good,
+    )
 
 
 @judges("cardioid.lyapunov_sum_one")
 def sum_one(claim: Claim) -> Judgement:
-    """Squeezed between `log(lam)` and 0."""
+    """The sum of exponents tends to 0 as `lam` tends to 1, since it is between `log(lam)` and 0."""
     limit = zero("log(1) = 0", log(lam).subs(lam, 1))
     return Judgement(
         by("log(lam) <= nu_+ + nu_- <= 0 for almost every start", at_least_log(), at_most_zero(), limit),
@@ -215,12 +211,13 @@ def sum_one(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_sum_zero")
 def sum_zero(claim: Claim) -> Judgement:
-    """Squeezed between `log(lam)` and `log(4*lam)`."""
+    """The sum of exponents tends to minus infinity at `lam = 0`, between `log(lam)` and `log(2*lam)`."""
     return Judgement(
         by(
-            "log(lam) <= nu_+ + nu_- on every orbit; a bounce multiplies areas by at most 2*lam*r, where r is the "
-            "growth of a curve along the cone, and the mean of the products of n such factors over a horizontal line "
-            "is at most 2^n: so log|det D(T^n)|/n has an upper limit of at most log(4*lam) for almost every start",
+            "log(lam) <= nu_+ + nu_- on every orbit; a bounce multiplies areas in |K|*ds and dphi by at most "
+            "lam*r*(c0/c1)^(2/3), where r is the growth of a curve along the cone and c = cos(theta/2), and the mean "
+            "over a horizontal line of the product of n of the r is at most 2^n: so log|det D(T^n)|/n has an upper "
+            "limit of at most log(2*lam) for almost every start",
             two_rates(),
             at_least_log(),
         ),

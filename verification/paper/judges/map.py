@@ -1,10 +1,10 @@
-"""Claims on the pinball billiard map in general. Paper: abstract and sections 1, 2."""
+"""Judges of claims on the pinball billiard map in general. Paper: abstract and sections 1, 2."""
 
 from sympy import Expr, Function, Integer, Interval, Matrix, Rational, S, acos, cancel, cos, oo, pi, sqrt
 
 from symbolic import tables
 from symbolic.cycles.polygons import COSINE, in_cosine
-from symbolic.expressions.signs import Finding, nonnegative, positive
+from symbolic.expressions.signs import SignFinding, nonnegative, positive
 from symbolic.motion.collision import birkhoff_matrix, derivative_matrix, determinant, exit_angle, slap_derivative
 from symbolic.motion.flight import flight, iterate
 from symbolic.tables.geometry import turning
@@ -19,25 +19,27 @@ MIRROR = "the exit angle is -lam*eta"
 
 @judges("map.dissipative")
 def dissipative(claim: Claim) -> Judgement:
-    """A flight of the ellipse a = 2 from (2, 0) to (0, 1) at lam = 9/10 expands both areas."""
+    """Phase space as a whole shrinks; but a flight of the ellipse a = 2 from (2, 0) to (0, 1) expands areas."""
     cos_out, cos_in, contraction = 2 / sqrt(5), 1 / sqrt(Integer(5)), Rational(9, 10)
     here = {cos_phi0: cos_out, cos_eta1: cos_in, lam: contraction}
     area = determinant().subs(here)
     birkhoff = birkhoff_matrix(derivative_matrix(), cos_phi0, cos(contraction * acos(cos_in))).det().subs(here)
     return Judgement(
-        counterexample(
-            "both areas grow on that flight", greater(area, S.One), greater(birkhoff, S.One), at={lam: Rational(9, 10)}
+        by(
+            "|phi1| = lam*|eta1| <= lam*pi/2, a strip of lam times the area; both areas grow on one flight",
+            zero(MIRROR, exit_angle() + lam * eta),
+            greater(area, S.One),
+            greater(birkhoff, S.One),
         ),
-        "T maps phase space into |phi| <= lam*pi/2; pointwise det DT = lam*cos(phi0)/cos(eta1)",
-        by("|phi1| = lam*|eta1| <= lam*pi/2, a strip of lam times the area", zero(MIRROR, exit_angle() + lam * eta)),
-        "Contraction holds for phase space as a whole, not at every point: from (2, 0) to (0, 1) in the ellipse "
-        "a = 2 at lambda = 9/10 the area element grows in (s, phi) and in (s, sin phi).",
+        "T maps phase space into |phi| <= lam*pi/2, a part of lam times the area. That is so of phase space as a whole "
+        "and not at every point, where det DT = lam*cos(phi0)/cos(eta1): from (2, 0) to (0, 1) in the ellipse a = 2 at "
+        "lam = 9/10 areas grow, in (s, phi) and in (s, sin phi)",
     )
 
 
 @judges("map.focusing_beam")
 def focusing_beam(claim: Claim) -> Judgement:
-    """Rays of one direction leave in directions that turn at the rate `-(1+lam)*K1` per arc length."""
+    """Parallel rays leave in directions that turn at the rate `-(1+lam)*K1` by arc length."""
     landing_rate = -K1  # d eta1/ds1 = psi1' for a fixed direction
     outgoing_rate = -K1 - exit_angle().coeff(eta) * landing_rate  # d(psi1 + pi/2 - phi1)/ds1
     focusing = positive(outgoing_rate.subs(K1, -S.One), {lam: Interval(0, 1)})
@@ -50,7 +52,7 @@ def focusing_beam(claim: Claim) -> Judgement:
 
 @judges("map.birkhoff", "map.elastic_measure")
 def elastic_area(claim: Claim) -> Judgement:
-    """The Jacobian in `(s, sin phi)` is `lam*cos(phi1)/cos(eta1)`, 1 for the elastic law."""
+    """The elastic map preserves area: the Jacobian in `(s, sin phi)` is `lam*cos(phi1)/cos(eta1)`."""
     jacobian = birkhoff_matrix(derivative_matrix(), cos_phi0, cos_eta1).det().subs(lam, 1)
     return Judgement(
         by("at lam = 1, |phi1| = |eta1| and d(sin phi) ds = cos(phi) ds dphi", zero("Jacobian 1", jacobian - 1)),
@@ -60,31 +62,31 @@ def elastic_area(claim: Claim) -> Judgement:
 
 @judges("map.reflection_rule")
 def reflection_rule(claim: Claim) -> Judgement:
-    """`phi = -eta + f(eta)` with `f(eta) = (1 - lam)*eta`."""
+    """The printed reflection rule is `phi = -eta + f(eta)` with `f(eta) = (1 - lam)*eta`."""
     return identity(claim, exit_angle())
 
 
 @judges("map.derivative_matrix")
 def whole_matrix(claim: Claim) -> Judgement:
-    """By implicit differentiation of the flight equation and the reflection law."""
+    """The printed derivative matrix, by implicit differentiation of the flight equation and the law."""
     return identity(claim, derivative_matrix())
 
 
 @judges("map.A")
 def entry_A(claim: Claim) -> Judgement:
-    """Minus the upper left entry."""
+    """The printed A is minus the upper left entry of the derivative matrix."""
     return identity(claim, -derivative_matrix()[0, 0])
 
 
 @judges("map.B")
 def entry_B(claim: Claim) -> Judgement:
-    """Minus the upper right entry."""
+    """The printed B is minus the upper right entry of the derivative matrix."""
     return identity(claim, -derivative_matrix()[0, 1])
 
 
 @judges("map.stability_product")
 def stability_product(claim: Claim) -> Judgement:
-    """The chain rule, checked on two flights of the circle, where the map is explicit."""
+    """The chain rule for `D(T^n)`, checked on two flights of the circle, where the map is explicit."""
     twice = iterate(2)
     jacobian = Matrix(twice).jacobian([s, phi])
     single = Matrix(flight(s, phi)).jacobian([s, phi])
@@ -95,19 +97,19 @@ def stability_product(claim: Claim) -> Judgement:
 
 
 def circle_matrix() -> Expr:
-    """The derivative matrix with the data of a flight in the unit circle."""
+    """The derivative matrix for a flight in the unit circle."""
     return derivative_matrix(K0=-1, K1=-1, t=2 * cos(phi), cos_phi0=cos(phi), cos_eta1=cos(phi))
 
 
 @judges("map.elastic")
 def elastic(claim: Claim) -> Judgement:
-    """At `lam = 1` the law is `phi = -eta`."""
+    """At `lam = 1` the law is the elastic one, `phi = -eta`."""
     return Judgement(by("the law at lam = 1", zero("phi = -eta", exit_angle().subs(lam, 1) + eta)), "phi = -eta")
 
 
 @judges("map.slap_normal")
 def slap_normal(claim: Claim) -> Judgement:
-    """At `lam = 0` the exit angle and its derivatives vanish."""
+    """At `lam = 0` every exit is along the normal: the exit angle and its derivatives vanish."""
     row = derivative_matrix(lam=0)[1, :]
     return Judgement(
         by("phi1 = 0 whatever the landing, so s alone is mapped", zero("", exit_angle().subs(lam, 0), *row)),
@@ -117,13 +119,13 @@ def slap_normal(claim: Claim) -> Judgement:
 
 @judges("map.slap_derivative")
 def slap(claim: Claim) -> Judgement:
-    """The upper left entry at `phi0 = 0`, `lam = 0`."""
+    """The printed slap derivative, the upper left entry at `phi0 = 0`, `lam = 0`."""
     return identity(claim, slap_derivative())
 
 
 @judges("map.slap_circle_map")
 def slap_circle_map(claim: Claim) -> Judgement:
-    """The boundary of each table is one closed curve, of one component or more."""
+    """The slap map is a circle map, since the boundary of each table is one closed curve."""
     gaps = []
     for table in ALL:
         chain = table.components
@@ -135,8 +137,8 @@ def slap_circle_map(claim: Claim) -> Judgement:
     )
 
 
-def turnings() -> list[Finding]:
-    """`turning >= 0`, which is `kappa <= 0`, component by component."""
+def turnings() -> list[SignFinding]:
+    """The findings that `turning >= 0`, which means `kappa <= 0`, for each component."""
     egg = in_cosine(turning(tables.egg(3).components[0]))
     cosine = {alpha: Interval(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
     return [
@@ -151,13 +153,13 @@ def turnings() -> list[Finding]:
 
 @judges("map.curvature_nonpositive")
 def curvature_nonpositive(claim: Claim) -> Judgement:
-    """Each component turns left everywhere, or not at all."""
+    """The curvature is non-positive: each component turns left everywhere, or not at all."""
     return Judgement(by("x'y'' - y'x'' >= 0 on each component", *turnings()), "kappa <= 0 on every component")
 
 
 @judges("map.zero_curvature_excluded", "map.focusing_and_flat")
 def zero_curvature(claim: Claim) -> Judgement:
-    """The flat points of the egg have curvature 0 at the last shape of the range."""
+    """A counterexample: the flat points of the egg have curvature 0 at the last shape of the range."""
     flat = in_cosine(turning(tables.egg(3).components[0]))
     end = {COSINE: -1, alpha: Rational(1, 10)}
     inside = {alpha: Interval.Ropen(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
@@ -175,7 +177,7 @@ def zero_curvature(claim: Claim) -> Judgement:
 
 @judges("map.slap_evolute")
 def slap_evolute(claim: Claim) -> Judgement:
-    """The velocity of the centre of curvature is along the normal, on any curve; which curves have one."""
+    """Flights of the slap map touch the evolute: the centre of curvature moves along the normal on any curve."""
     x, y = (Function(name, real=True)(theta) for name in "xy")
     velocity = Matrix([x, y]).diff(theta)
     bend = velocity[0] * y.diff(theta, 2) - velocity[1] * x.diff(theta, 2)
@@ -195,8 +197,8 @@ def slap_evolute(claim: Claim) -> Judgement:
     )
 
 
-def curved() -> list[Finding]:
-    """`turning > 0`, which is `kappa < 0`, on each component but the wall, off the cusp and for `alpha < 1/10`."""
+def curved() -> list[SignFinding]:
+    """The findings that `turning > 0` on each component but the wall, off the cusp and for `alpha < 1/10`."""
     egg = in_cosine(turning(tables.egg(3).components[0]))
     rounds = turning(tables.cardioid.components[0]).subs(cos(theta), COSINE)
     return [

@@ -1,1 +1,1 @@
-"""What other papers say of polygons, of elastic tables and of reflection laws: who judges each of their sentences."""
+"""Judges of claims of other papers: on polygons, on elastic tables, and on reflection laws."""

@@ -1,12 +1,12 @@
-"""Claims on reflection laws in general: areas, the stability of double normals, rotations in the circle.
+"""Judges of claims on general reflection laws: areas, stability of double normals, rotations in the circle.
 
-Each is derived for a law `F(eta)` that nothing is known of, and shown on one that the package proves to be a law.
+Each is derived for an arbitrary law `F(eta)`, and verified on an example that is proved to be a law.
 """
 
 from sympy import Expr, Function, Matrix, Rational, Symbol, cos, diff, pi, sin
 
 from symbolic import tables
-from symbolic.expressions.signs import Finding
+from symbolic.expressions.signs import SignFinding
 from symbolic.motion.collision import area_factor, derivative_matrix
 from symbolic.tables.geometry import curvature
 from symbolic.tables.law import Law
@@ -14,19 +14,19 @@ from symbolic.tables.table import eta, lam, phi, s, theta
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, equal, greater, judges, zero
 
-F = Function("F", real=True)  # any law: phi = F(eta)
-RATIONAL, IRRATIONAL = pi / 6, Rational(1)  # angles p, for turns by pi - 2*p
+F = Function("F", real=True)  # an arbitrary law: phi = F(eta)
+RATIONAL, IRRATIONAL = pi / 6, Rational(1)  # angles p, for rotations by pi - 2*p
 CONTRACTING = "-lam*sin(eta)"
 
 
-def law(formula: str) -> Finding:
-    """Is it a law for every contraction from 0 to 1?"""
+def law(formula: str) -> SignFinding:
+    """The finding that a formula is a law for every contraction from 0 to 1."""
     return Law(formula).proof()
 
 
 @judges("law.non_hamiltonian")
 def non_hamiltonian(claim: Claim) -> Judgement:
-    """The area factor is minus the derivative of `sin(F)` by `sin(eta)`: which laws make it 1?"""
+    """The laws `phi = F(eta)` that preserve area: the factor is minus the derivative of `sin(F)` by `sin(eta)`."""
     along = diff(sin(F(eta)), eta) / diff(sin(eta), eta)
     example = Law(CONTRACTING).phi
     return Judgement(
@@ -51,7 +51,7 @@ def double_normal(sigma: Expr) -> Matrix:
 
 @judges("law.stability")
 def stability(claim: Claim) -> Judgement:
-    """The short axis of the ellipse `a = 3/2`: neutral under the elastic law, attracting or repelling beside it."""
+    """The short axis of the ellipse `a = 3/2`: neutral under the elastic law, attracting or repelling near it."""
     a, sigma = tables.ellipse.shapes[0].symbol, Symbol("sigma", positive=True)
     matrix = double_normal(sigma).subs(a, Rational(3, 2))
     trace, determinant = matrix.trace().expand(), matrix.det().expand()
@@ -71,8 +71,8 @@ def stability(claim: Claim) -> Judgement:
     )
 
 
-def landing(formula: Expr) -> tuple[Finding, Expr]:
-    """In the unit circle a particle lands at `-phi`, after a turn by `pi - 2*phi`; where the law leads then."""
+def landing(formula: Expr) -> tuple[SignFinding, Expr]:
+    """The finding that in the unit circle `eta1 = -phi` after a rotation by `pi - 2*phi`; and the next exit angle."""
     direction, length = s + pi - phi, 2 * cos(phi)
     start, end = (Matrix([cos(angle), sin(angle)]) for angle in (s, s + pi - 2 * phi))
     flown = start + length * Matrix([cos(direction), sin(direction)]) - end
@@ -82,7 +82,7 @@ def landing(formula: Expr) -> tuple[Finding, Expr]:
 
 @judges("law.rotation")
 def rotation(claim: Claim) -> Judgement:
-    """In the circle `phi = p` is invariant where `F(-p) = p`, turned by `pi - 2*p`; it attracts where `|F'| < 1`."""
+    """In the circle the law `F` keeps `phi = p`, turned by `pi - 2*p`, if `F(-p) = p`; it attracts if `|F'| < 1`."""
     p, mu, sigma = Symbol("p", real=True), Symbol("mu"), Symbol("sigma", real=True)
     circle = {"K0": -1, "K1": -1, "t": 2 * cos(phi), "cos_phi0": cos(phi), "cos_eta1": cos(phi)}
     spectrum = derivative_matrix(**circle, lam=sigma).charpoly(mu).as_expr()

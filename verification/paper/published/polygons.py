@@ -1,8 +1,8 @@
-"""Claims on pinball billiards between straight sides: the equilateral triangle, the square, slap maps of polygons.
+"""Judges of claims on pinball billiards in polygons: the equilateral triangle, the square, slap maps.
 
-Between straight sides the angle changes by an affine map, whatever the place, and the place is stretched by
-`cos(phi0)/cos(eta1)`, whatever it is. So the triangle is two affine maps of the angle, and over each angle a question
-of which side the rays of that direction meet.
+Between straight sides the angle changes by an affine map that does not depend on the place, and the place is stretched
+by `cos(phi0)/cos(eta1)`. So the triangle's map consists of two affine maps of the angle, and for each angle of
+intervals of places whose rays meet one side.
 """
 
 from functools import cache
@@ -14,13 +14,13 @@ from sympy import Expr, Interval, Matrix, Rational, S, Symbol, cos, pi, simplify
 from numeric import PinballMap
 from symbolic import tables
 from symbolic.cycles.polygons import next_exit_angle, straight_multipliers
-from symbolic.expressions.signs import Box, Finding, positive
+from symbolic.expressions.signs import Box, SignFinding, positive
 from symbolic.motion.collision import birkhoff_matrix, derivative_matrix, exit_angle
 from symbolic.tables.table import cos_eta1, cos_phi0, eta, lam, phi, t
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import by, counterexample, greater, identity, judges, sampled, zero
 
-RIGHT, LEFT = 2 * pi / 3, 4 * pi / 3  # what the normal turns by to the next side of the triangle, and to the one before
+RIGHT, LEFT = 2 * pi / 3, 4 * pi / 3  # rotation of the normal to the next side of the triangle, and to the previous one
 HALF = Rational(1, 2)
 SEED = 1
 Array = NDArray[np.int64]
@@ -33,13 +33,13 @@ def between_sides() -> Matrix:
 
 @judges("triangle.law", "square.law")
 def law(claim: Claim) -> Judgement:
-    """The exit angle in terms of the angle of incidence."""
+    """The printed exit angle in terms of the angle of incidence."""
     return identity(claim, exit_angle())
 
 
 @judges("triangle.contraction")
 def contraction(claim: Claim) -> Judgement:
-    """Leaving along a normal, a particle lands at 60 degrees; at `lam = 9/10` both area elements grow."""
+    """A counterexample: a flight along a normal lands at 60 degrees, and at `lam = 9/10` both area elements grow."""
     here = {cos_phi0: S.One, cos_eta1: cos(pi - RIGHT), lam: Rational(9, 10)}
     areas = [between_sides(), birkhoff_matrix(between_sides(), cos_phi0, cos(here[lam] * (pi - RIGHT)))]
     grown = [greater(area.det().subs(here), S.One) for area in areas]
@@ -53,12 +53,12 @@ def contraction(claim: Claim) -> Judgement:
 
 
 def hull() -> Expr:
-    """The largest angle that stays: of the orbit that goes to and fro between two sides."""
+    """The largest angle on the attractor, that of the orbit between two sides."""
     return lam * pi / (3 * (1 - lam))
 
 
-def two_maps() -> Finding:
-    """The angles of the attractor lie in `|phi| <= hull()`, and are those of two affine contractions by `lam`."""
+def two_maps() -> SignFinding:
+    """The finding that angles of the attractor lie in `|phi| <= hull()`, under two affine contractions by `lam`."""
     return by(
         "a flight changes the angle to lam*(pi/3 - phi) or lam*(-pi/3 - phi), which keep |phi| <= m, m = "
         "lam*pi/(3*(1 - lam)), and draw every angle towards it",
@@ -69,14 +69,14 @@ def two_maps() -> Finding:
     )
 
 
-def disjoint(box: Box) -> Finding:
-    """The images of the two maps are apart for `lam` in a range, so that the angles that stay are a Cantor set."""
+def disjoint(box: Box) -> SignFinding:
+    """The finding that the images of the two maps are disjoint for a range of `lam`: the angles form a Cantor set."""
     return by("their images are apart", positive(simplify(next_exit_angle(RIGHT, hull()) / pi), box))
 
 
 @judges("triangle.measure_zero")
 def measure_zero(claim: Claim) -> Judgement:
-    """Proved for `lam < 1/2`, where the angles have the measure 0; above, the sum of exponents is sampled."""
+    """Proved for `lam < 1/2`, where the angles have measure 0; above, the sum of exponents is sampled."""
     below = by(
         "n bounces leave 2^n intervals of the length lam^n*2*m", two_maps(), disjoint({lam: Interval.open(0, HALF)})
     )
@@ -95,14 +95,14 @@ def measure_zero(claim: Claim) -> Judgement:
 
 
 def _starts(count: int, sides: int = 3) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places and angles at random, on the first side: the others are its images."""
+    """Random places and angles on the first side, which represents all sides by symmetry."""
     rng = np.random.default_rng([SEED, sides])
     return rng.random(count), rng.uniform(-1.5, 1.5, count)
 
 
 @judges("triangle.expansion")
 def expansion(claim: Claim) -> Judgement:
-    """Of two consecutive bounces one lands at 30 degrees or more, and there the stretch exceeds that at 30 degrees."""
+    """Of two consecutive bounces one lands at 30 degrees or more, where the stretch exceeds that at 30 degrees."""
     x = Symbol("x", positive=True)
     box = {lam: Interval.open(0, 1), x: Interval.Ropen(0, Rational(1, 6))}  # x in units of pi
     stretch = cos(lam * x) / cos(x)
@@ -125,7 +125,7 @@ def expansion(claim: Claim) -> Judgement:
 
 @judges("triangle.cantor")
 def cantor(claim: Claim) -> Judgement:
-    """Below 1/3 rays of every angle that stays reach both other sides, each as a whole."""
+    """For `lam < 1/3` rays of every angle of the attractor reach both other sides, each as a whole."""
     box = claim.box
     return Judgement(
         by(
@@ -145,7 +145,7 @@ def cantor(claim: Claim) -> Judgement:
 
 @judges("triangle.nonaccessible")
 def nonaccessible(claim: Claim) -> Judgement:
-    """Rays at more than 30 degrees reach only the lower part of the next side, and nothing else leaves as they do."""
+    """Rays above 30 degrees reach only the lower part of the next side, and no other rays leave at these angles."""
     box = claim.box
     steep, other = next_exit_angle(RIGHT, lam * pi / 2), next_exit_angle(LEFT, -lam * pi / 2)
     top = next_exit_angle(RIGHT, pi / 6)
@@ -168,7 +168,7 @@ NEAR, CELLS, SETTLE, FOLLOW, ORBITS = "0.99", 48, 60_000, 8000, 24
 
 
 def _cell(component: Array, place: NDArray[np.float64], angle: NDArray[np.float64]) -> Array:
-    """The cell of phase space, counted in one number; angles in units of the largest that a bounce leaves."""
+    """The index of the cell of phase space; angles are relative to the largest exit angle."""
     share = (angle / (float(NEAR) * np.pi / 2) + 1) / 2
     row, column = (np.clip((each * CELLS).astype(np.int64), 0, CELLS - 1) for each in (place, share))
     return (component * CELLS + row) * CELLS + column
@@ -176,7 +176,7 @@ def _cell(component: Array, place: NDArray[np.float64], angle: NDArray[np.float6
 
 @cache
 def components() -> tuple[Array, list[int]]:
-    """Which attractor of the triangle a cell belongs to, -1 for none, and the number of orbits seen on each."""
+    """For each cell the attractor of the triangle that visits it, -1 for none; and the number of orbits on each."""
     map = PinballMap(tables.triangle(), lam=NEAR)
     settled = map.exponents(*_starts(ORBITS), 1, SETTLE)
     orbit = map.orbit(settled.theta, settled.phi, FOLLOW, component=settled.component)
@@ -194,7 +194,7 @@ def components() -> tuple[Array, list[int]]:
 
 @judges("triangle.three_components")
 def three_components(claim: Claim) -> Judgement:
-    """Orbits that visit a common cell are on one attractor."""
+    """Three attractors, by a sample: orbits that visit a common cell are on one attractor."""
     owner, orbits = components()
     said = (
         f"at lam = {NEAR} {sum(orbits)} random starts, after {SETTLE} bounces, visit {len(orbits)} sets of cells in "
@@ -206,7 +206,7 @@ def three_components(claim: Claim) -> Judgement:
 
 @judges("triangle.fractal_boundaries")
 def fractal_boundaries(claim: Claim) -> Judgement:
-    """How often two starts at a distance end apart: a smooth boundary would make it proportional to the distance."""
+    """The share of pairs of starts that end apart, which for a smooth boundary is proportional to their distance."""
     map, owner = PinballMap(tables.triangle(), lam=NEAR), components()[0]
     place, angle = _starts(160, 1)
     ends = []
@@ -224,12 +224,12 @@ def fractal_boundaries(claim: Claim) -> Judgement:
     )
 
 
-FACING = pi  # what the normal turns by from a side to the one that faces it
+FACING = pi  # rotation of the normal to the facing side
 
 
 @judges("square.parabolic")
 def parabolic(claim: Claim) -> Judgement:
-    """To and fro between facing sides the angle shrinks by `lam`, and the drift is a convergent sum."""
+    """Between facing sides the angle shrinks by `lam` at each bounce, and the drift is a convergent sum."""
     shrinking, place = straight_multipliers([S.Zero, S.Zero])
     return Judgement(
         by(
@@ -248,7 +248,7 @@ def parabolic(claim: Claim) -> Judgement:
 
 @judges("square.integrable")
 def integrable(claim: Claim) -> Judgement:
-    """The elastic law leaves `cos(4*phi)` as it was, whichever side comes next."""
+    """The elastic law preserves `cos(4*phi)`, whichever side comes next."""
     after = [next_exit_angle(turn, phi).subs(lam, 1) for turn in (pi / 2, pi, 3 * pi / 2)]
     return Judgement(
         by(
@@ -271,7 +271,7 @@ def ends_in_the_square(value: str, count: int = 200, bounces: int = 3000) -> tup
 
 @judges("square.chaotic", "square.coexistence")
 def coexistence(claim: Claim) -> Judgement:
-    """Shares of starts that keep moving, with their exponents; the abstract names no range of the contraction."""
+    """The shares of starts that keep moving, with exponents; the abstract names no range of contractions."""
     found = {value: ends_in_the_square(value) for value in ("0.5", "0.7", "0.9")}
     said = "; ".join(
         f"at lam = {value} {share:.0%}" + (f" with nu_+ from {low:.4f} to {high:.4f}" if share else "")
@@ -290,7 +290,7 @@ def coexistence(claim: Claim) -> Judgement:
 
 @judges("slap.expanding")
 def expanding(claim: Claim) -> Judgement:
-    """The slope between two sides depends on the angle between them only."""
+    """The slap map's slope between two sides depends only on the angle between them."""
     turn = Symbol("turn", real=True)
     slope = between_sides()[0, 0].subs(cos_phi0, 1)
     incidence = next_exit_angle(turn, S.Zero) / lam

@@ -1,4 +1,4 @@
-"""What `make verify` leaves behind: a page, Markdown, JSON and LaTeX."""
+"""The report of `make verify`: an HTML page, Markdown, JSON and LaTeX."""
 
 import lazy_loader
 

@@ -1,9 +1,7 @@
-r"""What the report says first: what holds, what is new, how grave each erratum is, and the letter to the authors.
+r"""The summary of the report: main findings, graded errata, LaTeX tables, and a letter to the authors.
 
-The LaTeX tables are brought into a document by `\input`.
-
-`findings.toml` in a paper's folder, if there is one, has the sentences and the grades. A finding is shown when each of
-its claims was judged and none is open.
+`findings.toml` in a paper's folder, if it exists, has the sentences of the findings and the gravity of errata. A
+finding is shown when all its claims were judged and none is open.
 """
 
 import re
@@ -34,8 +32,8 @@ GRADES = {
 
 
 @dataclass(frozen=True)
-class Found:
-    """A finding: one of those that hold, or one that is new; its claims and its figure."""
+class ReportFinding:
+    """A finding: its kind (`holds` or `new`), its sentence, its claims and its figure."""
 
     kind: str
     text: str
@@ -45,7 +43,7 @@ class Found:
 
 @dataclass(frozen=True)
 class Erratum:
-    """One thing to correct, and the claims that it touches."""
+    """One correction, its gravity, and the claims that it concerns."""
 
     text: str
     grade: str
@@ -58,16 +56,19 @@ def _document(folder: Path) -> dict[str, Any]:
     return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 
-def findings(results: Iterable[Result], about: Paper) -> dict[str, list[Found]]:
-    """What holds and what is new, of the claims judged."""
+def findings(results: Iterable[Result], about: Paper) -> dict[str, list[ReportFinding]]:
+    """The findings by kind, `holds` and `new`, that rest on the judged claims."""
     settled = {result.id for result in results if result.verdict.value != "open"}
-    known = [Found(**{**each, "claims": tuple(each["claims"])}) for each in _document(about.folder).get("finding", [])]
+    known = [
+        ReportFinding(**{**each, "claims": tuple(each["claims"])})
+        for each in _document(about.folder).get("finding", [])
+    ]
     shown = [each for each in known if settled.issuperset(each.claims)]
     return {kind: [each for each in shown if each.kind == kind] for kind in ("holds", "new")}
 
 
 def grade(name: str, about: Paper) -> str:
-    """How grave the erratum of a claim is; one that nobody has graded counts as substantial.
+    """The gravity of the erratum of a claim; `substantial` if none is given.
 
     >>> from verification.paper.claims.folder import paper
     >>> grade("egg.doubling.3", paper())
@@ -78,7 +79,7 @@ def grade(name: str, about: Paper) -> str:
 
 
 def graded(results: Iterable[Result], about: Paper) -> dict[str, list[Erratum]]:
-    """The errata by grade, in the order of the paper; claims with the same erratum together."""
+    """The errata by gravity, in the order of the paper; claims with the same erratum are joined."""
     found: dict[tuple[str, str], list[Result]] = {}
     for result in errata(results, about.sections):
         found.setdefault((grade(result.id, about), result.erratum or result.derived), []).append(result)
@@ -87,12 +88,12 @@ def graded(results: Iterable[Result], about: Paper) -> dict[str, list[Erratum]]:
 
 
 DECIMAL = re.compile(r"-?\d+\.\d+")
-ALIKE = 0.6  # share of words in common above which the others are marked
+ALIKE = 0.6  # the least share of common words for which the others are marked
 MARK = Markup("<mark>{}</mark>")
 
 
 def compared(result: Result) -> tuple[Markup, Markup]:
-    """What is printed and what is true, with their difference marked where the two are alike."""
+    """The printed and the true text as HTML, with their difference marked where they are similar."""
     wrong = result.verdict.value in ("corrected", "refuted")
     witness = tuple(result.witness.items()) if wrong and result.printed.startswith("[[") else ()
     return _compared(result.printed, result.derived, wrong, witness)
@@ -118,7 +119,7 @@ def _compared(printed: str, true: str, wrong: bool, witness: tuple[tuple[str, st
 
 
 def _differing(left: str, right: str, witness: Sequence[tuple[str, str]]) -> list[int]:
-    """Which entries of two matrices differ at a point."""
+    """The indices of the entries in which two matrices differ at a point."""
     values = {LETTERS[name]: parse(text, {}) for name, text in witness if name in LETTERS}
     pairs = zip(_entries(left), _entries(right), strict=True)
     return [n for n, (a, b) in enumerate(pairs) if _unequal(a, b, values)]
@@ -142,7 +143,7 @@ def _cells(matrix: Markup, marked: Sequence[int]) -> Markup:
 
 
 def _worded(printed: str, true: str) -> tuple[Markup, Markup]:
-    """Two sentences; where most words agree, those that do not are marked."""
+    """Two sentences as HTML; where most words agree, the others are marked."""
     sides = [[piece for raw, shown in pieces(text) for piece in _split(raw, shown)] for text in (printed, true)]
     keys = [[raw.casefold().strip(".,;:") for raw, _ in side] for side in sides]
     matcher = SequenceMatcher(None, keys[0], keys[1], autojunk=False)
@@ -163,12 +164,12 @@ def _marked(words: Sequence[tuple[str, Markup]], alone: set[int]) -> Markup:
 
 
 def _split(raw: str, shown: Markup) -> list[tuple[str, Markup]]:
-    """A formula whole; words one by one."""
+    """A formula as one piece, other text word by word."""
     return [(raw, shown)] if "<math" in shown else [(word, remark(word)) for word in raw.split()]
 
 
 def letter(results: Sequence[Result], about: Paper) -> str:
-    """A letter in LaTeX to the authors: the substantial errata with what is printed, the others in a line each."""
+    """A letter in LaTeX to the authors: substantial errata with the printed text, the others on one line each."""
     by_grade = graded(results, about)
     items = [
         rf"\item {_where(each)} ``{_quoted(each.claims[0].quote)}'' -- {_set(each.text)}"
@@ -217,16 +218,16 @@ BODY
 With kind regards
 \end{document}
 """
-QUOTED = 190  # characters of a quotation
+QUOTED = 190  # the most characters of a quotation
 
 
 def _where(erratum: Erratum) -> str:
     sections = dict.fromkeys(place(claim).removeprefix("Section ").split(" ")[0] for claim in erratum.claims)
-    return f"{{[{escaped(', '.join(sections))}]}}"  # in braces: it is no label of an item
+    return f"{{[{escaped(', '.join(sections))}]}}"  # in braces, or LaTeX takes it as the item's label
 
 
 def _quoted(quote: str) -> str:
-    """The paper's own LaTeX; a long one ends after a word."""
+    """The paper's LaTeX, cut after a word if it is long."""
     text = " ".join(quote.split())
     if "$" not in text and "\\" in text.replace(r"\emph", ""):
         return f"${text}$" if r"\begin" in text or "&" not in text else rf"$\begin{{matrix}}{text}\end{{matrix}}$"
@@ -239,7 +240,7 @@ def _quoted(quote: str) -> str:
 
 
 def _set(text: str) -> str:
-    """Our words as a sentence of LaTeX, with their formulas."""
+    """Our text as a sentence in LaTeX, with its formulas."""
     text = text[:1].upper() + text[1:] if text[:1].islower() and text[1:2].isalpha() else text
     text = text if text.endswith((".", "!", "?")) else f"{text}."
     shown, at = "", 0
@@ -250,7 +251,7 @@ def _set(text: str) -> str:
 
 
 def _typed(text: str) -> str:
-    """Words for LaTeX: letters of the paper and signs as mathematics, opening quotation marks as such."""
+    """Text in LaTeX: letters of the paper and signs become mathematics, quotation marks are opened."""
     parts = LETTER_OR_SIGN.split(re.sub(r"(?<![\w)])'(?=\w)", "`", text))
     return "".join(_symbol(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
@@ -308,7 +309,7 @@ def tables(results: Sequence[Result], sections: Iterable[str] = ()) -> str:
 
 
 def escaped(text: str) -> str:
-    """`text` with every character that LaTeX would act on made plain.
+    """The text with LaTeX's special characters escaped.
 
     >>> print(escaped("50 % of a_1"))
     50 \\% of a\\_1

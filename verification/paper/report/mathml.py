@@ -1,13 +1,15 @@
-"""What a claim says, as HTML: the paper's LaTeX and our own formulas as MathML, everything else escaped.
+"""Texts of claims as HTML: the paper's LaTeX and our own formulas as MathML, other text escaped.
 
-A formula of ours is plain text such as `4*sin(theta/2)`. It is set as it is written: its syntax tree
-is printed, and nothing is evaluated, reordered or simplified on the way. Formulas within our sentences are found
-by their signs: the longest piece that can be read as a formula is set as one.
+Our formulas are plain text such as `4*sin(theta/2)`. Each is set as it is written, from its syntax tree, and never
+evaluated, reordered or simplified. Formulas within sentences are found by their signs: the longest piece that parses as
+a formula is set as one.
 """
 
 import ast
+import base64
 import re
 from functools import lru_cache
+from importlib.resources import files
 
 from latex2mathml.converter import convert
 from markupsafe import Markup, escape
@@ -29,7 +31,7 @@ PAPER = {  # the paper's own macros
 }
 MACRO = re.compile(r"\\noalign\{\\medskip\}|\\[A-Za-z]+")
 TEXT_MACRO = re.compile(r"\\emph\{([^{}]*)\}")
-LATEX_ONLY = re.compile(r"\\[a-zA-Z]+")  # a quote without dollars that is a formula all the same
+LATEX_ONLY = re.compile(r"\\[a-zA-Z]+")  # a quote without dollars that is a formula
 SIGNS = {
     ast.Lt: "<",
     ast.LtE: r"\leq",
@@ -71,29 +73,54 @@ TOKEN = re.compile(
     r"|(?P<mark>[()\[\]|]'?)|(?P<comma>, )"
 )
 WORTH = re.compile(r"[\w)\]|']\s*(?:\*\*|[*/^<>=]|!=|[-+]\s|[-+](?=[\w(]))|\w\(|\|.")
-APPOSED = re.compile(r"\w -\d")  # a word or letter and a negative number, as in "trace -2": no difference
+APPOSED = re.compile(r"\w -\d")  # a word and a negative number, as in "trace -2": no subtraction
 PAIR = re.compile(r"([\[(])((?:[^\[\](),;:]|\([^()]*\))+), ((?:[^\[\](),;:]|\([^()]*\))+)([\])])")
 AN_ELEMENT = re.compile(rf"\b({NAME}) in (?=[\[(])")
-LOW = re.compile(r"\\left\(((?:[^()\\^]|\\(?!frac|sqrt|left|right|begin)[a-z,;]+)*)\\right\)")  # need not stretch
-INLINE, ATOM = 5, 6  # how closely a quotient and an atom bind
+LOW = re.compile(r"\\left\(((?:[^()\\^]|\\(?!frac|sqrt|left|right|begin)[a-z,;]+)*)\\right\)")  # no stretch
+APART = r"sin|cos|tan|arcsin|arccos|arctan|sinh|cosh|tanh|log|ln|exp|det|min|max|inf|sup|tr"
+THIN = '<mspace width="0.17em"/>'
+RELATION = "&#x0(?:003[CDE]|226[045]|2208|2192|21A6|0028|005B|002C);"
+SPACING = [  # corrections of MathML: upright names, roots, slashes, signs
+    (re.compile(rf"(?<!under>)(?<!over>)<mo(?: movablelimits=\"true\")?>({APART})</mo>"), r"<mi>\1</mi>"),
+    (re.compile(rf"(</m(?:[ni]|su[bp]|subsup|row|frac)>|&#x00029;</mo>)<mi>({APART})</mi>"), rf"\1{THIN}<mi>\2</mi>"),
+    (re.compile(rf"(?<!<msu[bp]>)<mi>({APART})</mi>(?=<m[nis])"), rf"<mi>\1</mi>{THIN}"),
+    (  # a root of one letter hangs below the line unless its box is as high as the root sign
+        re.compile(r"<msqrt>((?:<mrow>)?<m[in]>[^<]*</m[in]>(?:</mrow>)?)</msqrt>"),
+        r'<msqrt><mpadded height="0.84em" depth="0.16em">\1</mpadded></msqrt>',
+    ),
+    (re.compile(r"<mo>(&#x0002F;)</mo>"), r'<mo lspace="0" rspace="0">\1</mo>'),
+    (re.compile(rf"({RELATION}</mo>)<mo>(&#x02212;|&#x000B1;)</mo>"), r'\1<mo form="prefix">\2</mo>'),
+]
+BARS = re.compile(r"(?<!\\left)\\lvert|(?<!\\right)\\rvert")
+INLINE, ATOM = 5, 6  # precedence of a quotient and of an atom
+
+
+def font_style() -> Markup:
+    """The CSS of formulas, with the font embedded (in a text font fraction bars cross matrices)."""
+    font = base64.b64encode((files("verification.paper.report") / "math.woff2").read_bytes()).decode("ascii")
+    face = f'@font-face {{ font-family: "PinballMath"; src: url(data:font/woff2;base64,{font}) format("woff2"); }}'
+    return Markup(f'{face}\nmath {{ font-family: "PinballMath", math; font-size: 1.04em; }}\n')
 
 
 @lru_cache(maxsize=4096)
 def mathml(latex: str, display: bool = False) -> Markup:
-    """LaTeX in the paper's macros as MathML, with the LaTeX kept for readers that copy it.
+    """LaTeX with the paper's macros as MathML, with the LaTeX as alternative text.
 
     >>> "<mi>&#x003BB;</mi>" in mathml(r"\\lambda")
     True
     """
     known = MACRO.sub(lambda found: PAPER.get(found.group(), found.group()), latex)
+    known = BARS.sub(lambda found: (r"\left" if found[0] == r"\lvert" else r"\right") + found[0], known)
     whole = convert(LOW.sub(r"(\1)", known), display="block" if display else "inline")
+    for wrong, right in SPACING:
+        whole = wrong.sub(right, whole)
     plain = whole.replace(' xmlns="http://www.w3.org/1998/Math/MathML"', "", 1).replace(' display="inline"', "", 1)
     return Markup(plain.replace("<math", f'<math alttext="{escape(latex)}"', 1))
 
 
 @lru_cache(maxsize=4096)
 def prose(quote: str) -> Markup:
-    """The paper's words with their formulas.
+    """The paper's text with its formulas, as HTML.
 
     >>> prose(r"it is \\emph{stable} & so")
     Markup('it is <em>stable</em> &amp; so')
@@ -114,7 +141,7 @@ def _words(text: str) -> Markup:
 
 @lru_cache(maxsize=8192)
 def remark(text: str) -> Markup:
-    """Our own words, in which the code's letters and signs become the paper's, and formulas are set.
+    """Our own text as HTML: letters and signs of the code become those of the paper, and formulas are set.
 
     >>> remark("lam <= for theta0")
     Markup('λ ≤ for θ<sub>0</sub>')
@@ -125,7 +152,7 @@ def remark(text: str) -> Markup:
 
 
 def pieces(text: str) -> list[tuple[str, Markup]]:
-    """The formulas and words of a sentence and the spaces between them, each as written and as shown."""
+    """The formulas and words of a sentence and the spaces between them, each as pair of source and HTML."""
     text = AN_ELEMENT.sub("\\1 \u2208 ", text)
     found, at = [], 0
     for start, end, latex in [*formulas(text), (len(text), len(text), "")]:
@@ -156,7 +183,7 @@ def _greek(found: re.Match[str]) -> str:
 
 
 def formulas(text: str) -> list[tuple[int, int, str]]:
-    r"""Where the formulas of a sentence begin and end, and each as LaTeX; none reaches over a `+-`, an error bar.
+    r"""The positions of the formulas in a sentence, and each as LaTeX; none extends over `+-`, an error bar.
 
     >>> [text for *_, text in formulas("nu_+ = 0.5 +- 7e-05 there")]
     ['\\nu_{+} = 0.5', '7 \\cdot 10^{-5}']
@@ -179,7 +206,7 @@ def formulas(text: str) -> list[tuple[int, int, str]]:
 
 
 def _runs(text: str) -> list[list[re.Match[str]]]:
-    """Signs that stand next to each other and could be a formula."""
+    """Runs of adjacent tokens that could be a formula."""
     runs: list[list[re.Match[str]]] = [[]]
     for token in TOKEN.finditer(text):
         if runs[-1] and runs[-1][-1].end() != token.start():
@@ -219,7 +246,7 @@ def formula(text: str) -> Markup | None:
 
 @lru_cache(maxsize=8192)
 def _read(text: str) -> str | None:
-    """A formula in our notation as LaTeX; None when it is none."""
+    """A formula in our notation as LaTeX; None when the text is not one."""
     if any(text.count(a) != text.count(b) for a, b in ("()", "[]")) or text.count("|") % 2:
         return None
     text = re.sub(r"\b(lam|phi|s)\*(?=[\s,;:.)\]]|$)", r"\1_star", text)
@@ -235,13 +262,13 @@ def _read(text: str) -> str | None:
 
 
 class _Source:
-    """A formula as typed: numbers are set with the digits that they were typed with."""
+    """A formula as typed, whose numbers keep their digits."""
 
     def __init__(self, code: str) -> None:
         self.code = code
 
     def latex(self, node: ast.expr, within: int = 0) -> str:
-        """The syntax tree as LaTeX, in parentheses where `within` binds more closely."""
+        """The syntax tree as LaTeX, in parentheses where `within` has a higher precedence."""
         text, binding = self._printed(node)
         return rf"\left({text}\right)" if binding < within else text
 
@@ -277,7 +304,7 @@ class _Source:
         return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else typed
 
     def _exponent(self, node: ast.expr) -> str:
-        """An exponent; a quotient of two plain numbers or letters on one line."""
+        """An exponent; a quotient of two numbers or letters is set on one line."""
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
             sides = node.left, node.right
             if all(isinstance(side, ast.Constant | ast.Name) for side in sides):
@@ -285,7 +312,7 @@ class _Source:
         return self.latex(node)
 
     def _listed(self, node: ast.expr, entries: list[ast.expr]) -> str:
-        """A matrix, a column, or a point."""
+        """A list of entries as LaTeX: a matrix, a column in brackets, or a point in parentheses."""
         if entries and all(isinstance(row, ast.List) for row in entries):
             lines = (
                 " & ".join(self.latex(entry) for entry in row.elts) for row in entries if isinstance(row, ast.List)
@@ -298,7 +325,7 @@ class _Source:
 
 
 def _letter(name: str) -> str:
-    """A name of the code as the paper's letter."""
+    """A name of the code as a letter of the paper, in LaTeX."""
     if name.endswith("_prime"):
         return f"{_letter(name.removesuffix('_prime'))}'"
     if name in WORDS or name in FUNCTIONS:

@@ -1,7 +1,7 @@
-"""The report for people: one page of HTML that needs no network, and the same as Markdown.
+"""The report as one HTML page that needs no network, and as Markdown.
 
-Formulas are MathML; figures and script are inside the page, and the work-precision diagrams from what `pinball work
---json FILE` measured. The Markdown has the summary, the errata, then each claim by section of the paper.
+Formulas are MathML; figures and script are inside the page, as are the work-precision diagrams from the file of
+`pinball work --json FILE`. The Markdown has the summary, the errata, and each claim by section of the paper.
 """
 
 import base64
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from textwrap import wrap
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, StrictUndefined
@@ -21,32 +21,32 @@ from verification.paper.claims.folder import paper
 from verification.paper.claims.sharing import sharing
 from verification.paper.figures.catalogue import plain
 from verification.paper.report.findings import GRADES, compared, findings, graded
-from verification.paper.report.mathml import formula, prose, remark
+from verification.paper.report.mathml import font_style, formula, prose, remark
 from verification.paper.report.report import VERDICTS, by_section, counts, errata, place, summary
 
 if TYPE_CHECKING:
-    from verification.measure.work.row import Diagram
+    from verification.measure.work.row import WorkDiagram
     from verification.paper.claims.claim import Claim
     from verification.paper.claims.folder import Paper
-    from verification.paper.figures.catalogue import Picture as Figure
+    from verification.paper.figures.catalogue import PaperFigure as Figure
     from verification.paper.report.report import Result
 
 
-FOLD = 48  # digits of a number before the rest is folded away
-LONG = 300  # characters of a method before it is folded
-OPENING = 120  # of which this many are shown
+FOLD = 48  # digits of a number after which the rest is folded
+LONG = 300  # characters of a method from which it is folded
+OPENING = 120  # characters shown of a folded method
 
 
 KINDS = {b"\x89PNG": "png", b"RIFF": "webp"}
 
 
 def address(kind: str, content: bytes) -> str:
-    """An address that holds the content whole."""
+    """A data URL that contains `content`."""
     return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 @dataclass(frozen=True)
-class Picture:
+class ReportFigure:
     """A figure of the report: an image, its caption as printed and in our words, and its section of the paper."""
 
     name: str
@@ -56,28 +56,28 @@ class Picture:
     shows: str = ""
 
     @classmethod
-    def of(cls, drawing: "Figure | Diagram", image: bytes) -> "Picture":
-        """What was drawn, with its words."""
+    def of(cls, drawing: "Figure | WorkDiagram", image: bytes) -> "ReportFigure":
+        """The picture of a drawing and its image, with the captions."""
         return cls(drawing.name, drawing.caption, drawing.section, image, drawing.shows)
 
     @property
     def source(self) -> str:
-        """The image as an address that holds it whole."""
+        """The image as a data URL."""
         kind = next((kind for start, kind in KINDS.items() if self.image.startswith(start)), "svg+xml")
         return address(f"image/{kind}", self.image)
 
     @property
     def words(self) -> Markup:
-        """Our caption, or else the paper's."""
+        """Our caption, or else the paper's, as HTML."""
         return prose(self.shows or self.caption)
 
     @property
     def alt(self) -> str:
-        """The first sentence of the caption without what sets it."""
+        """The first sentence of the caption as plain text."""
         return plain((self.shows or self.caption).partition(". ")[0])
 
     def stands_by(self, claims: "Sequence[Result]") -> str:
-        """The first claim that quotes the caption, else the first of the section; empty when there is neither."""
+        """The id of the first claim that quotes the caption, else of the first in the section; else empty."""
         caption = _plain(self.caption)
         quoting = (c.id for c in claims if c.section == self.section and _plain(c.quote) in caption)
         return next(quoting, next((c.id for c in claims if c.section == self.section), ""))
@@ -86,14 +86,14 @@ class Picture:
 def page(
     results: "Sequence[Result]",
     versions: Mapping[str, str],
-    pictures: Sequence[Picture] = (),
+    pictures: Sequence[ReportFigure] = (),
     about: "Paper | None" = None,
 ) -> str:
-    """The whole page. Two runs differ in the seconds only."""
+    """The whole HTML page; two runs differ in the seconds only."""
     about = about or paper()
     sections = by_section(results, about.sections)
     ordered = [result for _, claims in sections for result in claims]
-    beside: dict[str, list[Picture]] = {}
+    beside: dict[str, list[ReportFigure]] = {}
     for picture in pictures:
         beside.setdefault(picture.stands_by(ordered), []).append(picture)
     first = findings(results, about)
@@ -101,10 +101,9 @@ def page(
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"prose": prose, "remark": remark, "sentence": sentence, "opening": opening}
     template = environment.from_string(_text("page.html"))
-    font = (files("verification.paper.report") / "math.woff2").read_bytes()
     return template.render(
         about=about,
-        style=Markup(_text("page.css").replace("FONT", address("font/woff2", font))),
+        style=font_style() + Markup(_text("page.css")),
         script=Markup(_text("page.js")),
         summary=summary(results),
         counts=counts(results),
@@ -129,14 +128,14 @@ def page(
 
 
 def set_claims(claims: "Iterable[Claim]") -> None:
-    """Sets what is printed, ahead of the page, which then finds it set."""
+    """Typesets the printed texts of claims into the cache, ahead of the page."""
     for claim in claims:
         prose(claim.quote)
         formula(claim.text) or remark(claim.text)
 
 
 def set_result(result: "Result") -> None:
-    """Sets what is said of a claim, ahead of the page, as soon as it is judged."""
+    """Typesets the texts of a judged claim into the cache, ahead of the page."""
     compared(result)
     for text in (result.erratum, result.unsettled, result.method):
         sentence(text)
@@ -149,8 +148,8 @@ def _text(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class Certificate:
-    """A certificate that claims rest on: its file, what it states, and its content as an address."""
+class ReportCertificate:
+    """A certificate of claims: its file name, its statement, its content as a data URL, and the claims."""
 
     name: str
     statement: str
@@ -158,8 +157,8 @@ class Certificate:
     claims: tuple[str, ...]
 
 
-def _certificates(results: "Sequence[Result]", about: "Paper") -> list[Certificate]:
-    """Those of the claims judged, each once, in the order of the paper."""
+def _certificates(results: "Sequence[Result]", about: "Paper") -> list[ReportCertificate]:
+    """The certificates of the judged claims, each once, in the order of the paper."""
     judged = {result.id for result in results}
     resting: dict[Path, list[str]] = {}
     for claim, paths in about.certificates().items():
@@ -167,13 +166,15 @@ def _certificates(results: "Sequence[Result]", about: "Paper") -> list[Certifica
             resting.setdefault(path, []).append(claim)
     contents = {path: path.read_bytes() for path in resting}
     return [
-        Certificate(path.stem, json.loads(text)["statement"], address("application/json", text), tuple(resting[path]))
+        ReportCertificate(
+            path.stem, json.loads(text)["statement"], address("application/json", text), tuple(resting[path])
+        )
         for path, text in contents.items()
     ]
 
 
 def _together(results: "Sequence[Result]", about: "Paper") -> dict[str, tuple[int, float]]:
-    """For claims that share results: how many judged here do, and the seconds of all of them."""
+    """For each claim that shares results, the number of judged claims that share them, and their total seconds."""
     seconds = {result.id: result.seconds for result in results}
     found: dict[str, tuple[int, float]] = {}
     for group in sharing(about.claims) if len(results) > 1 else []:
@@ -183,33 +184,33 @@ def _together(results: "Sequence[Result]", about: "Paper") -> dict[str, tuple[in
 
 
 def sentence(text: str) -> Markup:
-    """Words as a sentence: a capital at the beginning, a full stop at the end."""
+    """Text as a sentence in HTML, with a capital at the beginning and a full stop at the end."""
     first = text.split(" ", 1)[0]
     text = text[:1].upper() + text[1:] if first.isalpha() and first.islower() else text
     return remark(text if text.endswith((".", "!", "?")) else f"{text}.")
 
 
 def opening(text: str) -> Markup:
-    """The first words of a long text."""
+    """The first words of a long text, as HTML."""
     return sentence(text[: text.rindex(" ", 0, OPENING)].rstrip(".,:;") + ".")[:-1]
 
 
 def _plain(text: str) -> str:
-    """Words and formulas without what sets them."""
+    """The text without markup characters and spaces."""
     return "".join(letter for letter in text if letter not in "${}\\ \n")
 
 
 WANTED = "accepted: what `pinball work --json FILE` writes"
 
 
-def diagrams(path: Path) -> "list[Diagram]":
-    """A diagram for each question in the file, with its machine in the footer; `ValueError` when it is no such file."""
-    from verification.measure.work.row import Diagram, Row
+def diagrams(path: Path) -> "list[WorkDiagram]":
+    """A diagram for each question in the file, with the machine in the footer; `ValueError` for another file."""
+    from verification.measure.work.row import MethodResult, WorkDiagram
 
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
         questions = _listed(document["questions"])
-        rows = [Row.from_dict(each) for each in document["rows"]]
+        rows = [MethodResult.from_dict(each) for each in document["rows"]]
         known = dict(document["machine"])
         titles = [(each["name"], each["title"], each["answers"], each["unit"]) for each in questions]
     except OSError as error:
@@ -217,7 +218,7 @@ def diagrams(path: Path) -> "list[Diagram]":
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"--work {str(path)!r} is no such file ({type(error).__name__}: {error}); {WANTED}") from None
     return [
-        Diagram(
+        WorkDiagram(
             f"work-{name}",
             f"{title}: {answers}.",
             title,
@@ -233,20 +234,20 @@ def _listed(questions: Any) -> list[dict[str, str]]:
     return list(questions.values()) if isinstance(questions, dict) else list(questions)
 
 
-SHORT = 90  # characters that stay inside a line
-PARAGRAPH = 400  # characters of a proof that are read as a sentence
-DIGITS = 60  # digits of a number on a line
+SHORT = 90  # the most characters of an item on one line
+PARAGRAPH = 400  # the most characters of a proof that is shown as a sentence
+DIGITS = 60  # the most digits of a number on one line
 WORDS = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")  # two in a row make a text, not a formula
 
 
 def markdown(results: Sequence["Result"], versions: Mapping[str, str], about: "Paper | None" = None) -> str:
-    """The whole report: summary, errata, then each claim by section of the paper.
-
-    Two runs differ in the seconds only.
-    """
+    """The whole report: summary, errata, then each claim by section of the paper; two runs differ in seconds only."""
     about = about or paper()
     head = f"*{about.title}*" + (f"\n({about.source})" if about.source else "")
     parts = ["# What the paper says, and what is true", head, summary(results), _legend(results)]
+    parts += [
+        fill(f"**{word[0].upper()}{word[1:]}** in this report: {text}", 110) for word, text in about.senses.items()
+    ]
     parts += _errata(results, about.sections)
     for section, claims in by_section(results, about.sections):
         source = about.sections.get(section, "")
@@ -292,7 +293,7 @@ def _comparison(result: "Result") -> str:
 
 
 def _quote(text: str) -> str:
-    """The paper's words as a quotation; a bare formula as the LaTeX it is."""
+    """The paper's text as a quotation; a formula as LaTeX code."""
     if "\\" in text and "$" not in text:
         rows = text.replace("\\\\", "\\\\\n").splitlines()
         return _fenced("\n".join(row.strip() for row in rows), "latex")
@@ -300,7 +301,7 @@ def _quote(text: str) -> str:
 
 
 def _item(label: str, text: str) -> str:
-    """A list item: words as they are, a formula as code, and a long one folded into a block."""
+    """A list item: text as it is, a formula as code, a long formula as a block."""
     if not text:
         return f"- {label}: not given"
     if WORDS.search(text):
@@ -316,7 +317,7 @@ def _item(label: str, text: str) -> str:
 
 
 def _long(label: str, text: str) -> str:
-    """A list item with a sentence; a proof that quotes its polynomials is a block of its own."""
+    """A list item with a sentence; a long text as a block."""
     return f"- {label}: {_sentence(text)}" if len(text) <= PARAGRAPH else _block(label, _lines(text))
 
 
@@ -337,12 +338,12 @@ def _indented(text: str, by: int) -> str:
 
 
 def _plain_markdown(text: str) -> str:
-    """`text` on one line, with what Markdown would take for emphasis, HTML or a link made plain."""
+    """The text on one line, with Markdown's special characters escaped."""
     return re.sub(r"([*`]|<(?=[A-Za-z/!?])|\](?=\())", r"\\\1", " ".join(text.split()))
 
 
 def _sentence(text: str) -> str:
-    """`text` as a sentence: plain, begun with a capital when it begins with a word, ended by a full stop."""
+    """The text as a Markdown sentence: escaped, with an initial capital and a full stop."""
     text = _plain_markdown(text)
     text = text[:1].upper() + text[1:] if re.match(r"[a-z]+ ", text) else text
     return text if text.endswith(".") or not text else f"{text}."

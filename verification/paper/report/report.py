@@ -1,13 +1,9 @@
-"""The claims of a paper judged, and told: as a page, Markdown, JSON and LaTeX tables.
+"""The judging of a paper's claims, the results as JSON, and digests of the code that a claim depends on.
 
-`catalogue()` lists the claims, `verify()` judges them. What is printed lies in the paper's folder, what is true is
-derived in `symbolic`, and the judges stand between the two; so a misprint cannot leak into the mathematics.
-
-The page is one file that needs no network; a result is shown in each form from the same `Result`.
-
-Which claims depend on code that changed is known by a digest of every module that a judge can load, read off the
-imports. Nothing is run for it: the source text names what it imports, at the top or inside a function, and a module
-that names another depends on it. So the set is never too small, and it is larger than what one claim needs.
+`catalogue()` lists the claims and `verify()` judges them. The printed text is in the paper's folder, the true
+statements are derived in `symbolic`, and only judges use both; so a misprint cannot affect the mathematics. A digest of
+a claim covers every module that its judge can load, found from the imports in the source text without running it. So
+the set of modules is never too small, but may be larger than the claim needs.
 """
 
 import platform
@@ -29,27 +25,27 @@ from typing import Any, NamedTuple
 
 from numeric.sweeps import workers
 from numeric.sweeps.workers import Lost, cores, in_processes
-from symbolic.expressions.signs import Finding, Outcome
+from symbolic.expressions.signs import Outcome, SignFinding
 from verification.arithmetic.balls import decimal, real_ball
 from verification.paper.claims.claim import Claim, Judgement, Verdict, seconds
 from verification.paper.claims.folder import OWN, Paper, home, judge_of, module, paper
 from verification.paper.claims.sharing import shared_out
-from verification.paper.figures.catalogue import Drawing, Picture
+from verification.paper.figures.catalogue import FigureSource, PaperFigure
 
-SMALL = 4.0  # seconds of work that other processes would not save
+SMALL = 4.0  # below so many seconds of work other processes are not used
 STOREYS = ("symbolic", "numeric", "verification")
 OURS = rf"(?:{'|'.join(STOREYS)})"
 FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n(]*)", re.MULTILINE)
 IMPORT = re.compile(rf"^[ \t]*import[ \t]+({OURS}[\w.]*)", re.MULTILINE)
 LEFT_OUT = re.compile(
     r'"""[\s\S]*?"""|^if TYPE_CHECKING:\n(?:[ \t].*\n|\n)*', re.MULTILINE
-)  # words, and what runs nothing
-QUOTED = re.compile(rf"[\"']({OURS}(?:\.\w+)+)[\"'.]")  # a module named by text, or the room of one
+)  # docstrings, and imports for types only
+QUOTED = re.compile(rf"[\"']({OURS}(?:\.\w+)+)[\"'.]")  # a module or package named in a string
 
 
 @dataclass(frozen=True)
 class Result:
-    """A judged claim, as the report shows it."""
+    """A judged claim, as every form of the report shows it."""
 
     id: str
     section: str
@@ -67,22 +63,22 @@ class Result:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
-        """What `to_dict` says, as a result."""
+        """The result that `to_dict` wrote."""
         return cls(**{**data, "verdict": Verdict(data["verdict"])})
 
     def to_dict(self) -> dict[str, object]:
-        """The keys of the JSON schema, in order."""
+        """The result as an object of the JSON schema."""
         rounded = {"verdict": self.verdict.value, "seconds": round(self.seconds, 4), "witness": dict(self.witness)}
         return {**self.__dict__, **rounded}
 
 
 def catalogue(claims: str | Path = OWN) -> list[Claim]:
-    """Every claim of the paper in a folder, or of one that comes with the package, in the order given there."""
+    """The claims of the paper in a folder, or of a paper of the package by its name, in the given order."""
     return list(paper(claims).claims)
 
 
-def pictures(found: Paper) -> list[Picture]:
-    """The figures that go with a paper's sections; most papers have none."""
+def pictures(found: Paper) -> list[PaperFigure]:
+    """The figures of a paper; most papers have none."""
     return list(module(home(Path(found.figures))).pictures().values()) if found.figures else []
 
 
@@ -90,7 +86,7 @@ def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path 
     """Judges the claims whose id matches the glob `only`, in the catalogue's order; only their judges are imported.
 
     With more than one job the claims are judged in that many processes. `claims` is the folder of another paper, or the
-    name of one that comes with the package; the judges in a folder are run, as any module that is imported.
+    name of a paper of the package; the judges in a folder are executed.
     """
     asked = [claim for claim in catalogue(claims) if fnmatchcase(claim.id, only)]
     found: dict[str, Result] = {}
@@ -102,17 +98,17 @@ def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path 
                 yield found[order.popleft()]
 
 
-class Drawn(NamedTuple):
-    """A picture that was drawn, by its name."""
+class DrawnPicture(NamedTuple):
+    """The rendered image of a picture, as the bytes of a file, and the picture's name."""
 
     name: str
     image: bytes
 
 
 def judged(claims: Sequence[Claim], digits: int, jobs: int | None) -> Generator[Result, None, None]:
-    """The result of each claim as it comes; with more than one job from processes, the dearest begun first.
+    """The result of each claim as it is finished; with several jobs the most expensive claims are begun first.
 
-    The results do not depend on `jobs`, but for their seconds. A claim whose process died again and again is open.
+    The results do not depend on `jobs`, except for their seconds. A claim whose process dies repeatedly is open.
     """
     for answer in answered(claims, (), digits, jobs):
         if isinstance(answer, Result):
@@ -120,20 +116,20 @@ def judged(claims: Sequence[Claim], digits: int, jobs: int | None) -> Generator[
 
 
 def answered(
-    claims: Sequence[Claim], drawings: Sequence[Drawing], digits: int, jobs: int | None
-) -> Generator[Result | Drawn, None, None]:
-    """Claims judged and pictures drawn by the same processes, the dearest of all begun first: so no core waits.
+    claims: Sequence[Claim], drawings: Sequence[FigureSource], digits: int, jobs: int | None
+) -> Generator[Result | DrawnPicture, None, None]:
+    """The results of claims and images of pictures as they are finished, from one pool of processes.
 
-    As `judged`; a picture whose process died again and again is an error.
+    The most expensive ones are begun first. As in `judged`, but a picture whose process dies repeatedly is an error.
     """
     for claim in claims:
         if claim.home.endswith(".py"):
-            judge_of(claim)  # a module that cannot be run is refused before any work
+            judge_of(claim)  # fails before any work if a module cannot be run
     if _few(claims, drawings, jobs):
         yield from (judge(claim, digits) for claim in claims)
-        yield from (Drawn(each.name, each.drawn()) for each in drawings)
+        yield from (DrawnPicture(each.name, each.drawn()) for each in drawings)
         return
-    tasks: list[list[Claim | Drawing]] = [[*group] for group in shared_out(claims, jobs or cores())]
+    tasks: list[list[Claim | FigureSource]] = [[*group] for group in shared_out(claims, jobs or cores())]
     tasks.extend([each] for each in drawings)
     tasks.sort(key=seconds, reverse=True)
     with closing(in_processes(partial(answer, digits=digits), tasks, jobs, _modules(claims, drawings))) as answers:
@@ -146,42 +142,42 @@ def answered(
                 raise RuntimeError(f"the picture {item.name} could not be drawn: {found}")
 
 
-def begin(claims: Sequence[Claim], drawings: Sequence[Drawing], jobs: int | None) -> None:
-    """Has what `answered` needs in other processes imported there, where it needs any, while this one goes on."""
+def begin(claims: Sequence[Claim], drawings: Sequence[FigureSource], jobs: int | None) -> None:
+    """Starts the import of the modules that `answered` needs in other processes, if it uses any."""
     if not _few(claims, drawings, jobs):
         workers.begin(_modules(claims, drawings))
 
 
-def _few(claims: Sequence[Claim], drawings: Sequence[Drawing], jobs: int | None) -> bool:
+def _few(claims: Sequence[Claim], drawings: Sequence[FigureSource], jobs: int | None) -> bool:
     return jobs == 1 or seconds([*claims, *drawings]) < SMALL
 
 
-def _modules(claims: Sequence[Claim], drawings: Sequence[Drawing]) -> list[str]:
+def _modules(claims: Sequence[Claim], drawings: Sequence[FigureSource]) -> list[str]:
     homes = {claim.home for claim in claims if not claim.home.endswith(".py")}
     return sorted(homes | {each.module for each in drawings})
 
 
-def answer(item: Claim | Drawing, digits: int) -> Result | Drawn:
-    """What one claim or picture comes to."""
-    return judge(item, digits) if isinstance(item, Claim) else Drawn(item.name, item.drawn())
+def answer(item: Claim | FigureSource, digits: int) -> Result | DrawnPicture:
+    """The result of a claim, or the image of a picture."""
+    return judge(item, digits) if isinstance(item, Claim) else DrawnPicture(item.name, item.drawn())
 
 
 def judge(claim: Claim, digits: int = 15) -> Result:
-    """The result of one claim; the module that judges it is imported when it is the first of that module."""
+    """The result of one claim; its judge's module is imported at the first claim of that module."""
     start = time.perf_counter()
     try:
         found = judge_of(claim)
-        start = time.perf_counter()  # importing a module is not judging
+        start = time.perf_counter()  # the import is not counted
         judgement = found(claim)
         if not isinstance(judgement, Judgement):
             raise TypeError(f"it returns {judgement!r}, and a judge returns a Judgement")
-    except Exception as error:  # a judge that fails leaves its claim open, and says so; the others go on
+    except Exception as error:  # a judge that fails leaves its claim open
         judgement = _open(f"the judge failed: {type(error).__name__}: {error}")
     return _result(claim, judgement, digits, time.perf_counter() - start)
 
 
 def _open(reason: str) -> Judgement:
-    return Judgement(Finding(Outcome.UNKNOWN, reason), "")
+    return Judgement(SignFinding(Outcome.UNKNOWN, reason), "")
 
 
 def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> Result:
@@ -206,7 +202,7 @@ def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> 
 
 
 def method(judgement: Judgement) -> str:
-    """How the verdict was reached, in a sentence or two."""
+    """The reason of the verdict, in a sentence or two."""
     if judgement.verdict is Verdict.SUPPORTED:
         return judgement.evidence
     if judgement.verdict is Verdict.CORRECTED and judgement.mended is not None:
@@ -224,24 +220,24 @@ VERDICTS = {
 
 
 def document(results: Iterable["Result"], about: Mapping[str, object] | None = None) -> dict[str, Any]:
-    """The results under the JSON schema of `pinball verify`, with what is said of the paper."""
+    """The results in the JSON schema of `pinball verify`, with `about` as its entry `paper`."""
     return {"schema": 1, **({"paper": about} if about else {}), "claims": [result.to_dict() for result in results]}
 
 
 def counts(results: Iterable["Result"]) -> dict[str, int]:
-    """How many claims have each verdict, every verdict listed."""
+    """The number of claims with each verdict, including verdicts without claims."""
     found = Counter(result.verdict.value for result in results)
     return {verdict: found[verdict] for verdict in VERDICTS}
 
 
 def summary(results: Sequence["Result"]) -> str:
-    """One line: so many claims, so many of each verdict."""
+    """One line with the number of claims and the number with each verdict."""
     parts = ", ".join(f"{number} {verdict}" for verdict, number in counts(results).items())
     return f"{len(results)} claims: {parts}."
 
 
 def made_with() -> dict[str, str]:
-    """The versions that a result depends on, the type of machine, and the seed of all that is drawn at random."""
+    """The versions of packages that a result depends on, the type of machine, and the seed."""
     found = {"python": platform.python_version()}
     for package in ("sympy", "mpmath", "gmpy2", "python-flint", "numpy"):
         try:
@@ -252,25 +248,25 @@ def made_with() -> dict[str, str]:
 
 
 def by_section(results: Iterable["Result"], sections: Iterable[str] = ()) -> list[tuple[str, list["Result"]]]:
-    """The results of each section, in the order of `sections`; those that it does not have by their numbers."""
+    """The results by section, in the order of `sections`, then other sections by their numbers."""
     order = {name: (-1, n) for n, name in enumerate(sections)}
     ordered = sorted(results, key=lambda each: (order.get(each.section, section_order(each.section)), each.section))
     return [(name, list(claims)) for name, claims in groupby(ordered, key=lambda result: result.section)]
 
 
 def errata(results: Iterable["Result"], sections: Iterable[str] = ()) -> list["Result"]:
-    """What is wrong in the paper, in its order."""
+    """The corrected and refuted results, in the order of the paper."""
     wrong = [result for result in results if result.verdict.value in ("corrected", "refuted")]
     return [result for _, claims in by_section(wrong, sections) for result in claims]
 
 
 def place(result: "Result") -> str:
-    """Where a claim stands, in words."""
+    """The section of a claim, as text."""
     return f"Section {result.section}" if section_order(result.section) > (0,) else result.section
 
 
 def section_order(section: str) -> tuple[int, ...]:
-    """Where a section stands in the paper: the abstract, the numbered sections, the appendix.
+    """A sort key of sections: the abstract, the numbered sections, the appendix.
 
     >>> sorted(["A.1 Lyapunov", "10 End", "6.2 Slap", "6 Egg", "Abstract"], key=section_order)
     ['Abstract', '6 Egg', '6.2 Slap', '10 End', 'A.1 Lyapunov']
@@ -283,7 +279,7 @@ def section_order(section: str) -> tuple[int, ...]:
 
 @cache
 def sources() -> Mapping[str, str]:
-    """The text of every module of the package by its dotted name; of a room's stub, by the room's and `.pyi`."""
+    """The text of every module of the package by its dotted name; a package's stub by its name and `.pyi`."""
     found: dict[str, str] = {}
     for storey in STOREYS:
         _gather(files(storey), storey, found)
@@ -302,7 +298,7 @@ def _gather(folder: Traversable, name: str, found: dict[str, str]) -> None:
 
 @cache
 def exports(room: str) -> Mapping[str, str]:
-    """Where the names come from that a room hands out when asked for them.
+    """The modules from which a package exports its names.
 
     >>> exports("verification")["verify"]
     'verification.paper.report.report'
@@ -317,7 +313,7 @@ def _names(listed: str) -> list[str]:
 
 @cache
 def imports(module: str) -> frozenset[str]:
-    """The modules of the package that the text of one names.
+    """The modules of the package that the source text of a module names.
 
     >>> "symbolic.expressions.signs" in imports("verification.paper.claims.judges")
     True
@@ -329,7 +325,7 @@ def imports(module: str) -> frozenset[str]:
 
 
 def named(text: str) -> set[str]:
-    """The modules of the package that a text imports or quotes, and the names that it takes from them."""
+    """The modules of the package that a text imports or quotes, and the names imported from them."""
     known, found = sources(), set(IMPORT.findall(text))
     for origin, names in FROM.findall(text):
         found.add(origin)
@@ -342,7 +338,7 @@ def named(text: str) -> set[str]:
 
 
 def closure(module: str) -> frozenset[str]:
-    """The module and all that it can load, directly or through others."""
+    """The module and all modules of the package that it can load, directly or indirectly."""
     found, waiting = {module}, [module]
     while waiting:
         new = imports(waiting.pop()) - found
@@ -353,17 +349,17 @@ def closure(module: str) -> frozenset[str]:
 
 @cache
 def digest(module: str) -> str:
-    """A digest of the text of a module and of all that it can load, and of the versions of what they rest on."""
+    """A digest of the source of a module, of all modules that it can load, and of the versions of packages."""
     whole = sha256(repr(sorted(made_with().items())).encode())
     for name in sorted(closure(module)):
         whole.update(f"\n{name}\n".encode() + sources()[name].encode())
     return whole.hexdigest()
 
 
-def codes(claims: Iterable[Claim], digits: int, figures: Iterable[Picture] = ()) -> dict[str, str]:
+def codes(claims: Iterable[Claim], digits: int, figures: Iterable[PaperFigure] = ()) -> dict[str, str]:
     """A digest for each claim, by its id, and for each figure of their sections, by `figure NAME`.
 
-    It changes with the claim's words, its judge, all that this can load, and how many digits are asked for.
+    It changes with the claim's text, its judge, the modules that this can load, and the number of digits.
     """
     claims = list(claims)
     judged = {claim.id: _digest(claim.home, claim, digits) for claim in claims}
@@ -377,7 +373,7 @@ def _digest(module: str, *words: object) -> str:
 
 
 def outside(path: str) -> str:
-    """A digest of a module that is no part of the package, with all that it can load of the package."""
+    """A digest of a module outside of the package, and of the modules of the package that it can load."""
     text = Path(path).read_text(encoding="utf-8")
     whole = sha256(text.encode())
     for name in sorted(named(text) & sources().keys()):

@@ -1,43 +1,42 @@
-"""What a border collision bears, from its two affine pieces: its kind, trapping polygons, cones, exponents.
+"""Border-collision bifurcations of piecewise affine maps: their kind, trapping polygons, cones and exponents.
 
-The map has one affine piece for `v <= 0` and one for `v >= 0` (components `ARC` and `WALL`), with
-balls for entries: what is proved holds for every map that lies in those balls, point by point.
-Polygons are found in floats, and a proof takes their corners as exact numbers.
+The map acts on points `(u, v)`. It has one affine piece for `v <= 0` and one for `v >= 0` (components `ARC` and
+`WALL`), which agree at `v = 0`. Their entries are balls: a proof holds for every map whose entries lie in those balls
+at each point. Polygons are found in float64, and a proof takes their corners as exact numbers.
 
-`x -> A x + b` with one `A` for `v < 0` and another for `v > 0`, that agree at `v = 0`, in units of the
-distance `e > 0` of the parameter; for `e < 0` the shift has the other sign. Proofs hold for the
-piecewise linear map, and say nothing of the terms that a map itself has beyond it. The kinds are those of
+Lengths are in units of `e > 0`, the distance of the parameter from the bifurcation; for `e < 0` the shift has the other
+sign. The theorems concern the piecewise affine map only, not higher-order terms. The kinds are those of
 [NusseYorke1992] and [BanerjeeYorkeGrebogi1998].
 
-**Robust chaos.** Where the fixed points lie on their own sides for `e > 0`, let `x` be proportional to `v` and grow
-away from the piece with the larger trace, called the left one. A suitable `y` brings the map to
+**Robust chaos.** Suppose that for `e > 0` each piece has its fixed point on its own side. Call the piece with the
+larger trace the left one, and let `x` be a multiple of `v` that is negative there. With a suitable `y` the map is
 
     (x, y) -> (tL*x + y + 1, -dL*x) for x <= 0,   (tR*x + y + 1, -dR*x) for x >= 0,
 
-with the traces `t` and the determinants `d` of the pieces. (It needs that `u` acts on `v`, which the signs below
-imply.) Let `n < m` be the multipliers of the left piece, and
+with the traces `t` and the determinants `d` of the pieces. (The new value of `v` must depend on `u`; the inequalities
+below imply it.) Let `n < m` be the multipliers of the left piece, and
 
     0 < dL < 1,  0 < dR < 1,  tL > 1 + dL,  tR < -(1 + dR),
     phi > 0  with  phi = dR - (tR + dL + dR - (1 + tR)*m)*m.
 
-Then a triangle is mapped into itself and a slightly larger one into its interior, and every orbit in it has an
-exponent of at least `log min(m, abs(mR)) > 0`, `mR` the right multiplier beyond -1 (one-sided where it meets
-`x = 0`). So there is an attractor, and no cycle in the triangle is stable; and so it is for all pieces near these,
-as the hypotheses are strict. The region is that of [BanerjeeYorkeGrebogi1998], in the form that
-[GlendinningSimpson2021] give its last inequality, and the two steps of the proof are theirs. It does not say that
-the attractor is one piece, or that it is the only one.
+Then a triangle is mapped into itself and a slightly larger one into its interior, and every orbit in it has an exponent
+of at least `log min(m, abs(mR)) > 0`, where `mR` is the right multiplier below -1 (one-sided derivatives where the
+orbit meets `x = 0`). So there is an attractor, and no cycle in the triangle is stable. The same holds for all nearby
+pieces, since the hypotheses are strict inequalities. The region is that of [BanerjeeYorkeGrebogi1998], in the form that
+[GlendinningSimpson2021] give its last inequality, and the two steps of the proof are theirs. The theorem does not say
+that the attractor is connected, or the only one.
 
-Why. `0 < n < 1 < m` by the third inequality; let `Y` be the left fixed point, `h = m*(x - xY) + (y - yY)` and
-`k = n*(x - xY) + (y - yY)`. On the left `h` is multiplied by `m` and `k` by `n`, so `h = 0` is the stable line of `Y`
-and `k = 0` the unstable one. This meets `x = 0` at a point whose image is `D = (1/(1 - n), 0)`, and
-`h(f(D)) = phi/((1 - n)*(m - 1))`: the last inequality says that `f(D)`, where the unstable manifold has folded, has
-not crossed the stable line. Then the triangle `h >= h(f(D))`, `k <= 0`, above the line from `D` to `f(D)`, is mapped
-into itself. Its left part goes to `h >= m*h(f(D))`, `k <= 0`, `y >= 0`, which is part of it. The corners of its right
-part go there too when they are on `x = 0`, to `f(D)`, or to the line from `D` to `f(D)`; and it is convex.
-(Moved outwards a little, the end at `f(D)` of the line by far more than the rest, the sides go strictly inside.) With
-`phi < 0` orbits that start near `f(D)` run off beside the unstable line: `h < 0` grows in size, `k < 0` fades, and
-`x` falls for ever. A direction `y/x = s` goes to `-d/(t + s)`: those from `-n` to `-nR`, `nR` the smaller right
-multiplier, go to such, and `x` is multiplied by `t + s`, at least `m` on the left and at most `mR` on the right.
+Proof. By the third inequality `0 < n < 1 < m`; let `Y` be the left fixed point, `h = m*(x - xY) + (y - yY)` and `k =
+n*(x - xY) + (y - yY)`. On the left `h` is multiplied by `m` and `k` by `n`, so `h = 0` is the stable line of `Y` and `k
+= 0` the unstable one. This meets `x = 0` at a point whose image is `D = (1/(1 - n), 0)`, and `h(f(D)) = phi/((1 - n)*(m
+- 1))`: the last inequality says that `f(D)`, where the unstable manifold has folded, has not crossed the stable line.
+Then the triangle `h >= h(f(D))`, `k <= 0`, above the line from `D` to `f(D)`, is mapped into itself. Its left part goes
+to `h >= m*h(f(D))`, `k <= 0`, `y >= 0`, which is part of it. The corners of its right part go there too when they are
+on `x = 0`, to `f(D)`, or to the line from `D` to `f(D)`; and it is convex. (Moved outwards a little, the end at `f(D)`
+of the line by far more than the rest, the sides go strictly inside.) With `phi < 0` orbits that start near `f(D)` run
+off beside the unstable line: `h < 0` grows in size, `k < 0` fades, and `x` falls for ever. A direction `y/x = s` goes
+to `-d/(t + s)`: those from `-n` to `-nR`, `nR` the smaller right multiplier, go to such, and `x` is multiplied by `t +
+s`, at least `m` on the left and at most `mR` on the right.
 """
 
 import math
@@ -57,8 +56,8 @@ Polygon = list[Point]  # convex, anticlockwise
 
 
 @dataclass(frozen=True)
-class Piece:
-    """`x -> rows*(x - base) + shift`."""
+class AffinePiece:
+    """The affine map `x -> rows*(x - base) + shift` of the plane."""
 
     rows: tuple[Row, Row]
     shift: Row
@@ -66,27 +65,27 @@ class Piece:
 
     @property
     def trace(self) -> arb:
-        """Of the matrix."""
+        """Trace of the matrix."""
         return self.rows[0][0] + self.rows[1][1]
 
     @property
     def determinant(self) -> arb:
-        """Of the matrix."""
+        """Determinant of the matrix."""
         return self.rows[0][0] * self.rows[1][1] - self.rows[0][1] * self.rows[1][0]
 
     def of(self, x: Row) -> Row:
-        """The image of a point."""
+        """The image of a point `(u, v)`."""
         u, v = x[0] - self.base[0], x[1] - self.base[1]
         (a, b), (c, d) = self.rows
         return a * u + b * v + self.shift[0], c * u + d * v + self.shift[1]
 
 
-Pieces = Mapping[int, Piece]
+Pieces = Mapping[int, AffinePiece]
 SIGNS = {0: -1, 1: 1}  # of v on the arc and on the wall
 
 
 def inward(v: arb, component: int) -> arb:
-    """How far a `v` lies within the side of a component: positive there.
+    """The signed distance of `v` from the border, positive on the side of the component.
 
     >>> inward(arb(2), 0), inward(arb(2), 1)
     (-2.00000000000000, 2.00000000000000)
@@ -95,7 +94,7 @@ def inward(v: arb, component: int) -> arb:
 
 
 def hull(points: list[Point]) -> Polygon:
-    """The convex hull.
+    """The corners of the convex hull, counterclockwise.
 
     >>> hull([(0, 0), (2, 0), (1, 1), (1, 0.5), (0, 2)])
     [(0, 0), (2, 0), (0, 2)]
@@ -118,12 +117,12 @@ def _left(a: Point, b: Point, c: Point) -> float:
 
 
 def sides(polygon: Polygon) -> list[tuple[Point, Point]]:
-    """Pairs of neighbouring corners."""
+    """The sides of a polygon, as pairs of corners."""
     return list(pairwise([*polygon, polygon[0]]))
 
 
 def clipped(polygon: Polygon, low: float, high: float) -> Polygon:
-    """The corners of the part with `low <= v <= high`, rounded outwards by a hair.
+    """Points whose hull holds the part of a polygon with `low <= v <= high`, rounded outwards by `HAIR`.
 
     >>> clipped([(0, -1), (2, 0), (0, 1)], 0, 2)[0]
     (2, 0)
@@ -137,13 +136,13 @@ def clipped(polygon: Polygon, low: float, high: float) -> Polygon:
     return found
 
 
-HAIR = 1e-9  # far above the rounding of the crossing, far below what the polygons have to spare
+HAIR = 1e-9  # far above rounding errors, far below the margins of the polygons
 
 
 def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Polygon | None:
-    """A polygon around `start` whose image keeps `room` from its sides, in floats; None when it grows too large.
+    """A polygon around `start` whose image lies within it, at least `room` from its sides; None beyond `limit`.
 
-    The hull of what the map reaches from `start` when it may err by `room`, and by its balls, at every step.
+    It is the hull, in floats, of all images of `start` when each step may err by `room` and by the balls of the map.
     """
     around = [(room * math.cos(k * math.pi / 4), room * math.sin(k * math.pi / 4)) for k in range(8)]
     polygon = hull([(start[0] + a, start[1] + b) for a, b in around])
@@ -159,25 +158,25 @@ def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Pol
 
 
 def exactly_convex(polygon: Polygon) -> Polygon:
-    """The hull of the corners in exact arithmetic: floats may have taken a flat corner for a convex one."""
-    exact = hull([(Fraction(u), Fraction(v)) for u, v in polygon])  # type: ignore[misc]  # as good as floats here
+    """The convex hull of the corners in exact arithmetic, which drops corners that only rounding made convex."""
+    exact = hull([(Fraction(u), Fraction(v)) for u, v in polygon])  # type: ignore[misc]  # hull works for fractions too
     return [(float(u), float(v)) for u, v in exact]
 
 
 def part(polygon: Polygon, component: int) -> Polygon:
-    """Points whose hull holds the part of the polygon on one side of the border."""
+    """Points whose hull holds the part of the polygon on the component's side of the border."""
     return clipped(polygon, 0.0, math.inf) if SIGNS[component] > 0 else clipped(polygon, -math.inf, 0.0)
 
 
-def _vertices(piece: Piece, point: Point) -> list[Point]:
+def _vertices(piece: AffinePiece, point: Point) -> list[Point]:
     u, v = piece.of((arb(point[0]), arb(point[1])))
     return [(float(a), float(b)) for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
 
 
 def trapped(pieces: Pieces, polygon: Polygon) -> bool | None:
-    """True when the image of the polygon is proved to lie in its interior; None when nothing is proved.
+    """True when the image of the polygon is proved to lie in its interior; None when that is not proved.
 
-    Either part of the polygon is the hull of its corners, its image under an affine map the hull of theirs.
+    On each side of the border the map is affine, so the image is the hull of the images of the corners.
     """
     polygon = exactly_convex(polygon)
     for component, piece in pieces.items():
@@ -188,22 +187,22 @@ def trapped(pieces: Pieces, polygon: Polygon) -> bool | None:
 
 
 def holds(polygon: Polygon, point: Row) -> bool:
-    """Is it proved that a convex polygon, counterclockwise, holds a point in its interior?"""
+    """True when a point is proved to lie in the interior of a convex, counterclockwise polygon."""
     u, v = point
     return all((arb(c) - a) * (v - b) - (arb(d) - b) * (u - a) > 0 for (a, b), (c, d) in sides(polygon))
 
 
 @dataclass(frozen=True)
-class Expansion:
-    """A cone of directions `u/v` that both pieces map into itself, and how much they stretch `v` there."""
+class ConeExpansion:
+    """A cone of vectors `(u, v)`, given by `u/v`, that both pieces map into itself; bounds of the growth of `|v|`."""
 
     ratio: arb
     least: arb
     most: arb
 
 
-def expansion(pieces: Pieces) -> Expansion | None:
-    """The cone that the pieces leave invariant, proved; None when none is found."""
+def expansion(pieces: Pieces) -> ConeExpansion | None:
+    """A cone that both pieces are proved to map into its interior; None when none is found."""
     ratios = [float((p.rows[0][1] / p.rows[1][1]).mid()) for p in pieces.values()]
     low, high = min(ratios), max(ratios)
     for _ in range(50):
@@ -214,29 +213,29 @@ def expansion(pieces: Pieces) -> Expansion | None:
         if low < min(lows) and max(highs) < high:
             stretches = [abs(p.rows[1][0] * between(low, high) + p.rows[1][1]) for p in pieces.values()]
             whole = stretches[0].union(stretches[1])
-            return Expansion(between(low, high), arb(whole.lower()), arb(whole.upper()))
+            return ConeExpansion(between(low, high), arb(whole.lower()), arb(whole.upper()))
         low, high = min(low, *lows) - 1e-3, max(high, *highs) + 1e-3
     return None
 
 
-def turned(piece: Piece, ratio: arb) -> arb:
-    """The direction `u/v` of the image of a vector."""
+def turned(piece: AffinePiece, ratio: arb) -> arb:
+    """The direction `u/v` of the image of a vector of direction `ratio`."""
     (a, b), (c, d) = piece.rows
     return (a * ratio + b) / (c * ratio + d)
 
 
-class Kind(Enum):
-    """What happens to the fixed points of the two pieces as the parameter passes."""
+class FixedPointChange(Enum):
+    """The kinds of border collision, by the fixed points of the two pieces for parameters before and after it."""
 
     FOLD = "two fixed points, one on each side of the border, on one side of the parameter and none on the other"
     PERSISTENCE = "one fixed point, which crosses the border"
     UNKNOWN = "not decided"
 
 
-def fixed_point(piece: Piece) -> Row:
+def fixed_point(piece: AffinePiece) -> Row:
     """The fixed point of an affine map, enclosed.
 
-    >>> fixed_point(Piece(((arb(3), arb(0)), (arb(0), arb(2))), (arb(2), arb(1))))
+    >>> fixed_point(AffinePiece(((arb(3), arb(0)), (arb(0), arb(2))), (arb(2), arb(1))))
     (-1.00000000000000, -1.00000000000000)
     """
     (a, b), (c, d) = piece.rows
@@ -245,16 +244,16 @@ def fixed_point(piece: Piece) -> Row:
     return ((1 - d) * p + b * q) / determinant, (c * p + (1 - a) * q) / determinant
 
 
-def kind(pieces: Pieces) -> Kind:
-    """Do both pieces have their fixed point on their own side for the same sign of `e`?"""
+def kind(pieces: Pieces) -> FixedPointChange:
+    """The kind of the border collision: which pieces have their fixed point on their own side for `e > 0`."""
     own = [inward(fixed_point(piece)[1], component) for component, piece in pieces.items()]
     if all(x > 0 for x in own) or all(x < 0 for x in own):
-        return Kind.FOLD
-    return Kind.PERSISTENCE if own[0] * own[1] < 0 else Kind.UNKNOWN
+        return FixedPointChange.FOLD
+    return FixedPointChange.PERSISTENCE if own[0] * own[1] < 0 else FixedPointChange.UNKNOWN
 
 
 def hypotheses(pieces: Pieces) -> dict[str, bool | None]:
-    """Those of the theorem on robust chaos for `e > 0`, each proved, refuted or open in balls."""
+    """The verdicts on the hypotheses of robust chaos for `e > 0`: True if proved, False if refuted, None if open."""
     right, left = sorted(pieces, key=lambda component: float(pieces[component].trace.mid()))
     low, high = pieces[right], pieces[left]
     return {
@@ -269,14 +268,15 @@ def hypotheses(pieces: Pieces) -> dict[str, bool | None]:
 
 
 def robust(pieces: Pieces) -> bool | None:
-    """Does the map lie in the region of robust chaos? False when a hypothesis is proved to fail, None when open."""
+    """True if all hypotheses of robust chaos are proved, False if one is refuted, None if undecided."""
     return both(*hypotheses(pieces).values())
 
 
-def homoclinic(left: Piece, right: Piece) -> arb:
-    """`phi` of the module's theorem: 0 where the unstable manifold of the left fixed point folds at its stable one.
+def homoclinic(left: AffinePiece, right: AffinePiece) -> arb:
+    """`phi` of the module's theorem; it is 0 where the left fixed point has a homoclinic tangency.
 
-    >>> left, right = (Piece(((arb(0), arb(-d)), (arb(1), arb(t))), (arb(0), arb(1))) for t, d in ((2.5, 1), (-2, 0.5)))
+    >>> shift = arb(0), arb(1)
+    >>> left, right = (AffinePiece(((arb(0), arb(-d)), (arb(1), arb(t))), shift) for t, d in ((2.5, 1), (-2, 0.5)))
     >>> homoclinic(left, right)  # 0.5 - (-2 + 1 + 0.5 + 2)*2
     -2.50000000000000
     """
@@ -286,22 +286,22 @@ def homoclinic(left: Piece, right: Piece) -> arb:
 
 
 def less(a: arb, b: arb) -> bool | None:
-    """`a < b` with its three answers."""
+    """`a < b` for balls: True or False when it is proved, else None."""
     return True if a < b else False if a >= b else None
 
 
 def both(*answers: bool | None) -> bool | None:
-    """Do all hold? False as soon as one does not."""
+    """The conjunction of answers: False if one is False, else None if one is None, else True."""
     return False if False in answers else None if None in answers else True
 
 
 @dataclass(frozen=True)
-class Extent:
+class AttractorBounds:
     """Bounds in units of `e`: the attractor reaches `inner`, and lies within the polygon `outer`.
 
-    `inner` are the lowest and the highest `v` that points of the unstable manifold of the folding piece's
-    fixed point are proved to have: they belong to every attracting set that holds it. `strips` are length
-    and width of two thin convex sets, the images of the sides, that hold the attractor.
+    `inner` are a low and a high `v` of points on the unstable manifold of the folding piece's fixed point; every
+    attracting set that holds this fixed point contains them. `strips` are length and width of two thin convex sets that
+    hold the attractor: the images of the two sides of the border.
     """
 
     inner: tuple[arb, arb]
@@ -312,8 +312,8 @@ class Extent:
 Segment = tuple[Row, Row]
 
 
-def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 10) -> Extent | None:
-    """Bounds of the attractor; `folding` is the piece with the negative multiplier. None when not proved."""
+def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 10) -> AttractorBounds | None:
+    """Bounds of the attractor, None when not proved; `folding` is the piece with a multiplier below -1."""
     fixed, border = fixed_point(pieces[folding]), _to_border(pieces[folding])
     if border is None or not inward(fixed[1], folding) > 0:
         return None
@@ -325,19 +325,19 @@ def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 1
     if outer is None or not trapped(pieces, outer):
         return None
     inner = min(heights, key=lambda v: float(v.mid())), max(heights, key=lambda v: float(v.mid()))
-    return Extent(inner, outer, strips(pieces, outer))
+    return AttractorBounds(inner, outer, strips(pieces, outer))
 
 
 def strips(pieces: Pieces, region: Polygon) -> tuple[tuple[float, float], ...]:
-    """Length and width of the images of both sides of a region: a trapped one has its attractor in them."""
+    """Length and width of the images of the two sides of a trapping region, in whose union its attractor lies."""
     return tuple(_strip(_image(piece, part(region, component))) for component, piece in pieces.items())
 
 
-def _to_border(piece: Piece) -> Row | None:
-    """Where the unstable direction of a fixed point meets `v = 0`.
+def _to_border(piece: AffinePiece) -> Row | None:
+    """Where the unstable direction of a fixed point meets `v = 0`; None unless its multiplier is below -1.
 
-    The multiplier is negative, below -1: preimages of that way lie on it, on either side of the fixed
-    point in turn and ever nearer, so that all of it belongs to the unstable manifold.
+    The preimages of that segment lie on it, alternately on either side of the fixed point and ever closer, so the whole
+    segment belongs to the unstable manifold.
     """
     (a, b), _ = piece.rows
     u, v = fixed_point(piece)
@@ -346,7 +346,7 @@ def _to_border(piece: Piece) -> Row | None:
 
 
 def _mapped(pieces: Pieces, segment: Segment) -> list[Segment]:
-    """The image of a segment of the plane; what cannot be told to lie on one side is left out."""
+    """The images of a segment, split at the border; parts whose side is not decided are left out."""
     p, q = segment
     if p[1] * q[1] < 0:
         crossing = p[0] - p[1] * (q[0] - p[0]) / (q[1] - p[1]), arb(0)
@@ -359,24 +359,24 @@ def _middle(x: Row) -> Point:
     return float(x[0].mid()), float(x[1].mid())
 
 
-def _image(piece: Piece, points: Polygon) -> Polygon:
-    """Points whose hull holds the image of the hull, by a hair that covers the rounding of hulls in floats."""
+def _image(piece: AffinePiece, points: Polygon) -> Polygon:
+    """Points whose hull holds the image of the hull of `points`, with `HAIR` added for rounding."""
     images = [piece.of((arb(u) + arb(0, HAIR), arb(v) + arb(0, HAIR))) for u, v in points]
     return [(float(a), float(b)) for u, v in images for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
 
 
 def _strip(points: Polygon) -> tuple[float, float]:
-    """Length and width of a set, along its longest diagonal and across it, rounded up."""
+    """Length along the longest diagonal of a set, and width across it, rounded up."""
     length, p, q = max((math.dist(p, q), p, q) for p in points for q in points)
     across = [((q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])) / length for x in points]
     return length + 1e-9, max(across) - min(across) + 1e-9
 
 
 def exponents(pieces: Pieces, region: Polygon, bounces: int = 2, length: int = 12) -> tuple[float, float] | None:
-    """Bounds of the largest exponent per bounce of every orbit in a trapping region.
+    """Lower and upper bound of the largest exponent per bounce of every orbit in a trapping region; or None.
 
-    From the least and the largest product of stretches over the words of this length that some point
-    of the region follows; each step of the map is as many bounces as said.
+    They come from the least and the greatest product of stretches along itineraries of `length` steps that some point
+    of the region may follow. A step of the map takes `bounces` bounces.
     """
     whole = expansion(pieces)
     if whole is None:

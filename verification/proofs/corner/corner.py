@@ -1,15 +1,13 @@
 """The orbit through both corners of the cuspless cardioid at `lambda-star`, and the bounces near it, enclosed.
 
-A bounce at a corner has a tangent (the joins are C1) and two curvatures, that of the arc and that of
-the wall. So the collision rules hold there, but the derivative of whatever passes the lower corner
-has two values. Both parameters run counterclockwise, and at a corner at the speed of arc length.
-Paper: section 5.2.
+A bounce at a corner has a tangent (the joins are C1) and two curvatures, that of the arc and that of the wall. So the
+collision rules hold there, but a derivative along an orbit that passes the lower corner has two values, one for each
+side. Both boundary parameters run counterclockwise, with the speed of arc length at the corners. Paper: section 5.2.
 
-Bounces that depend on a few parameters are enclosed with their derivatives: a box of parameters is followed as a
-centre and the derivatives over the box (the mean value form), so that bounce after bounce keeps what ties it to the
-parameters. A plain ball would forget it and swell. Positions near a corner are told as the distance beyond it,
-`beyond`: on the arc negative, and there the arc's parameter differs from arc length by its square only; on the wall
-positive and arc length.
+Bounces that depend on a few parameters are enclosed in mean value form: the value at the centre of a box of parameters,
+and the derivatives over the box. So each bounce keeps its dependence on the parameters, which plain balls would lose
+and grow. Positions near a corner are given as the distance `beyond` it: positive arc length on the wall, and negative
+on the arc, where the parameter differs from arc length in second order.
 """
 
 from collections.abc import Callable
@@ -27,11 +25,11 @@ from verification.arithmetic.balls import FLOAT64, Arithmetic, balls, bits_of, e
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.critical import corner
 from verification.cycles.newton import refined
-from verification.proofs.corner.border_collision import Piece, robust
-from verification.proofs.periodic.interval_newton import Status, interval_newton
+from verification.proofs.corner.border_collision import AffinePiece, robust
+from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
 
 ARC, WALL = 0, 1
-NEAR = (0.2545, 0.0712)  # theta1 and lambda-star, from where Newton's method finds them
+NEAR = (0.2545, 0.0712)  # theta1 and lambda-star: the start of Newton's method
 Place = tuple[int, Any]  # component and parameter
 
 
@@ -39,26 +37,26 @@ Place = tuple[int, Any]  # component and parameter
 class Corner:
     """One-sided derivatives at the orbit that leaves the upper corner at `phi-star`.
 
-    `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc;
-    `motion` is `d s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are the half
-    return's linear parts, mirrored to the same corner, with `d/d lam` for the shift. `descent` is the speed
-    in `lam` of the value of `s_4` at the kink: negative when the touching curve then dips below `s*`.
+    `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc; `motion` is `d
+    s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are the linear parts of the half return,
+    mirrored to the upper corner, with `d/d lam` as shift. `descent` is the derivative in `lam` of `s_4` at the kink:
+    when it is negative, the minimum of `s_4` falls below `s*` as `lam` grows.
     """
 
     slope_wall: arb
     slope_arc: arb
     motion: arb
-    wall: Piece
-    arc: Piece
+    wall: AffinePiece
+    arc: AffinePiece
     descent: arb
 
     @property
     def unstable(self) -> bool | None:
-        """True when a side has a multiplier above 1, the other one in (0, 1), and a direction off the border.
+        """True when a side has a multiplier above 1, the other in (0, 1), and an eigenvector off the border; or None.
 
-        Then near that direction a cone of displacements on that side is mapped into itself and stretched, by the
-        half return itself near its fixed point too: orbits leave. A multiplier below -1 would not show it, as
-        its direction changes sides, and what is stretched on the one may shrink on the other.
+        Then the half return maps a cone around that eigenvector, on that side, into itself and stretches it, near its
+        fixed point too: orbits leave. A multiplier below -1 would not prove this, as its eigenvector changes sides, and
+        vectors that are stretched on one side may shrink on the other.
         """
         sides = (self.wall, self.arc)
         leaves = any(p.determinant > 0 and p.trace > 1 + p.determinant and not p.rows[1][0].contains(0) for p in sides)
@@ -66,12 +64,12 @@ class Corner:
 
     @property
     def robust(self) -> bool | None:
-        """Is the piecewise linear half return in the region of robust chaos, for `lam` above `lambda-star`?"""
+        """Robust chaos of the piecewise linear half return for `lam` above `lambda-star`; None where undecided."""
         return robust({ARC: self.arc, WALL: self.wall})
 
     @property
     def minimum_at_kink(self) -> bool | None:
-        """True when `s_4` falls up to `phi-star` and grows from there: it touches with a corner of its curve."""
+        """True when `s_4` falls up to `phi-star` and grows beyond, False when it does not, None when open."""
         left, right = (self.slope_wall, self.slope_arc) if self.motion > 0 else (self.slope_arc, self.slope_wall)
         if not (self.motion > 0 or self.motion < 0):
             return None
@@ -81,8 +79,8 @@ class Corner:
 
 
 @dataclass(frozen=True)
-class Rule:
-    """The collision rule at a bounce, linearised: the parameter of the next one by those before it and `lam`."""
+class LinearRule:
+    """The linearised collision rule at a bounce: coefficients of the parameters before, here, after, and of `lam`."""
 
     lower: Any
     diagonal: Any
@@ -90,25 +88,25 @@ class Rule:
     eta: Any
 
     def next(self, before: Any, here: Any, lam: Any) -> Any:
-        """How the next parameter moves when the two before it, and `lam`, move so."""
+        """The derivative of the next parameter, from those of the two parameters before it and of `lam`."""
         return -(self.lower * before + self.diagonal * here + self.eta * lam) / self.upper
 
 
-def rule(arithmetic: Arithmetic, before: Place, here: Place, after: Place, contraction: Any) -> Rule:
-    """The rule at `here`."""
+def rule(arithmetic: Arithmetic, before: Place, here: Place, after: Place, contraction: Any) -> LinearRule:
+    """The linearised collision rule at `here`, between the bounces `before` and `after`."""
     back = load(chord_kernel(cuspless, here[0], before[0], 1), arithmetic)(here[1], before[1])
     forth = load(chord_kernel(cuspless, here[0], after[0], 1), arithmetic)(here[1], after[1])
-    return Rule(contraction * back[2], forth[1] + contraction * back[1], forth[2], back[0])
+    return LinearRule(contraction * back[2], forth[1] + contraction * back[1], forth[2], back[0])
 
 
 def corners(arithmetic: Arithmetic) -> tuple[Any, Any]:
-    """The parameters of the upper corner, on the arc and on the wall; those of the lower have the other sign."""
+    """The parameters of the upper corner on arc and wall; those of the lower corner are their negatives."""
     arc, wall = load(kernel("corners", [], {"arc": 2 * pi / 3, "wall": -sqrt(3) / 4}), arithmetic)()
     return arc, wall
 
 
 def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
-    """The one-sided derivatives at a solution of `shooting.small.corner`."""
+    """The one-sided derivatives at a solution `(theta1, contraction)` of `cycles.critical.corner`."""
     edge = corners(arithmetic)
     top, right, left = (ARC, edge[ARC]), (ARC, theta1), (ARC, -theta1)
     bottom = {component: (component, -edge[component]) for component in (ARC, WALL)}
@@ -126,23 +124,23 @@ def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
         (motion, slope), (shift, growth) = moved
         slopes.append(slope / by_angle)
         descents.append(growth - slope * shift / motion)
-        halves.append(_half(around, to_top))  # the mirror image of a corner is the other one
+        halves.append(_half(around, to_top))  # the mirror image of one corner is the other
     return Corner(slopes[WALL], slopes[ARC], motion / by_angle, halves[WALL], halves[ARC], descents[WALL])
 
 
-def _half(first: Rule, second: Rule) -> Piece:
-    """Half a return as a map of two successive displacements; the mirror turns the sign of what comes in around."""
+def _half(first: LinearRule, second: LinearRule) -> AffinePiece:
+    """The linear part of half a return, as a map of two successive displacements; the mirror changes their sign."""
     columns = []
     for before, here, lam in ((-1, 0, 0), (0, -1, 0), (0, 0, 1)):
         third = first.next(before, here, lam)
         columns.append((third, second.next(here, third, lam)))
     by_u, by_v, by_lam = columns
-    return Piece(((by_u[0], by_v[0]), (by_u[1], by_v[1])), by_lam)
+    return AffinePiece(((by_u[0], by_v[0]), (by_u[1], by_v[1])), by_lam)
 
 
 @cache
 def enclosed(digits: int = 25) -> tuple[arb, arb]:
-    """The orbit itself, `(theta1, lambda-star)`, proved by interval Newton.
+    """The orbit through both corners as balls `(theta1, lambda-star)`, proved by an interval Newton step.
 
     >>> print(enclosed()[1].str(12, radius=False))
     0.0712172452489
@@ -150,20 +148,20 @@ def enclosed(digits: int = 25) -> tuple[arb, arb]:
     solution, bits = refined(corner(), NEAR, digits), bits_of(digits, 64)
     with working(bits):
         found = interval_newton(corner(), exact_balls(solution.z), (arb(10) ** -(digits - 3)).mid(), bits)
-    if found.status is not Status.UNIQUE:
+    if found.status is not ZeroStatus.UNIQUE:
         raise ArithmeticError(f"the orbit through both corners is not proved to {digits} digits")
     theta1, contracted = found.zero
     return theta1, contracted
 
 
 BITS = 64
-Spread = tuple[arb, ...]  # the box of the parameters, around 0
+Spread = tuple[arb, ...]  # the box of the parameters, centred at 0
 Angle = Callable[[arb, arb], tuple[arb, arb, arb]]
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number at the centre of the box, its derivatives by the parameters over the box, and all its values."""
+    """A function of the parameters: its value at the centre, its derivatives over the box, and its range."""
 
     centre: arb
     slopes: Spread
@@ -171,21 +169,21 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Bounce:
-    """A parameter of a component of the boundary."""
+class BoundaryPoint:
+    """A bounce: the component of the boundary, and the boundary parameter as a function of the parameters."""
 
     component: int
     at: Quantity
 
 
 def parameter(value: arb, index: int, spread: Spread) -> Quantity:
-    """`value` plus the parameter of this index."""
+    """The function `value + p` of the parameters, whose box is `spread`; `p` is the parameter with this index."""
     slopes = tuple(arb(1 if i == index else 0) for i in range(len(spread)))
     return Quantity(value, slopes, value + spread[index])
 
 
 def constant(value: arb, spread: Spread) -> Quantity:
-    """A number that depends on no parameter."""
+    """A constant function of the parameters, whose box is `spread`."""
     return Quantity(value, (arb(0),) * len(spread), value)
 
 
@@ -202,23 +200,25 @@ def _guesses() -> dict[tuple[int, int], Callable[[float, float], tuple[float, fl
 
 @cache
 def corner_parameters() -> tuple[arb, arb]:
-    """The parameters of the upper corner, on the arc and on the wall; those of the lower have the other sign."""
+    """The same parameters as `corners`, in balls of `BITS` bits."""
     with working(BITS):
         return corners(balls(BITS))
 
 
-def angle(here: Bounce, there: Bounce) -> tuple[arb, arb, arb]:
-    """The angle of the chord from `here` to `there` and its derivatives by the two ends, over the box."""
+def angle(here: BoundaryPoint, there: BoundaryPoint) -> tuple[arb, arb, arb]:
+    """The angle of the chord from `here` to `there` with the normal, and its derivatives by the two ends."""
     return _angles()[here.component, there.component](here.at.whole, there.at.whole)
 
 
-def following(previous: Bounce, here: Bounce, component: int, near: float, lam: Quantity, spread: Spread) -> Bounce:
-    """The bounce after `here` on a component, `near` it; `ArithmeticError` when it is not enclosed.
+def following(
+    previous: BoundaryPoint, here: BoundaryPoint, component: int, near: float, lam: Quantity, spread: Spread
+) -> BoundaryPoint:
+    """The bounce after `here` on a component, from a guess `near`; `ArithmeticError` when it is not enclosed.
 
-    The equation is the collision rule at `here`; a part of the boundary counts as prolonged beyond its ends.
+    It solves the collision rule at `here`, on the component continued beyond its ends; `spread` is the parameters' box.
 
     >>> with working(BITS):
-    ...     (right, left), lam = (Bounce(c, constant(arb(0), ())) for c in (ARC, WALL)), constant(arb(0), ())
+    ...     (right, left), lam = (BoundaryPoint(c, constant(arb(0), ())) for c in (ARC, WALL)), constant(arb(0), ())
     ...     abs(following(left, right, WALL, 0.1, lam, ()).at.whole) < 1e-12
     True
     """
@@ -231,7 +231,7 @@ def following(previous: Bounce, here: Bounce, component: int, near: float, lam: 
     room = here.at.whole.rad() + previous.at.whole.rad() + lam.whole.rad()
     whole = _root(plain, forth, here.at.whole, -lam.whole * into[0], middle, 3 * float(room) + 1e-13)
     slopes: Spread = ()
-    for _ in range(2):  # the second time on the smaller ball that the first one gives
+    for _ in range(2):  # the second step refines the ball of the first
         out = forth(here.at.whole, whole)
         by = -lam.whole * into[2] / out[2], -(out[1] + lam.whole * into[1]) / out[2], -into[0] / out[2]
         slopes = tuple(
@@ -239,31 +239,34 @@ def following(previous: Bounce, here: Bounce, component: int, near: float, lam: 
             for p, h, m in zip(previous.at.slopes, here.at.slopes, lam.slopes, strict=True)
         )
         whole = whole.intersection(sum((s * d for s, d in zip(slopes, spread, strict=True)), centre))
-    return Bounce(component, Quantity(centre, slopes, whole))
+    return BoundaryPoint(component, Quantity(centre, slopes, whole))
 
 
-def on_arc(previous: Bounce, here: Bounce, near: float, lam: Quantity, spread: Spread) -> Bounce:
-    """The bounce after `here` on the arc, proved to lie between its ends: on a convex table it is the landing."""
+def on_arc(previous: BoundaryPoint, here: BoundaryPoint, near: float, lam: Quantity, spread: Spread) -> BoundaryPoint:
+    """`following` on the arc, from a guess `near`; `ArithmeticError` unless it is proved to lie between the corners."""
     found = following(previous, here, ARC, near, lam, spread)
     if not abs(found.at.whole) < corner_parameters()[ARC]:
         raise ArithmeticError("a landing on the arc is not enclosed")
     return found
 
 
-def beyond(bounce: Bounce, upper: bool) -> Quantity:
-    """How far beyond the upper corner a bounce lies, or beyond the lower one in the mirror image."""
+def beyond(bounce: BoundaryPoint, upper: bool) -> Quantity:
+    """The distance of a bounce beyond the upper corner, or of its mirror image if `upper` is False."""
     sign, at = 1 if upper else -1, bounce.at
     edge = corner_parameters()[bounce.component]
     return Quantity(sign * at.centre - edge, tuple(sign * s for s in at.slopes), sign * at.whole - edge)
 
 
-def after_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spread: Spread) -> list[Bounce]:
-    """The bounce after `here`, near a corner: on one part of the boundary, or on either.
+def after_corner(
+    previous: BoundaryPoint, here: BoundaryPoint, upper: bool, lam: Quantity, spread: Spread
+) -> list[BoundaryPoint]:
+    """The bounces after `here` near a corner: one bounce, or one on each component where that is undecided.
 
-    The table is convex, so a zero of the collision rule that is proved to lie on a true part of the
-    boundary is the landing. When the ball of the arc's zero holds the corner, the angle is monotone there,
-    and so it is along the whole line of the wall; at the corner both have one value. So the landing is the
-    arc's zero when that of the wall lies before the wall, and one of the two when it may lie on the wall.
+    The table is convex, so a zero of the collision rule that is proved to lie on the boundary is the landing. When the
+    ball of the zero on the arc holds the corner, the angle is monotone there, and it is monotone along the whole line
+    of the wall; both have the same value at the corner. So the landing is the zero on the arc when the zero on the
+    wall's line lies before the wall, and one of the two when that zero may lie on the wall. `ArithmeticError` when
+    neither is enclosed.
     """
     sign, found, places = 1 if upper else -1, {}, {}
     for component in (ARC, WALL):
@@ -286,8 +289,8 @@ def after_corner(previous: Bounce, here: Bounce, upper: bool, lam: Quantity, spr
     raise ArithmeticError("a landing near a corner is not enclosed")
 
 
-def _polished(here: Bounce, component: int, value: float, near: float) -> float:
-    """A guess, in float64."""
+def _polished(here: BoundaryPoint, component: int, value: float, near: float) -> float:
+    """Newton's method in float64 for the place on a component where the chord angle has this value."""
     angle, start = _guesses()[here.component, component], float(here.at.centre.mid())
 
     def correction(x: Vector) -> list[float]:
@@ -298,10 +301,7 @@ def _polished(here: Bounce, component: int, value: float, near: float) -> float:
 
 
 def _root(plain: Angle, angle: Angle, here: arb, value: arb, near: float, radius: float) -> arb:
-    """Where the angle at `here` takes the value, by an interval Newton step: one place for each pair of both.
-
-    `plain` is the angle without derivatives.
-    """
+    """The place where the chord angle from `here` is `value` (`plain`: no derivatives), by an interval Newton step."""
     gap = plain(here, arb(near))[0] - value
     for _ in range(10):
         box = arb(near, radius)

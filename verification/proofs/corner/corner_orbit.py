@@ -1,29 +1,33 @@
-"""Certificates of what is no fold and no flip: the corner orbit, where multipliers turn complex, and a doubled branch.
+"""Theorems on the corner orbit, on equal multipliers of the egg, and on the branch born at the cuspless flip.
 
-The branch is that of the unstable orbits of period 4 which leave the cuspless cardioid's horizontal orbit at its
-doubling, and it is proved up to the doubling itself. Near `lambda_c` they come as near to the horizontal orbit as
-wanted, and no box around them leaves it out; so the doubling is blown up. Half an orbit is `(w, v)`, on the wall and
-on the arc, and the other half its mirror image, so the two collision rules `G = f + lam*b` are odd in `(w, v)`. With
-`w = e`, `v = e*m` the equations `H = G/e = 0` for `(m, lam)` are regular at `e = 0`: there the horizontal orbit has
-the multiplier -1. By the mean value theorem
+The branch consists of the unstable orbits of period 4 that leave the cuspless cardioid's horizontal orbit at its period
+doubling `lambda_c`. It is proved up to the doubling, where a box around the orbits would hold the horizontal orbit too;
+so the equations are desingularised. Half an orbit is `(w, v)`, the positions on wall and arc, and the other half is its
+mirror image, so the two collision rules `G = f + lam*b` are odd in `(w, v)`. With `w = e`, `v = e*m` the equations `H =
+G/e = 0` for `(m, lam)` are regular at `e = 0`: there the horizontal orbit has the multiplier -1. By the mean value
+theorem
 
     H     in  DG(hull) * (1, m)            H_m  =  G_v
     H_lam in  Db(hull) * (1, m)            H_e/e  in  (1/3) * D3G(hull)[(1, m), (1, m), (1, m)]
 
-with the hull of 0 and `(e, e*m)`; the last because second derivatives of odd functions are odd. So one interval
-Newton step proves an orbit for every `e` of `[0, MOST]`, of least period 4 where `w` and `-w` differ; and `d
-lam/d(e^2)`, when its ball excludes 0, says on which side of `lambda_c` it is. Then no multiplier is 1 on the way,
-because `det [G_w, G_v] = -(d lam/de)*e*det [H_lam, H_m]`, and what is a saddle at one end is one all along. Paper:
-section 5.1.
+with the hull of 0 and `(e, e*m)`; the last because second derivatives of odd functions are odd. So one interval Newton
+step proves an orbit for every `e` of `[0, MOST]`, of least period 4 where `w` and `-w` differ. When the ball of `d
+lam/d(e^2)` excludes 0, its sign says on which side of `lambda_c` the orbit exists. Then no multiplier is 1 along the
+branch, because `det [G_w, G_v] = -(d lam/de)*e*det [H_lam, H_m]`: an orbit that is a saddle at one end is one
+everywhere. Paper: section 5.1.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
 
 from flint import arb, arb_mat
 from sympy import Expr
 
-from symbolic.cycles.thresholds import lambda_c
+from symbolic.cycles.thresholds import alpha_hat, lambda_c
 from symbolic.tables import cuspless, egg
+from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import balls, real_ball, working
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chain import trace_and_determinant
@@ -33,100 +37,189 @@ from verification.cycles.problem import Linearised, Problem
 from verification.cycles.recurrence import MIRROR
 from verification.maps.first_hit import convex, inside
 from verification.proofs.corner.border_collision import homoclinic
-from verification.proofs.corner.corner import at_corner
-from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.periodic.interval_newton import Enclosure, Status, compared, dense, interval_newton
+from verification.proofs.corner.corner import NEAR, Corner, at_corner
+from verification.proofs.periodic.cycle_in_box import Box, SolutionInBox, check_unknowns
+from verification.proofs.periodic.interval_newton import ZeroStatus, compared, dense
+from verification.rigorous.theorem import Verdict, hypothesis
 
 
-@dataclass(frozen=True)
-class CornerClaim:
-    """A box for the solution of a small system: `lam`, `phi` of the corner orbit, or `alpha` of the focus."""
+@dataclass(frozen=True, repr=False)
+class CornerOrbit(SolutionInBox):
+    """Exactly one orbit with `theta1` and `lam` in the box runs through both corners; it is where chaos begins.
 
-    value: str
-    centre: tuple[arb, ...]
-    radius: arb
-    bits: int
-    digits: int
-    lam: Expr | None = None
-
-    def __post_init__(self) -> None:
-        if self.value not in ("lam", "phi", "alpha") or (self.value == "alpha") != (self.lam is not None):
-            raise ValueError(f"certificate: value = {self.value!r} with lam = {self.lam} is unknown")
-
-    @property
-    def system(self) -> Small:
-        """The equations."""
-        return corner() if self.lam is None else focus(self.lam)
-
-
-@dataclass(frozen=True)
-class CornerProof:
-    """What was proved of such a claim."""
-
-    claim: CornerClaim
-    checks: Checks
-    enclosure: Enclosure
-    value: arb
-    notes: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def certified(self) -> bool:
-        """True when every item of the checklist is proved."""
-        return all(value is True for value in self.checks.values())
-
-
-def corner_proved(claim: CornerClaim) -> CornerProof:
-    """The checklist of a special claim, worked through.
+    `free` names the value of the theorem: `lam`, or `phi`, the exit angle at the upper corner.
 
     >>> with working(80):
     ...     near = (arb("0.25452687132067834252").mid(), arb("0.0712172452489159804").mid())
-    >>> corner_proved(CornerClaim("lam", near, arb(2) ** -40, 80, 10)).certified
+    >>> CornerOrbit(near, arb(2) ** -40, 80, 10, "lam").proved
     True
     """
-    found = interval_newton(claim.system, list(claim.centre), claim.radius, claim.bits)
-    unique = found.status is Status.UNIQUE
-    said = False if found.status is Status.EMPTY else unique or None
-    checks: Checks = {"exists": said, "unique": said}
-    with working(claim.bits):
-        if claim.value == "alpha":
-            value, notes = found.zero[-1], dict[str, str]()
-            apart = unique and not ((found.zero[0] - found.zero[1]) / 2).sin().contains(0)
-            checks["admissible"] = (apart and convex(egg(3), (value,))) or None
-            checks["minimal_period"] = apart or None
-        else:
-            value, notes = _corner(claim, found, checks)
-        checks["precise"] = (unique and bool(value.rad() < arb(10) ** -claim.digits)) or None
-    return CornerProof(claim, checks, found, value, notes)
+
+    free: str
+
+    def __post_init__(self) -> None:
+        if self.free not in ("lam", "phi"):
+            raise ValueError(f"certificate: free = {self.free!r} is unknown; accepted: lam, phi")
+
+    @property
+    def system(self) -> Small:
+        """The two equations of the corner orbit."""
+        return corner()
+
+    @property
+    def value(self) -> arb:
+        """The contraction, or the exit angle at the upper corner, as a ball."""
+        theta1, lam = self.enclosure.zero
+        with working(self.bits):
+            value: arb = lam if self.free == "lam" else corner_angle(balls(self.bits), theta1)
+            return value
+
+    @property
+    def apart(self) -> bool:
+        """True if `theta1` is proved to differ from the corners and from its mirror image."""
+        return self.found and bool(self.enclosure.zero[0] > 0 and self.enclosure.zero[0] < 2)
+
+    @cached_property
+    def sides(self) -> Corner | None:
+        """The one-sided derivatives at the corners; None unless the bounces are proved distinct."""
+        with working(self.bits):
+            return at_corner(balls(self.bits), *self.enclosure.zero) if self.apart else None
+
+    @hypothesis
+    def admissible(self) -> Verdict:
+        """The table is convex, so every chord ends at the first point of the boundary that it meets."""
+        return self.apart and convex(cuspless)
+
+    @hypothesis
+    def minimal_period(self) -> bool:
+        """The bounces are distinct."""
+        return self.apart
+
+    @hypothesis(refutable=True)
+    def s4_minimum_at_a_kink(self) -> Verdict:
+        """`s_4`, as a function of the exit angle, has a minimum with a kink at `phi-star`."""
+        return self.sides.minimum_at_kink if self.sides else None
+
+    @hypothesis(refutable=True)
+    def s4_dips_below(self) -> Verdict:
+        """The minimum of `s_4` falls as the contraction grows."""
+        fall = -self.sides.descent if self.sides else arb("nan")
+        return True if fall > 0 else False if fall < 0 else None
+
+    @hypothesis(refutable=True)
+    def unstable(self) -> Verdict:
+        """Nearby orbits leave along an eigenvector with a multiplier above 1."""
+        return self.sides.unstable if self.sides else None
+
+    @hypothesis
+    def precise(self) -> bool:
+        """The radius of the value is small enough for the digits stated."""
+        return self.found and self.within_digits()
+
+    @property
+    def notes(self) -> dict[str, str]:
+        """Further facts about the orbit, as text for a reader."""
+        sides = self.sides
+        if sides is None:
+            return {}
+        with working(self.bits):
+            notes = {
+                "equations": "the collision rules at the upper corner and at theta1, for theta1 and lam; the mirror "
+                "image of theta1 is the third bounce",
+                "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
+                "half_return_traces": f"{sides.arc.trace.str(8)} on the arc, {sides.wall.trace.str(8)} on the wall",
+                "half_return_determinant": sides.wall.determinant.str(8),
+                "robust_chaos_phi": homoclinic(sides.wall, sides.arc).str(8),
+            }
+        if sides.robust:
+            notes["kind"] = (
+                "border collision: the piecewise linear half return meets every hypothesis of robust chaos above "
+                "lambda-star, where it has two saddles (orbits of period 4) and an attractor without a stable cycle, "
+                "and none of them below; what the map itself does just above is proved by a trapping polygon"
+            )
+        return notes
+
+    @property
+    def name(self) -> str:
+        """`lambda-star` or `phi-star` near the paper's values, else a description."""
+        near = all(abs(x - mid) < 0.001 for x, mid in zip(self.centre, NEAR, strict=True))
+        return {"lam": "lambda-star", "phi": "phi-star"}[self.free] if near else "an orbit through both corners"
+
+    @property
+    def subject(self) -> dict[str, Any]:
+        """The entries of a document that say which orbit the theorem is about."""
+        scene = {"table": "cuspless"}
+        return {"kind": "corner", "scene": scene, "free": self.free, "components": [0, 0], "mirror": True}
+
+    @classmethod
+    def about(cls, given: Mapping[str, Any], lam: Expr | None, box: Box) -> Self:
+        """The theorem that a document states, with a box of `theta1` and `lam`."""
+        check_unknowns(box, 2)
+        found = cls(*box, given["free"])
+        _check_subject(found, given)
+        return found
 
 
-def _corner(claim: CornerClaim, found: Enclosure, checks: Checks) -> tuple[arb, dict[str, str]]:
-    theta1, lam = found.zero
-    words = balls(claim.bits)
-    apart = found.status is Status.UNIQUE and bool(theta1 > 0 and theta1 < 2)  # off corners and mirror image
-    checks["admissible"] = (apart and convex(cuspless)) or None
-    checks["minimal_period"] = apart or None
-    value = lam if claim.value == "lam" else corner_angle(words, theta1)
-    if not apart:
-        return value, {}
-    sides = at_corner(words, theta1, lam)
-    checks["s4_minimum_at_a_kink"] = sides.minimum_at_kink
-    checks["s4_dips_below"] = True if sides.descent < 0 else False if sides.descent > 0 else None
-    checks["unstable"] = sides.unstable
-    notes = {
-        "equations": "the collision rules at the upper corner and at theta1, for theta1 and lam; the mirror image "
-        "of theta1 is the third bounce",
-        "slopes_of_s4": f"{sides.slope_arc.str(8)} towards the arc, {sides.slope_wall.str(8)} towards the wall",
-        "half_return_traces": f"{sides.arc.trace.str(8)} on the arc, {sides.wall.trace.str(8)} on the wall",
-        "half_return_determinant": sides.wall.determinant.str(8),
-        "robust_chaos_phi": homoclinic(sides.wall, sides.arc).str(8),
-    }
-    if sides.robust:
-        notes["kind"] = (
-            "border collision: the piecewise linear half return meets every hypothesis of robust chaos above "
-            "lambda-star, where it has two saddles (orbits of period 4) and an attractor without a stable cycle, and "
-            "none of them below; what the map itself does just above is proved by a trapping polygon"
-        )
-    return value, notes
+@dataclass(frozen=True, repr=False)
+class EqualMultipliers(SolutionInBox):
+    """The egg has exactly one 2-cycle with two equal multipliers whose bounces and `alpha` lie in the box."""
+
+    lam: Expr
+
+    @property
+    def system(self) -> Small:
+        """The three equations for the two bounces and `alpha`."""
+        return focus(self.lam)
+
+    @property
+    def apart(self) -> bool:
+        """True if the two bounces are proved distinct."""
+        with working(self.bits):
+            one, other, _ = self.enclosure.zero
+            return self.found and not ((one - other) / 2).sin().contains(0)
+
+    @hypothesis
+    def admissible(self) -> Verdict:
+        """The table is convex, so every chord ends at the first point of the boundary that it meets."""
+        with working(self.bits):
+            return self.apart and convex(egg(3), (self.value,))
+
+    @hypothesis
+    def minimal_period(self) -> bool:
+        """The bounces are distinct."""
+        return self.apart
+
+    @hypothesis
+    def precise(self) -> bool:
+        """The radius of the value is small enough for the digits stated."""
+        return self.found and self.within_digits()
+
+    @property
+    def name(self) -> str:
+        """`alpha-hat` where the box holds its value in closed form, else a description."""
+        return "alpha-hat" if self.in_box(alpha_hat().subs(letter, self.lam)) else "equal multipliers"
+
+    @property
+    def subject(self) -> dict[str, Any]:
+        """The entries of a document that say which cycle the theorem is about."""
+        scene = {"table": "egg", "lam": str(self.lam)}
+        return {"kind": "focus", "scene": scene, "free": "alpha", "components": [0, 0], "mirror": False}
+
+    @classmethod
+    def about(cls, given: Mapping[str, Any], lam: Expr | None, box: Box) -> Self:
+        """The theorem that a document states, at this `lam`."""
+        check_unknowns(box, 3)
+        if lam is None:
+            raise KeyError("lam")
+        found = cls(*box, lam)
+        _check_subject(found, given)
+        return found
+
+
+def _check_subject(theorem: SolutionInBox, given: Mapping[str, Any]) -> None:
+    said = theorem.subject
+    if said != {key: given[key] for key in said}:
+        raise ValueError(f"certificate: scene, components or mirror is not that of a {said['kind']}")
 
 
 BITS = 96
@@ -137,9 +230,10 @@ RADII = (0.05, 0.01)  # of the box of `m` and `lam`
 
 @dataclass(frozen=True)
 class DoubledBranch:
-    """For every `e` of `(0, MOST]` one orbit: the balls of `m` and `lam`, of `d lam/d(e^2)`, and `lam` at the end.
+    """The branch of one orbit for every `e` of `(0, MOST]`: bounces at `w = e` on the wall, `v = e*m` on the arc.
 
-    `unstable` when one multiplier of each of them exceeds 1 and the other is less.
+    `m`, `lam` and `bend`, the derivative `d lam/d(e^2)`, are balls over the whole branch; `end` is `lam` at `e = MOST`.
+    `unstable` is True when every orbit has one multiplier above 1 and one below.
     """
 
     m: arb
@@ -150,7 +244,7 @@ class DoubledBranch:
 
 
 def doubled_branch() -> DoubledBranch | None:
-    """The orbits with `0 < e <= MOST`, proved; None when a step of the proof fails.
+    """The proved branch of orbits with `0 < e <= MOST`; None when a step of the proof fails.
 
     >>> found = doubled_branch()
     >>> found.unstable, bool(found.bend < 0), bool(found.end < 0.0933)
@@ -180,18 +274,18 @@ def doubled_branch() -> DoubledBranch | None:
 
 
 def slope_at_zero() -> arb:
-    """`m = v/w` of the direction that the doubling keeps, from the wall's rule at `lambda_c`."""
+    """`m = v/w` at `e = 0`: the eigenvector with multiplier -1 at `lambda_c`, from the rule on the wall."""
     a = dense(linearised(arb(0), arb(0), real_ball(lambda_c(), 30)).plain)
     return arb((-a[0, 0] / a[0, 1]).mid())
 
 
 def linearised(w: arb, v: arb, lam: arb) -> Linearised:
-    """The two collision rules at half an orbit, with their derivatives."""
+    """The two collision rules at half an orbit `(w, v)`, with their derivatives."""
     return Linearised(Problem(cuspless, PARTS, lam=lam, closure=MIRROR), balls(BITS), [w, v])
 
 
 def step(e: arb, middle: list[arb], box: list[arb]) -> tuple[list[arb], arb_mat] | None:
-    """One step of Krawczyk's operator for `(m, lam)`, over a ball of `e`, and the derivatives of `H` on its image."""
+    """One Krawczyk step for `(m, lam)` over a ball of `e`, and the derivatives of the equations `H` there; or None."""
     (m, lam), one = middle, arb_mat([[1, 0], [0, 1]])
     try:
         value = divided(e, m, lam)
@@ -202,17 +296,17 @@ def step(e: arb, middle: list[arb], box: list[arb]) -> tuple[list[arb], arb_mat]
     moved = near * arb_mat([[x] for x in value])
     spread = (one - near * slope) * arb_mat([[x - y] for x, y in zip(box, middle, strict=True)])
     image = [x - moved[i, 0] + spread[i, 0] for i, x in enumerate(middle)]
-    return (image, derivatives(e, *image)) if compared(image, box) is Status.UNIQUE else None
+    return (image, derivatives(e, *image)) if compared(image, box) is ZeroStatus.UNIQUE else None
 
 
 def hull_from_zero(e: arb, m: arb) -> tuple[arb, arb]:
-    """Balls around 0 and `(e, e*m)`."""
+    """The hull of 0 and `(e, e*m)`, as a pair of balls."""
     top = e.union(arb(0))
     return top, top * m
 
 
 def divided(e: arb, m: arb, lam: arb) -> list[arb]:
-    """`H = G/e`; by the mean value theorem where `e` may be 0."""
+    """The values `H = G/e` of the two equations (module docstring); from the mean value theorem where `e` may be 0."""
     if not e.contains(0):
         return [rule / e for rule in linearised(e, e * m, lam).value]
     a = dense(linearised(*hull_from_zero(e, m), lam).plain)
@@ -220,18 +314,18 @@ def divided(e: arb, m: arb, lam: arb) -> list[arb]:
 
 
 def derivatives(e: arb, m: arb, lam: arb) -> arb_mat:
-    """The columns `H_m` and `H_lam`."""
+    """The 2 by 2 matrix with columns `H_m` and `H_lam`."""
     at = dense(linearised(e, e * m, lam).plain)
     w, v = hull_from_zero(e, m)
     angles = chord_angles(cuspless, balls(BITS))
-    # of the rule at the wall the bounce before is -v, of the rule on the arc it is w
+    # the bounce before the wall is at -v, the bounce before the arc at w
     into = [angles(PARTS[i], PARTS[1 - i], 1)(*ends) for i, ends in enumerate(((w, -v), (v, w)))]
     by_lam = [into[0][1] - into[0][2] * m, into[1][1] * m + into[1][2]]
     return arb_mat([[at[i, 1], by_lam[i]] for i in range(2)])
 
 
 def third_order(e: arb, m: arb, lam: arb) -> list[arb]:
-    """`H_e/e`: twice the third Taylor coefficient of `G` along `(1, m)`, over the hull."""
+    """`H_e/e` for both equations: twice the third Taylor coefficient of `G` along `(1, m)`, over the hull."""
     w, v = hull_from_zero(e, m)
     zero = arb(0)
     rule = Chords(cuspless, PARTS, MIRROR).over(jets(balls(BITS)))
@@ -240,6 +334,6 @@ def third_order(e: arb, m: arb, lam: arb) -> list[arb]:
 
 
 def half(e: arb, m: arb, lam: arb) -> tuple[arb, arb]:
-    """Trace and determinant of half an orbit, followed by the mirror."""
+    """Trace and determinant of the derivative of half an orbit, composed with the mirror."""
     chain = linearised(e, e * m, lam).plain
     return trace_and_determinant(chain.rows, chain.sign)

@@ -1,11 +1,9 @@
-"""What the corner orbit bears at `lambda-star`: proved for the limit, measured beside it.
+"""The attractor born at `lambda-star`: theorems for the piecewise linear limit, and float64 orbits of the map itself.
 
-Half the return (leave a corner, meet the arc, land near the other corner, take the mirror image) is
-continuous and piecewise smooth: the arc bends on one side of a corner, the wall does not on the
-other. Its linear parts at `lambda-star` are enclosed, so that the piecewise linear map which they
-make, the normal form of a border collision, is settled by proof: its kind, bounds of its attractor in
-units of `lam - lambda-star`, bounds of the exponent. Float64 orbits of the map itself stand beside it.
-Paper: section 5.2.
+The half return leaves a corner, meets the arc, lands near the other corner, and takes the mirror image. It is
+continuous and piecewise smooth, since the curvature of the boundary jumps at the corners. Its enclosed linear parts at
+`lambda-star` make a piecewise linear map, the normal form of a border collision. For this map the kind, bounds of the
+attractor in units of `lam - lambda-star`, and bounds of the exponent are proved. Paper: section 5.2.
 """
 
 import math
@@ -19,8 +17,8 @@ from numpy.typing import NDArray
 from numeric import PinballMap
 from verification.arithmetic.balls import working
 from verification.proofs.corner.border_collision import (
-    Extent,
-    Kind,
+    AttractorBounds,
+    FixedPointChange,
     Pieces,
     Polygon,
     Row,
@@ -37,7 +35,16 @@ from verification.proofs.corner.border_collision import (
     strips,
     trapped,
 )
-from verification.proofs.corner.corner import ARC, BITS, WALL, Bounce, angle, constant, corner_parameters, enclosed
+from verification.proofs.corner.corner import (
+    ARC,
+    BITS,
+    WALL,
+    BoundaryPoint,
+    angle,
+    constant,
+    corner_parameters,
+    enclosed,
+)
 from verification.proofs.corner.half_return import START, limit, pieces
 
 Array = NDArray[np.float64]
@@ -45,23 +52,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Border:
-    """What is proved of the piecewise linear map; lengths and angles in units of `lam - lambda-star`.
+    """Theorems on the piecewise linear map; lengths and angles are in units of `lam - lambda-star`.
 
-    `angles` bounds the exit angle at the corner, less `phi-star`; `exponent` the largest exponent per
-    bounce of every orbit, the extremes of which a few exceptional orbits attain.
+    `angles` bounds the exit angle at the corner, less `phi-star`; `exponent` bounds the largest exponent per bounce of
+    every orbit; a few exceptional orbits attain these bounds.
     """
 
     pieces: Pieces
-    kind: Kind
+    kind: FixedPointChange
     robust: bool | None
-    extent: Extent
+    extent: AttractorBounds
     angles: tuple[float, float]
     exponent: tuple[float, float]
 
 
 @cache
 def border() -> Border:
-    """The border collision of the corner orbit.
+    """The theorems on the border collision of the corner orbit.
 
     >>> found = border()
     >>> found.kind.name, found.robust, [round(v, 3) for v in found.exponent]
@@ -79,20 +86,21 @@ def border() -> Border:
 
 
 def _angles(region: Polygon) -> tuple[float, float]:
-    """`phi = -lam*eta`, to first order, over either side of a region, rounded outwards."""
+    """The range of `phi = -lam*eta`, to first order, over both sides of a region, rounded outwards."""
     theta1, star = enclosed()
     found = []
     for component in (ARC, WALL):
-        here = Bounce(component, constant(corner_parameters()[component], ()))
-        eta, by_v, by_u = angle(here, Bounce(ARC, constant(-theta1, ())))
+        here = BoundaryPoint(component, constant(corner_parameters()[component], ()))
+        eta, by_v, by_u = angle(here, BoundaryPoint(ARC, constant(-theta1, ())))
         found += [-eta - star * (by_v * v + by_u * u) for u, v in part(region, component)]
     return min(float(x.lower()) for x in found), max(float(x.upper()) for x in found)
 
 
 def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | None:
-    """Length and width of two convex sets that hold the attractor of the map itself, arc's and wall's, proved.
+    """Length and width of two convex sets, proved to hold the attractor of the map itself; None when not proved.
 
-    In units of `lam - lambda-star`, for all `lam` up to `lambda-star + last`; None when not proved.
+    Both are in units of `lam - lambda-star` and hold for all `lam` up to `lambda-star + last`, the first set for
+    bounces on the arc.
 
     >>> [width < 1e-3 for _, width in strips_of_the_map()]
     [True, True]
@@ -105,15 +113,16 @@ def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | N
         return strips(family, region) if trapped(family, region) else None
 
 
-REGION: Polygon = [(-1.0, -1.0), (1.0, -1.0), (7.0, 12.0), (4.0, 12.0)]  # about both orbits of period 4
+REGION: Polygon = [(-1.0, -1.0), (1.0, -1.0), (7.0, 12.0), (4.0, 12.0)]  # around both orbits of period 4
 
 
 def saddles(last: float = 3e-6) -> dict[int, Row] | None:
-    """The two orbits of period 4 that are born at `lambda-star`, for all `lam` up to `lambda-star + last`, proved.
+    """The two orbits of period 4 born at `lambda-star`, proved for all `lam` up to `lambda-star + last`.
 
-    Where half the return has its fixed points `(u, v)` in units of `lam - lambda-star`, on the arc and on the
-    wall: `base + (1 - A)^-1 (H(base)/e - base)`, with the `A` of a point of the region, lies in a ball inside of it,
-    so that there is one; and there is one only. From 0.07122 on `proofs.periodic.over_interval` follows both.
+    They are returned as fixed points `(u, v)` of the half return, one on the arc and one on the wall, in units of `lam
+    - lambda-star`. For every matrix `A` that the half return takes in the region, `base + (1 - A)^-1 (H(base)/e -
+    base)` lies in a ball inside the region; so there is exactly one. From 0.07122 on `proofs.periodic.over_interval`
+    follows both.
 
     >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
     {0: '-0.532', 1: '10.1'}
@@ -130,11 +139,10 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
 
 
 @dataclass(frozen=True)
-class Attractor:
-    """An attractor in units of `lam - lambda-star`: arc length beyond the corner, exit angle less `phi-star`.
+class ScaledAttractor:
+    """An attractor in units of `lam - lambda-star`: ranges of arc length beyond the corner, and of `phi - phi-star`.
 
-    `widths` are those of the strips that come from bounces on the arc and on the wall; `exponent` is the
-    largest one per bounce.
+    `widths` are those of the strips of bounces after the arc and after the wall; `exponent` is the largest per bounce.
     """
 
     lam: float
@@ -144,7 +152,7 @@ class Attractor:
     exponent: float
 
 
-def measured(distances: Sequence[float], bounces: int = 40_000) -> list[Attractor]:
+def measured(distances: Sequence[float], bounces: int = 40_000) -> list[ScaledAttractor]:
     """The attractor of the map itself at `lambda-star + e` for each distance `e`, in float64.
 
     >>> (found,) = measured([1e-4], 20_000)
@@ -171,14 +179,14 @@ def measured(distances: Sequence[float], bounces: int = 40_000) -> list[Attracto
 
 
 def _exit_angle(theta1: float) -> float:
-    here = Bounce(ARC, constant(corner_parameters()[ARC], ()))
-    return float(angle(here, Bounce(ARC, constant(enclosed()[0], ())))[0].mid())
+    here = BoundaryPoint(ARC, constant(corner_parameters()[ARC], ()))
+    return float(angle(here, BoundaryPoint(ARC, constant(enclosed()[0], ())))[0].mid())
 
 
-def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, float], rate: float) -> Attractor:
-    """The bounces near the corners, mirrored to the upper one; the bounce before each tells `u`.
+def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, float], rate: float) -> ScaledAttractor:
+    """The attractor from bounces near the corners, mirrored to the upper one; the bounce before each gives `u`.
 
-    The last of `near` is how far along the boundary a bounce is from the middle of the wall.
+    The last entry of `near` is the distance along the boundary from the middle of the wall.
     """
     component, theta, phi, from_middle = near
     on_wall = component == WALL
@@ -190,7 +198,7 @@ def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, floa
     angles = (phi[chosen] * upper[chosen] - orbit[1]) / e
     v, came_from_wall = v[chosen], on_wall[chosen - 2]
     widths = [_width(np.column_stack([u, v])[came_from_wall == side]) for side in (False, True)]
-    return Attractor(
+    return ScaledAttractor(
         lam,
         (float(v.min()), float(v.max())),
         (float(angles.min()), float(angles.max())),
@@ -200,7 +208,7 @@ def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, floa
 
 
 def _width(points: Array) -> float:
-    """Across the longest diagonal of the points."""
+    """The width of a set of points across its longest diagonal."""
     corners = np.array(hull([(float(u), float(v)) for u, v in points]))
     gaps = corners[:, None] - corners[None]
     i, j = np.unravel_index(np.argmax(np.hypot(gaps[..., 0], gaps[..., 1])), gaps.shape[:2])

@@ -1,18 +1,14 @@
-"""Where the fourth collision falls in the cuspless cardioid, for every angle and every contraction of a range.
+"""The place of the fourth collision in the cuspless cardioid, for all exit angles and contractions in given ranges.
 
-Pieces of phase space are followed in balls; a landing is enclosed by an interval Newton step on the chord angle, from
-a guess in floats. Paper: section 5.2.
+A particle leaves the upper corner at an angle near 0. The paper's plot shows that up to `lambda-star` its fourth
+collision lies beyond the corner, on the wall (`s_4 > s*`). It is proved by bisecting the ranges into boxes of angle and
+contraction, each followed in balls until it lands strictly inside the wall.
 
-A particle leaves the upper corner of the cuspless cardioid at an angle near 0. The paper's plot shows
-that up to `lambda-star` the fourth collision lies beyond the corner, on the wall (`s_4 > s*`). Boxes of
-angle and contraction are followed in balls until every one has landed strictly inside the wall.
-
-Near `lambda-star` the least position of the fourth collision crosses the corner. The particle that leaves the upper
-corner towards `theta1` on the arc has its second bounce near the lower corner and its fourth the distance `s4` beyond
-the upper one (on the wall when positive: the paper's `s_4 > s*`). Where the second bounce passes the corner, `s4` has
-a kink. Proved on boxes: `s4` falls with `theta1` while the second bounce is on the wall and grows when it is on the
-arc, so that its minimum is the kink; and the value there falls with `lam`. It is 0 at `lambda-star`, by the corner
-orbit. So the minimum has the sign of `lambda-star - lam`. Paper: section 5.2.
+A particle that leaves the upper corner towards `theta1` on the arc has its second bounce near the lower corner, and its
+fourth at the distance `s4` beyond the upper one (on the wall when `s4 > 0`, the paper's `s_4 > s*`). Where the second
+bounce passes the corner, `s4` has a kink. It is proved on boxes that `s4` falls with `theta1` while the second bounce
+is on the wall and grows when it is on the arc, so that the kink is the minimum, and that the minimum falls with `lam`.
+It is 0 at `lambda-star` by the corner orbit, so it has the sign of `lambda-star - lam`. Paper: section 5.2.
 """
 
 from collections.abc import Callable
@@ -33,7 +29,7 @@ from verification.proofs.corner.corner import (
     ARC,
     BITS,
     WALL,
-    Bounce,
+    BoundaryPoint,
     Quantity,
     after_corner,
     angle,
@@ -51,8 +47,8 @@ TURN = 6.283185307179586
 
 
 @dataclass(frozen=True)
-class Piece:
-    """A stretch of a component, the exit angles there, and the slope of the slap map that led there."""
+class Departures:
+    """A set of phase points: an interval of a component, their exit angles, and the slap map's slope along the way."""
 
     component: int
     theta: arb
@@ -73,8 +69,8 @@ def _loaded() -> tuple[Angles, Angles, Angles, dict[int, arb]]:
     return enclosing, alone, guessing, ends
 
 
-class Flights:
-    """The map of the cuspless cardioid on pieces, for all contractions of a ball."""
+class CusplessMap:
+    """The map of the cuspless cardioid on pieces, for all contractions in the ball `lam`."""
 
     def __init__(self, lam: arb | int = 0) -> None:
         self.lam = lam
@@ -82,13 +78,13 @@ class Flights:
 
     @property
     def odd(self) -> bool:
-        """Is it proved that the map takes `-theta` to the negative of what it takes `theta` to?"""
+        """True if the table is proved symmetric under `theta -> -theta`, so that the slap map is odd."""
         return all(mirrored(part) for part in cuspless.components)
 
-    def iterated(self, pieces: list[Piece], n: int) -> list[Piece] | None:
-        """The images under `n` flights; None when one could not be enclosed."""
+    def iterated(self, pieces: list[Departures], n: int) -> list[Departures] | None:
+        """The images of pieces under `n` flights; None when one could not be enclosed."""
         for _ in range(n):
-            following: list[Piece] = []
+            following: list[Departures] = []
             for piece in pieces:
                 landed = self.landing(piece)
                 if landed is None:
@@ -97,14 +93,14 @@ class Flights:
             pieces = following
         return pieces
 
-    def landing(self, piece: Piece) -> list[Piece] | None:
-        """The image of a piece: one piece, or up to three when it may straddle the joins; None when not enclosed.
+    def landing(self, piece: Departures) -> list[Departures] | None:
+        """The image of a piece: one piece, or up to three where it may straddle the corners; None when not enclosed.
 
-        The table is convex, so a root of the chord angle that is proved to lie on the boundary is the
-        landing. Floats guess on which part: the wall when the ray passes between the corners. When the root
-        there may lie beyond a corner, the place where the ray meets the line of the wall tells which parts
-        are possible: the upper arc unless that is below the upper corner, the lower one unless it is above the
-        lower corner, and each of them has to be enclosed.
+        The table is convex, so a root of the chord angle that is proved to lie on the boundary is the landing. The
+        component is guessed in float64: the wall when the ray passes between the corners. When the root there may lie
+        beyond a corner, the point where the ray meets the line of the wall says which components are possible: the
+        upper arc unless that point is below the upper corner, and the lower arc unless it is above the lower corner.
+        Each of them must be enclosed.
         """
         if piece.component == WALL:
             landed = self._root(piece, ARC, -1.05, 1.05)
@@ -125,7 +121,7 @@ class Flights:
         wall = roots["wall"]()
         if wall is None:
             return None
-        found: list[Piece | None] = [wall]
+        found: list[Departures | None] = [wall]
         if not wall.theta > -self.ends[WALL]:  # the wall's parameter grows downwards
             found.append(roots["upper"]())
         if not wall.theta < self.ends[WALL]:
@@ -138,11 +134,11 @@ class Flights:
             return "lower"
         return "upper" if start < -edge + 1e-6 or near(start, edge)[0] < phi else "wall"
 
-    def _root(self, piece: Piece, target: int, low: float, high: float) -> Piece | None:
-        """The landing on a component, enclosed by an interval Newton step from a guess in floats.
+    def _root(self, piece: Departures, target: int, low: float, high: float) -> Departures | None:
+        """The landing on a component, enclosed by an interval Newton step from a guess in float64; None if it fails.
 
-        What the guess misses by is told from the middle of the piece, by the mean value theorem: one piece does then
-        where twenty are needed with the angle on the whole piece.
+        The residual of the guess is evaluated at the middle of the piece and extended by the mean value theorem, which
+        needs a twentieth of the pieces that a direct evaluation needs.
         """
         pair = piece.component, target
         angle, value, near = self.balls[pair], self.values[pair], self.floats[pair]
@@ -158,22 +154,22 @@ class Flights:
             if box.contains_interior(image):  # which is no NaN
                 over = angle(piece.theta, image)
                 phi_1 = -self.lam * self.values[target, piece.component](image, piece.theta)[0] + arb(0)
-                return Piece(target, image, -piece.slope * over[1] / over[2], phi_1)
+                return Departures(target, image, -piece.slope * over[1] / over[2], phi_1)
             radius *= 2
         return None
 
 
-SETTLED, HALVED = 1e-8, 1e-15  # a last correction: by Newton's method, the next being about its square; by halving
+SETTLED, HALVED = 1e-8, 1e-15  # the last correction of Newton's method (the next is about its square), and of bisection
 
 
 def _falling_root(near: Angle, start: float, phi: float, low: float, high: float) -> float:
-    """Where the chord angle, which falls along the boundary, is `phi`: Newton, and bisection where it would leave."""
+    """The place where the chord angle, which decreases along the boundary, is `phi`: Newton steps, else bisection."""
     here = (low + high) / 2
     for _ in range(60):
         value, _, slope = near(start, here)
         low, high = (here, high) if value > phi else (low, here)
         following, enough = here - (value - phi) / slope if slope else low, SETTLED
-        if not low < following < high:  # NaN among others
+        if not low < following < high:  # also where it is NaN
             following, enough = (low + high) / 2, HALVED
         if abs(following - here) <= enough:
             return following
@@ -181,18 +177,18 @@ def _falling_root(near: Angle, start: float, phi: float, low: float, high: float
     return here
 
 
-def _all(*pieces: Piece | None) -> list[Piece] | None:
+def _all(*pieces: Departures | None) -> list[Departures] | None:
     found = [p for p in pieces if p is not None]
     return found if len(found) == len(pieces) else None
 
 
-ROUNDING = 2.0**-50  # neighbouring boxes overlap
+ROUNDING = 2.0**-50  # by which neighbouring boxes overlap
 SMALLEST = 2.0**-40
 
 
 @dataclass(frozen=True)
 class Fourth:
-    """True when every box landed inside the wall, None when the budget ended; and the boxes it took."""
+    """The search's result: `on_wall` is True if all boxes land inside the wall, else None; `boxes` counts them."""
 
     on_wall: bool | None
     boxes: int
@@ -206,9 +202,9 @@ def fourth_on_wall(
     or_lower: bool = False,
     tick: Tick = silent,
 ) -> Fourth:
-    """Does the fourth collision lie on the wall for all `|phi| <= angle`, `lowest <= lam <= highest`?
+    """A search whether the fourth collision lies on the wall for all `|phi| <= angle` and `lowest <= lam <= highest`.
 
-    `or_lower` accepts the lower half of the arc as well: `s_4 > s*` is all that is asked then.
+    With `or_lower` the lower half of the arc is accepted as well, which means `s_4 > s*`.
 
     >>> fourth_on_wall(0.01, 0.0, 0.03).on_wall
     True
@@ -230,8 +226,8 @@ def fourth_on_wall(
 
 
 def _lands_inside(phi: arb, lam: arb, or_lower: bool) -> bool:
-    flights = Flights(lam)
-    images = flights.iterated([Piece(ARC, flights.ends[ARC], arb(1), phi)], 4)
+    flights = CusplessMap(lam)
+    images = flights.iterated([Departures(ARC, flights.ends[ARC], arb(1), phi)], 4)
     if images is None:
         return False
     edge = flights.ends[WALL]
@@ -240,13 +236,16 @@ def _lands_inside(phi: arb, lam: arb, or_lower: bool) -> bool:
     return all(p.component == WALL and bool(abs(p.theta) < edge) for p in images)
 
 
-LONGEST_THETA, LONGEST_LAM = 2e-3, 5e-4  # sides of boxes
-MARGIN = 1e-6  # of the angles at the ends
+LONGEST_THETA, LONGEST_LAM = 2e-3, 5e-4  # the longest sides of boxes
+MARGIN = 1e-6  # relative, around the greatest exit angle
 
 
 @dataclass(frozen=True)
 class Course:
-    """One course of the orbit over a box: the part that the second bounce is on, and two distances beyond a corner."""
+    """One course of the orbit over a box: the component of the second bounce, and both distances beyond a corner.
+
+    `second` is for the second bounce and the lower corner, `fourth` for the fourth bounce and the upper corner.
+    """
 
     component: int
     second: Quantity
@@ -254,11 +253,11 @@ class Course:
 
 
 def courses(theta1: arb, lam: arb) -> list[Course]:
-    """What a box of first bounces and contractions does; the derivatives are by these two."""
+    """The possible courses of orbits with `theta1` and `lam` in balls; derivatives are by these two."""
     spread = theta1 - arb(theta1.mid()), lam - arb(lam.mid())
     contraction = parameter(arb(lam.mid()), 1, spread)
-    start = Bounce(ARC, constant(corner_parameters()[ARC], spread))
-    first = Bounce(ARC, parameter(arb(theta1.mid()), 0, spread))
+    start = BoundaryPoint(ARC, constant(corner_parameters()[ARC], spread))
+    first = BoundaryPoint(ARC, parameter(arb(theta1.mid()), 0, spread))
     found = []
     for second in after_corner(start, first, False, contraction, spread):
         third = on_arc(first, second, -float(enclosed()[0].mid()), contraction, spread)
@@ -268,10 +267,10 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
 
 
 def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = silent) -> bool | None:
-    """For all `|phi| <= most` and contractions of the range: has `s4` one kink, and its minimum there?
+    """True if for `|phi| <= most` and all contractions of the range `s4` has one kink, its minimum; else None.
 
-    Once all boxes turn as they should, the second bounce need only be on the wall at the one end and on the arc
-    at the other: at angles just within `most`, so that the kink is between.
+    Once `s4` is proved monotone on both sides, it remains to show that the second bounce is on the wall at one end of
+    the range and on the arc at the other; this is shown at angles just within `most`.
 
     >>> minimum_at_kink(0.03, 0.0712, 0.0713)
     True
@@ -296,7 +295,7 @@ def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = sil
 
 
 def _towards(phi: float) -> float:
-    """About where a particle lands that leaves the upper corner at this exit angle, by halving."""
+    """The landing `theta1` of a particle that leaves the upper corner at this exit angle, by bisection in floats."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = (low + high) / 2
@@ -314,19 +313,21 @@ def _followed(theta1: arb, lam: arb, depth: int = 0) -> list[Course]:
 
 
 def _turns(course: Course) -> bool:
-    """The second bounce moves from the wall to the arc as `theta1` grows; `s4` falls there and grows here."""
+    """True if the second bounce moves from the wall to the arc as `theta1` grows, and `s4` falls, then grows."""
     slope = course.fourth.slopes[0]
     return bool(course.second.slopes[0] < 0 and (slope < 0 if course.component == WALL else slope > 0))
 
 
 def exit_angle(theta1: arb) -> arb:
     """The exit angle at the upper corner of a particle that flies to `theta1`; it falls as `theta1` grows."""
-    return angle(Bounce(ARC, constant(corner_parameters()[ARC], ())), Bounce(ARC, constant(theta1, ())))[0]
+    return angle(BoundaryPoint(ARC, constant(corner_parameters()[ARC], ())), BoundaryPoint(ARC, constant(theta1, ())))[
+        0
+    ]
 
 
 @dataclass(frozen=True)
 class Kink:
-    """Over a stretch of contractions: where the kink is, `s4` at it, and how fast that grows with `lam`."""
+    """The kink over a range of contractions: its `theta1`, the `value` of `s4` at it, and the derivative in `lam`."""
 
     lam: arb
     theta1: arb
@@ -335,10 +336,10 @@ class Kink:
 
 
 def kink(lam: arb) -> Kink:
-    """The kink for every contraction of a ball; `ArithmeticError` when it is not enclosed."""
+    """The kink of `s4` for every contraction of a ball; `ArithmeticError` when it is not enclosed."""
     with working(BITS):
         near = _near(arb(lam.mid()))
-        radius = 0.6 * float(lam.rad()) + 1e-9  # it moves half as fast as lam
+        radius = 0.6 * float(lam.rad()) + 1e-9  # the kink moves half as fast as lam
         box = arb(near, radius)
         sides = [courses(arb(end), lam) for end in (near - radius, near + radius)]
         if not (all(c.second.whole > 0 for c in sides[0]) and all(c.second.whole < 0 for c in sides[1])):
@@ -347,7 +348,7 @@ def kink(lam: arb) -> Kink:
         speeds = [c.fourth.slopes[1] - c.fourth.slopes[0] * c.second.slopes[1] / c.second.slopes[0] for c in found]
         middle = courses(arb(near), arb(lam.mid()))
         steepest = max(abs(c.fourth.slopes[0] / c.second.slopes[0]).upper() for c in found)
-        missed = max(abs(c.second.whole).upper() for c in middle)  # how far from the corner, by rounding
+        missed = max(abs(c.second.whole).upper() for c in middle)  # the distance from the corner due to rounding
         room = arb(0, 1) * (steepest * missed)
         value, speed = joined([c.fourth.whole for c in middle]) + room, joined(speeds)
         return Kink(lam, box, value + speed * (lam - arb(lam.mid())), speed)
@@ -362,9 +363,9 @@ def _near(lam: arb) -> float:
 
 
 def kink_falls(lowest: float, highest: float) -> bool | None:
-    """Is `s4` at the kink 0 at `lambda-star`, and does it fall with `lam` over the whole range, which holds that?
+    """True if `s4` at the kink is 0 at `lambda-star` and falls with `lam` over the whole range; else None.
 
-    On each box the second bounce passes the corner once, and boxes that meet have one kink in common.
+    On each box the second bounce passes the corner once; neighbouring boxes have a kink in common.
 
     >>> kink_falls(0.071, 0.0713), kink_falls(0.072, 0.073)
     (True, None)

@@ -1,4 +1,4 @@
-"""Global dynamics: attractor blocks, Morse graphs, horseshoes, proved by covering phase space with boxes."""
+"""Global dynamics of pinball maps: attractor blocks and Morse graphs, proved by covering phase space with boxes."""
 
 import lazy_loader
 

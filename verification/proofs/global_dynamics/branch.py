@@ -1,7 +1,6 @@
-"""A branch of a saddle's unstable manifold in balls, and what orbits along it end in.
+"""Enclosures of a branch of a saddle's unstable manifold: a power series in balls with a bound of the remainder.
 
-The branch is a power series with a bound for its remainder. A point of it is a small box of phase points, and its orbit
-is followed in balls, each landing a first hit.
+Each point of the branch is a small box of phase points, whose orbit is followed in balls.
 """
 
 from collections.abc import Sequence
@@ -13,21 +12,20 @@ from flint import acb, arb, fmpq
 from verification.arithmetic.balls import balls, working
 from verification.proofs.manifolds.enclosed import (
     Enclosed,
-    TooWideError,
     complex_balls,
     enclosed,
     enclosed_saddle,
     remainder,
 )
 from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.saddle import Orbit, Saddle, horner
+from verification.proofs.manifolds.saddle import Saddle, SaddleCycle, horner
 from verification.proofs.manifolds.tangency import one_cycle, scale
 
-OUTER = 16  # the radius of the disc on which the rule is bounded: four bits for each order of the series
+OUTER = 16  # the radius of the disc on which the collision rule is bounded: four bits for each order of the series
 
 
-class Branch(NamedTuple):
-    """The enclosed series of an unstable manifold, a bound for its remainder, the bits of its balls, and the map."""
+class ManifoldSeries(NamedTuple):
+    """An enclosed unstable manifold: the series, a bound of its remainder, the bits of its balls, and the map."""
 
     series: Enclosed
     error: arb
@@ -35,7 +33,7 @@ class Branch(NamedTuple):
     map: Pinball
 
     def points(self, side: int, low: Sequence[float], high: Sequence[float]) -> list[tuple[arb, arb]]:
-        """Phase points on pieces of one side: `z` from `factor**(low - 1)` to `factor**(high - 1)`."""
+        """Boxes of phase points on one side, with `z` from `factor**(low - 1)` to `factor**(high - 1)`."""
         found = []
         with working(self.bits):
             map, error = self.map.over(balls(self.bits)), arb(0, self.error)
@@ -47,21 +45,24 @@ class Branch(NamedTuple):
         return found
 
 
-def unstable_branch(orbit: Orbit, map: Pinball, lam: Fraction, bits: int, around: Saddle | None = None) -> Branch:
-    """The series of the unstable manifold at one contraction, its remainder proved; `TooWideError`.
+def unstable_branch(
+    orbit: SaddleCycle, map: Pinball, lam: Fraction, bits: int, around: Saddle | None = None
+) -> ManifoldSeries | None:
+    """The unstable manifold at one contraction, or None where it is not proved.
 
-    With `around` the saddle has to be the one enclosed there, over a range of contractions.
+    With `around` the saddle must be the one enclosed there over a range of contractions; without it the branch may
+    belong to another cycle near `orbit`.
     """
-    with working(bits):
-        size = scale(orbit, map, float(lam), True, OUTER)
-        at = enclosed_saddle(orbit, map.over(complex_balls(bits)), exact(lam))
-        if around is not None and not one_cycle(around, at):
-            raise TooWideError("saddle", "the branch may be that of another cycle")
-        made = enclosed(at, True, bits // 4, size.unit, size.chief)
-        error = remainder(made, OUTER)
-        if not made.factor.real > 1:
-            raise TooWideError("saddle", "the unstable multiplier is not above 1, and the branch has two sides")
-        return Branch(made, error, bits, map)
+    try:
+        with working(bits):
+            size = scale(orbit, map, float(lam), True, OUTER)
+            at = enclosed_saddle(orbit, map.over(complex_balls(bits)), exact(lam))
+            made = enclosed(at, True, bits // 4, size.unit, size.chief)
+            error = remainder(made, OUTER)
+            proved = made.factor.real > 1 and (around is None or one_cycle(around, at))  # keeps the sides
+            return ManifoldSeries(made, error, bits, map) if proved else None
+    except (ValueError, ArithmeticError):
+        return None
 
 
 def exact(x: Fraction) -> Any:

@@ -1,20 +1,15 @@
-"""Points next to which both of two basins lie: orbits along a saddle's unstable manifold go to either of two cycles.
+"""A common boundary of two basins: orbits on a saddle's unstable manifold converge to two different cycles.
 
-What is proved, at one contraction:
+By the hypotheses of `CommonBoundary` each of two discs holds one cycle, and every orbit that enters the disc converges
+to it. So *each neighbourhood of each point whose orbit converges to the saddle holds open sets of both basins*. Proof:
+let `x` be such a point, and take a short curve through it, transverse to the saddle's stable manifold. The table is one
+convex analytic curve and `lam > 0`, so the map is a diffeomorphism onto its image, and the images of the curve stay
+transverse. By the inclination lemma they converge, as smooth curves, to each compact piece of the unstable manifold, on
+both sides of the saddle. So some points of the curve follow each of the two given orbits on that manifold into the open
+discs, and entering an open disc after finitely many bounces is an open condition. The point `x` itself is in neither
+basin.
 
-- two discs without a common point are each taken into themselves, up to a turn of the table, by a contraction in a
-  norm: each holds one cycle, and every orbit that enters it converges to that;
-- of the orbits that leave a saddle along its unstable manifold one enters the one disc, and one the other.
-
-So *each neighbourhood of each point whose orbit converges to the saddle holds open sets of both basins*. Let `x` be
-such a point, and take a short curve through it, across the saddle's stable manifold. The table is one convex analytic
-curve and `lam > 0`, so that the map is a diffeomorphism onto its image, and the images of the curve stay curves across.
-By the inclination lemma they come, as smooth curves, near each compact piece of the unstable manifold, on both sides of
-the saddle. Some points of the curve pass near each of the two orbits above, and enter the open discs after them; what
-enters an open disc after finitely many bounces is open. The point `x` itself is in neither basin.
-
-So the stable manifold of the saddle lies on the boundary of both basins. Nothing more is said: each basin is open, and
-a point of it has a neighbourhood in it.
+So the stable manifold of the saddle lies on the boundary of both basins.
 """
 
 from collections.abc import Sequence
@@ -32,21 +27,22 @@ from verification.arithmetic.arrays import BallArray
 from verification.arithmetic.balls import working
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.branch import unstable_branch
+from verification.proofs.global_dynamics.branch import ManifoldSeries, unstable_branch
 from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.proof import smooth
-from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.manifolds.saddle import SaddleCycle
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.norms import in_frame, times
+from verification.rigorous.theorem import Theorem, Verdict, hypothesis
 
 Array = NDArray[np.float64]
-BITS = 320  # of the balls that follow an orbit
+BITS = 320  # of the balls in which orbits are followed
 MOST_BOUNCES = 100
-SMALL = 1e-80  # radians about a start, in either coordinate
-CUT = 24  # parts of a disc's rectangle each way, over each of which the derivative is enclosed
-SLACK = 1e-9  # more than some dozen roundings of doubles, relatively
-CHECKS = ("smooth", "discs", "apart", "saddle", "first", "second")
+SMALL = 1e-80  # radians: half the width of a box around a start
+CUT = 24  # a disc's rectangle is cut into CUT by CUT parts to enclose the derivative
+SLACK = 1e-9  # relative; more than the rounding of a dozen operations
 
 
 @dataclass(frozen=True)
@@ -59,13 +55,13 @@ class Disc:
 
     @property
     def rectangle(self) -> tuple[float, float]:
-        """Half of the sides of a rectangle about the disc."""
+        """Half the sides, in `theta` and `phi`, of a rectangle that holds the disc."""
         (a, b), (c, d) = self.inverse
         return self.radius * float(np.hypot(a, b)) * (1 + SLACK), self.radius * float(np.hypot(c, d)) * (1 + SLACK)
 
 
 def disc(map: PinballImages, centre: tuple[float, float], radius: float) -> Disc:
-    """A disc in the norm in which the derivative at a point off the diameters turns and shrinks; nothing is proved."""
+    """A disc in a norm adapted to the derivative at `centre`, so that an attracting map may contract it; not proved."""
     x, y = (np.array([value]) for value in centre)
     at = Boxes(np.array([0]), (x, x), (y, y))
     (a, b), (c, d) = ((float(np.ravel(x.m)[0]) for x in row) for row in matrix(map.derivatives(at)[0][1]))
@@ -76,7 +72,7 @@ def disc(map: PinballImages, centre: tuple[float, float], radius: float) -> Disc
 
 
 def attracts(map: PinballImages, disc: Disc, turn: float) -> bool:
-    """Is the closed disc taken into its interior by a bounce and a turn back by `turn`, by a contraction in its norm?
+    """True if one bounce, turned back by `turn` radians, is proved to contract the closed disc into its interior.
 
     Then there is one fixed point in it, to which every orbit in it converges.
     """
@@ -95,24 +91,20 @@ def attracts(map: PinballImages, disc: Disc, turn: float) -> bool:
         off.append(at - middle)
     off[0] = off[0] - BallArray(turn, 1e-14)
     off[0] = off[0] - BallArray(2 * np.pi * np.rint(off[0].m / (2 * np.pi)), 1e-14)
-    (a, b), (c, d) = disc.inverse
-    det = BallArray(a) * d - BallArray(b) * c
-    frame = (BallArray(d) / det, BallArray(-b) / det), (BallArray(-c) / det, BallArray(a) / det)
-    (m, n), (p, q) = matrix(slopes)
-    inner = (m * a + n * c, m * b + n * d), (p * a + q * c, p * b + q * d)
-    (e, f), (g, h) = ([row[0] * inner[0][j] + row[1] * inner[1][j] for j in (0, 1)] for row in frame)
+    axes = [[BallArray(x) for x in row] for row in disc.inverse]
+    (e, f), (g, h) = in_frame(disc.inverse, times(matrix(slopes), axes))
     norm = float(np.max(_length(e + h, g - f) + _length(e - h, f + g))) / 2 * (1 + SLACK)
-    moved = [row[0] * off[0] + row[1] * off[1] for row in frame]
-    return bool(norm < 1 and norm * disc.radius + float(np.max(_length(*moved))) < disc.radius * (1 - SLACK))
+    (u, _), (v, _) = in_frame(disc.inverse, [[each, each] for each in off])
+    return bool(norm < 1 and norm * disc.radius + float(np.max(_length(u, v))) < disc.radius * (1 - SLACK))
 
 
 def _length(x: BallArray, y: BallArray) -> Array:
-    """A bound for the length of vectors."""
+    """Upper bounds of the Euclidean lengths of vectors."""
     return np.asarray(np.hypot(x.magnitude(), y.magnitude()) * (1 + SLACK))
 
 
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turns: Sequence[Fraction]) -> bool:
-    """Does the orbit of a phase point enter the disc, or a turned copy? Followed in balls, each landing a first hit."""
+    """True if the orbit of a phase point, followed in balls, is proved to enter the disc or a copy of it turned."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, BITS)
     (a, b), (c, d) = disc.inverse
     for here in map.orbit(map.start(*start), MOST_BOUNCES):
@@ -128,25 +120,26 @@ def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turn
 
 
 def entered_around(found: "CommonBoundary", which: int, theta: Fraction, phi: Fraction) -> bool:
-    """Do all orbits from a small disc about a phase point enter the one of the two discs, or a turned copy?"""
+    """True if all orbits from a small box around a phase point enter the disc `which`, or a turned copy."""
     with working(BITS):
         x, y = (arb(fmpq(value.numerator, value.denominator)) + arb(0, SMALL) for value in (theta, phi))
     return enters(found.scene, found.lam, (x, y), found.discs[which], found.turns)
 
 
 @dataclass(frozen=True)
-class CommonBoundary:
+class CommonBoundary(Theorem):
     """The stable manifold of a saddle lies on the boundary of the basins of two attracting cycles.
 
-    A round of each is one bounce and a turn of the table. On the unstable manifold's branch on one `side` of the
-    saddle orbits begin at `starts`, each from 0 to 1 on a piece from a point to its image; the first enters a disc
-    of the given `radius` about the first of the `sinks`, phase points `(theta, phi)`, and the second that about the
-    second. `turn` is, for each sink, the part of a turn that a bounce makes.
+    Each cycle, and the saddle, repeats after one bounce and a rotation of the table. The two `starts` are points of the
+    branch of the unstable manifold on one `side` (1 or -1), as numbers from 0 to 1 along a piece from a point to its
+    image. The orbit of the first enters the disc of this `radius` around the first of the `sinks`, phase points
+    `(theta, phi)`; that of the second the other disc. `turn` is, for each sink, the part of a full turn that a bounce
+    makes.
     """
 
     scene: Scene
     lam: Fraction
-    saddle: Orbit
+    saddle: SaddleCycle
     side: int
     starts: tuple[float, float]
     sinks: tuple[tuple[float, float], tuple[float, float]]
@@ -166,7 +159,7 @@ class CommonBoundary:
 
     @property
     def turns(self) -> tuple[Fraction, ...]:
-        """The turns that keep the table, as parts of a whole one."""
+        """The rotations that keep the table, as parts of a full turn, 0 included."""
         kept = {Fraction(*g.shift) % 1 for g in symmetries(self.scene.table) if g.turn == 1}
         return tuple(sorted({Fraction(0)} | kept))
 
@@ -177,34 +170,52 @@ class CommonBoundary:
 
     @cached_property
     def discs(self) -> tuple[Disc, Disc]:
-        """About both sinks."""
+        """The discs around both sinks."""
         return disc(self.map, self.sinks[0], self.radius), disc(self.map, self.sinks[1], self.radius)
 
     @cached_property
-    def checks(self) -> dict[str, bool | None]:
-        """What is proved, item by item; None where nothing is."""
-        found: dict[str, bool | None] = dict.fromkeys(CHECKS)
-        plane = Pinball(self.scene.table, turn=self.saddle.closure.shift[1])
-        found["smooth"] = smooth(plane)
-        pairs = list(zip(self.discs, self.turn, strict=True))
-        found["discs"] = all(attracts(self.map, one, 2 * np.pi * float(turn)) for one, turn in pairs) or None
-        found["apart"] = self._apart() or None
-        try:
-            branch = unstable_branch(self.saddle, plane, self.lam, BITS)
-            found["saddle"] = True
-            for name, start, (one, _) in zip(("first", "second"), self.starts, pairs, strict=True):
-                (point,) = branch.points(self.side, [start], [start])
-                found[name] = enters(self.scene, self.lam, point, one, self.turns) or None
-        except (ValueError, ArithmeticError):
-            pass
-        return found
+    def plane(self) -> Pinball:
+        """The map given by its collision rule, composed with the rotation by which the saddle repeats."""
+        return Pinball(self.scene.table, turn=self.saddle.closure.shift[1])
 
-    def _apart(self) -> bool:
-        """Do exit angles tell the discs apart? Turned copies have the same."""
+    @cached_property
+    def branch(self) -> ManifoldSeries | None:
+        """The enclosed unstable manifold of the saddle; None where it is not proved."""
+        return unstable_branch(self.saddle, self.plane, self.lam, BITS)
+
+    @hypothesis
+    def smooth(self) -> Verdict:
+        """The table is one convex analytic curve."""
+        return smooth(self.plane)
+
+    @hypothesis(name="discs")
+    def discs_attract(self) -> bool:
+        """Each disc is mapped into itself, up to a rotation of the table, by a contraction in some norm."""
+        pairs = zip(self.discs, self.turn, strict=True)
+        return all(attracts(self.map, one, 2 * np.pi * float(turn)) for one, turn in pairs)
+
+    @hypothesis
+    def apart(self) -> bool:
+        """The discs have no exit angle in common; rotated copies have the same exit angles."""
         low, high = sorted((one.centre[1], one.rectangle[1]) for one in self.discs)
         return low[0] + low[1] < high[0] - high[1]
 
-    @property
-    def proved(self) -> bool:
-        """Is all of it proved?"""
-        return all(value is True for value in self.checks.values())
+    @hypothesis(name="saddle")
+    def saddle_exists(self) -> bool:
+        """The saddle exists, and its unstable manifold is a series with a bounded remainder."""
+        return self.branch is not None
+
+    @hypothesis
+    def first(self) -> bool:
+        """An orbit on the unstable manifold enters the first disc."""
+        return self._enters(0)
+
+    @hypothesis
+    def second(self) -> bool:
+        """An orbit on the unstable manifold enters the second disc."""
+        return self._enters(1)
+
+    def _enters(self, which: int) -> bool:
+        start = [self.starts[which]]
+        (point,) = self.branch.points(self.side, start, start) if self.branch else (None,)
+        return point is not None and enters(self.scene, self.lam, point, self.discs[which], self.turns)

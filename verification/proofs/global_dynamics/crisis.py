@@ -1,29 +1,27 @@
-"""A boundary crisis between two contractions: below, a trapping region keeps a branch of a saddle's unstable manifold;
-above, an orbit that leaves along the same branch ends elsewhere.
+"""A boundary crisis between two contractions: a branch of a saddle's unstable manifold escapes from a trapping region.
 
-What is proved, for `LOW < HIGH`:
+The theorem, for `LOW < HIGH`, has three parts:
 
 - for every `lam` from `LOW` to `HIGH` the saddle exists, one curve of cycles, and the boxes `taken` are trapping;
-- at `LOW` all orbits that leave the saddle along the branch enter the boxes `kept`, trapping and apart from `taken`;
-- at `HIGH` one orbit that leaves along the branch enters `taken`.
+- at `LOW` all orbits of the branch enter the boxes `kept`, which are trapping and disjoint from `taken`;
+- at `HIGH` one orbit of the branch enters `taken`.
 
-Call `lam` good when some trapping region apart from `taken` is entered by all orbits of the branch. A trapping region
-is one for all nearby contractions too: the image of a compact set stays within its interior, that of the strip of phase
-points after a bounce, since the table is one smooth closed curve, convex, and the map continuous. And a piece of the
-branch, from a point to its image after a round, with its turned copies, is compact and moves continuously; every orbit
-of the branch passes it. So good contractions are an open set, which holds `LOW`. `HIGH` is none: what is in `taken`
-stays there. Therefore there is a first contraction in `(LOW, HIGH]` at which every such region is lost. Where what is
-kept is a chaotic attractor, this is its boundary crisis [GrebogiOttYorke1983]; that is not proved here.
+Call `lam` good when all orbits of the branch enter some trapping region disjoint from `taken`. A trapping region is one
+for all nearby contractions too, since it is compact, and the map is continuous on the smooth closed convex table. A
+piece of the branch, from a point to its image after one round, with its rotated copies, is compact and moves
+continuously, and every orbit of the branch meets it. So the good contractions are an open set that contains `LOW`.
+`HIGH` is not good, because orbits in `taken` stay there. Therefore there is a first contraction in `(LOW, HIGH]` that
+is not good. Where the boxes `kept` hold a chaotic attractor, this is its boundary crisis [GrebogiOttYorke1983]; that
+they do is not proved.
 
-Both sets of boxes are what the outer images of a few cells grow to, so a document need not list them.
+Both sets of boxes are grown from a few cells, so a document need not list them.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from flint import acb, arb
@@ -35,56 +33,53 @@ from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, working
 from verification.arithmetic.series import Jet
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap
-from verification.proofs.global_dynamics.apart import reached
-from verification.proofs.global_dynamics.boxes import Boxes, Images
-from verification.proofs.global_dynamics.branch import OUTER, Branch, exact, unstable_branch
-from verification.proofs.global_dynamics.graph import CELLS, Cells, Grid, Mask, Rectangles
-from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.global_dynamics.regions import stated, whole
-from verification.proofs.manifolds.claim import orbit_of, orbit_said
+from verification.proofs.global_dynamics.branch import OUTER, ManifoldSeries, exact, unstable_branch
+from verification.proofs.global_dynamics.images import SCENE, PinballImages
+from verification.proofs.manifolds.certificate import orbit_of, orbit_said
 from verification.proofs.manifolds.enclosed import (
-    TooWideError,
     complex_balls,
     enclosed_saddle,
 )
 from verification.proofs.manifolds.plane_map import Pinball
-from verification.proofs.manifolds.saddle import Orbit, Saddle, local, saddle
+from verification.proofs.manifolds.saddle import Saddle, SaddleCycle, local, saddle
 from verification.proofs.manifolds.tangency import one_cycle, scale
 from verification.proofs.manifolds.touching import bounce
+from verification.rigorous.absorbing import AbsorbingSet, grown
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.certificate import RANGE, Certified, entry, whole
+from verification.rigorous.theorem import hypothesis
 
-KIND, SCHEMA = "boundary crisis", 1
-BITS, MANY_BITS = 160, 640  # of the balls; many for an orbit in balls, which grow faster than the orbit is unstable
-PIECES, ROUNDS = 1024, 3  # of the branch at LOW, and how far it is followed before boxes take over
-CUTS = 16  # of the contractions, over each of which the saddle is enclosed
+BITS, MANY_BITS = 160, 640  # precision of balls; the larger for the orbit that leaves, whose balls grow fast
+PIECES, ROUNDS = 1024, 3  # boxes along the branch at LOW, and rounds that they are mapped before the growth begins
+CUTS = 16  # parts of the range of contractions, over each of which the saddle is enclosed
 MOST_BOUNCES, SAMPLES = 400, 20_000
-SOON, SEEN, AT_REST = (30, 60, 120, 300), 200, -0.02  # bounces before an exponent and for it; cycles stay below
-GRID = {"columns": 1 << 13, "rows": 1 << 13, "parts": 16}
-SLACK = 1e-14  # for each turn of 2*pi taken off, more than that errs in float64
-FAR, NEAR = 10.0, 1e-5  # radians: of a start at most, and between the saddle at LOW and where it is said to be
-CHECKS = ("saddle", "manifold", "kept", "taken", "apart", "leaves")
+SOON, SEEN, AT_REST = (30, 60, 120, 300), 200, -0.02  # bounces before and for an exponent, and its bound on cycles
+SLACK = 1e-14  # for each turn of 2*pi subtracted: more than its rounding error
+FAR, NEAR = 10.0, 1e-5  # radians: the largest start, and the largest distance of the saddle at LOW from its given start
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class BoundaryCrisis:
-    """The branch on one `side` of a saddle's unstable manifold is kept at `lam[0]` and leaves at `lam[1]`.
+@dataclass(frozen=True, eq=False, repr=False)
+class BoundaryCrisis(Certified):
+    """The branch on one `side` of a saddle's unstable manifold is trapped at `lam[0]` and escapes at `lam[1]`.
 
-    A round of the saddle is one bounce and a turn of the table, as that of a polygon is; the law is one of `eta` and
-    `lam`, the same everywhere, below `pi/2` by a margin.
-    `start` is where, on a piece of the branch from a point to its image, from 0 to 1, the orbit that leaves begins;
-    `sink` is a phase point `(theta, phi)` from which `taken` is grown. The boxes are those of a grid of `columns` by
-    `rows`, each cut into `parts` by `parts`.
+    The saddle repeats after one bounce and a rotation of the table, as a regular polygon does. The law depends on `eta`
+    and `lam` only, and its exit angles stay below `pi/2` by a margin. `start`, from 0 to 1 along a piece of the branch
+    from a point to its image, is where the escaping orbit begins; the boxes `taken` are grown from `sink`, a phase
+    point `(theta, phi)`. Boxes are cells of a grid of `columns` by `rows`, each cut into `parts` by `parts` before it
+    is mapped.
     """
 
-    scene: Scene
-    saddle: Orbit
-    side: int
-    lam: tuple[Fraction, Fraction]
-    columns: int
-    rows: int
-    parts: int
-    start: float
-    sink: tuple[float, float]
+    kind = "boundary crisis"
+    scene: Scene = field(metadata=SCENE)
+    saddle: SaddleCycle = field(metadata=entry(lambda given, _: orbit_of(given), orbit_said))
+    side: int = field(metadata=entry(lambda given, _: given))
+    lam: tuple[Fraction, Fraction] = field(metadata=RANGE)
+    columns: int = field(metadata=whole("columns", 1 << 13))
+    rows: int = field(metadata=whole("rows", 1 << 13))
+    parts: int = field(metadata=whole("parts", 16))
+    start: float = field(metadata=entry(lambda given, _: float(given)))
+    sink: tuple[float, float] = field(metadata=entry(lambda given, _: (float(given[0]), float(given[1])), list))
 
     def __post_init__(self) -> None:
         if len(self.scene.table.components) != 1:
@@ -92,7 +87,7 @@ class BoundaryCrisis:
         closure, (low, high) = self.saddle.closure, self.lam
         turns = {Fraction(0)} | {Fraction(*g.shift) for g in symmetries(self.scene.table) if g.turn == 1}
         if len(self.saddle.start) != 1 or closure.turn != 1 or Fraction(*closure.shift) % 1 not in turns:
-            raise ValueError(f"crisis: a round of the {self.saddle.name} is not one bounce and a turn of the table")
+            raise ValueError(f"crisis: the {self.saddle.name} must be fixed by one bounce and a turn of the table")
         if self.scene.law.placed:
             raise ValueError(f"crisis: law = {self.scene.law}; a round turns the table; accepted: laws of eta and lam")
         if not all(abs(x) < FAR for x in (*self.saddle.start, *self.sink)):
@@ -100,11 +95,11 @@ class BoundaryCrisis:
         if self.side not in (1, -1) or not 0 < low < high < 1 or not 0 <= self.start <= 1:
             raise ValueError(f"crisis: side = {self.side}, lam = {low}:{high} or start = {self.start} is out of range")
         if not self.scene.law.uniform:
-            PinballImages(self.scene, self.lam)  # refuses a law without the strip in which all particles are
+            PinballImages(self.scene, self.lam)  # raises ValueError where exit angles are not bounded below pi/2
 
     @property
     def name(self) -> str:
-        """What is stated."""
+        """The statement in one line."""
         shape = "".join(f", {name} = {value}" for name, value in self.scene.shape.items())
         shape += "" if self.scene.law.uniform else f", phi = {self.scene.law}"
         (low, high), (p, q), (at,) = self.lam, self.saddle.closure.shift, self.saddle.start
@@ -112,115 +107,122 @@ class BoundaryCrisis:
         return f"boundary crisis of {self.scene.name}{shape}, {saddle}: lam between {low} and {high}"
 
     @cached_property
-    def checks(self) -> dict[str, bool | None]:
-        """What is proved, item by item; None where nothing is."""
-        found: dict[str, bool | None] = dict.fromkeys(CHECKS)
-        low = self.lam[0]
-        try:
-            curve = self._continued()
-            found["saddle"] = True
-            branches = [self._branch(*one) for one in zip(curve, self.lam, (BITS, MANY_BITS), strict=True)]
-            found["manifold"] = True
-        except (ValueError, ArithmeticError):
-            return found
-        below, throughout = (PinballImages(self.scene, pair) for pair in ((low, low), self.lam))
-        seed = boxed([(arb(self.sink[0]), arb(self.sink[1]))])
-        taken = None if seed is None else self._grown(throughout, seed)
-        found["taken"] = _proved(taken is not None)
-        ends = np.linspace(0, 1, PIECES + 1)
-        pieces = boxed(self._turned(self._launched(branches[0], ends[:-1], ends[1:])))
-        for _ in range(ROUNDS):
-            pieces = None if pieces is None else _next(below, pieces)
-        kept = None if pieces is None else self._grown(below, pieces)
-        found["kept"] = _proved(kept is not None)
-        if kept is None or taken is None:
-            return found
-        found["apart"] = _proved(not _meets(kept, taken))
-        found["leaves"] = _proved(self._leaves(branches[1], taken))
-        return found
+    def branches(self) -> tuple[ManifoldSeries, ManifoldSeries] | None:
+        """The enclosed unstable manifold at both contractions; None where it is not proved."""
+        if self.curve is None:
+            return None
+        below, above = (
+            unstable_branch(around.orbit, self.map, lam, bits, around)
+            for around, lam, bits in zip(self.curve, self.lam, (BITS, MANY_BITS), strict=True)
+        )
+        return None if below is None or above is None else (below, above)
 
-    @property
-    def proved(self) -> bool:
-        """Is all of it proved?"""
-        return all(value is True for value in self.checks.values())
+    @cached_property
+    def kept_boxes(self) -> AbsorbingSet | None:
+        """The trapping boxes grown from the branch at the lower contraction, or None."""
+        if self.branches is None:
+            return None
+        ends, map = np.linspace(0, 1, PIECES + 1), PinballImages(self.scene, (self.lam[0],) * 2)
+        pieces = bounding_boxes(self._turned(self.branches[0].points(self.side, ends[:-1].tolist(), ends[1:].tolist())))
+        for _ in range(ROUNDS):
+            pieces = None if pieces is None else _next(map, pieces)
+        return None if pieces is None else grown(map, (self.columns, self.rows, self.parts), pieces)
+
+    @cached_property
+    def taken_boxes(self) -> AbsorbingSet | None:
+        """The boxes grown from the sink, trapping for all contractions at once, or None."""
+        seed = None if self.branches is None else bounding_boxes([(arb(self.sink[0]), arb(self.sink[1]))])
+        return (
+            None
+            if seed is None
+            else grown(PinballImages(self.scene, self.lam), (self.columns, self.rows, self.parts), seed)
+        )
+
+    @hypothesis(name="saddle")
+    def saddle_exists(self) -> bool:
+        """The saddle exists for each contraction of the range, on one curve of cycles."""
+        return self.curve is not None
+
+    @hypothesis
+    def manifold(self) -> bool:
+        """The saddle's unstable manifold is a series with a bounded remainder, at both contractions."""
+        return self.branches is not None
+
+    @hypothesis
+    def kept(self) -> bool:
+        """At the lower contraction all orbits of the branch enter a set of trapping boxes."""
+        return self.kept_boxes is not None
+
+    @hypothesis
+    def taken(self) -> bool:
+        """Boxes around the sink are trapping for each contraction of the range."""
+        return self.taken_boxes is not None
+
+    @hypothesis
+    def apart(self) -> bool:
+        """The boxes that trap the branch are disjoint from those around the sink."""
+        return not (
+            self.kept_boxes is None or self.taken_boxes is None or self.kept_boxes.meets(self.taken_boxes.boxes)
+        )
+
+    @hypothesis
+    def leaves(self) -> bool:
+        """At the higher contraction the orbit from `start` enters the boxes around the sink."""
+        if self.branches is None or self.kept_boxes is None or self.taken_boxes is None:
+            return False
+        (point,) = self.branches[1].points(self.side, [self.start], [self.start])
+        return enters(self.scene, self.lam[1], point, self.taken_boxes)
 
     @property
     def map(self) -> Pinball:
-        """The map, by its rule."""
+        """The map given by its collision rule, composed with the rotation by which the saddle repeats."""
         return Pinball(self.scene.table, turn=self.saddle.closure.shift[1], law=self.scene.law)
 
-    def _continued(self) -> tuple[Saddle, Saddle]:
-        """The saddle over the first and the last part of the contractions, of one curve of cycles over all of them.
+    @cached_property
+    def curve(self) -> tuple[Saddle, Saddle] | None:
+        """The saddle, enclosed over the first and the last part of the range of contractions; or None.
 
-        `TooWideError` where that is not proved, or where the saddle at the lower end is not where it is said to be.
+        None is returned unless both lie on one curve of cycles over the whole range, with the saddle at the lower end
+        near its given start.
         """
         ends = [self.lam[0] + (self.lam[1] - self.lam[0]) * Fraction(k, CUTS) for k in range(CUTS + 1)]
-        with working(BITS):
-            map, orbit, parts = self.map.over(complex_balls(BITS)), self.saddle, list[Saddle]()
-            before = enclosed_saddle(orbit, map, exact(ends[0]))
-            if not abs(before.points[0] - orbit.start[0]) < NEAR:
-                raise TooWideError("saddle", "the saddle at the lower contraction is another than said")
-            for a, b in pairwise(ends):
-                around = enclosed_saddle(orbit, map, acb(exact(a).real.union(exact(b).real)))
-                orbit = replace(orbit, start=tuple(float(x.real.mid()) for x in around.points))
-                after = enclosed_saddle(orbit, map, exact(b))
-                if not (one_cycle(around, before) and one_cycle(around, after)):
-                    raise TooWideError("saddle", "the cycle at an end may be another than the one in between")
-                parts.append(replace(around, orbit=orbit))
-                before = after
+        map, orbit, parts = self.map.over(complex_balls(BITS)), self.saddle, list[Saddle]()
+        try:
+            with working(BITS):
+                before = enclosed_saddle(orbit, map, exact(ends[0]))
+                if not abs(before.points[0] - orbit.start[0]) < NEAR:
+                    return None
+                for a, b in pairwise(ends):
+                    around = enclosed_saddle(orbit, map, acb(exact(a).real.union(exact(b).real)))
+                    orbit = replace(orbit, start=tuple(float(x.real.mid()) for x in around.points))
+                    after = enclosed_saddle(orbit, map, exact(b))
+                    if not (one_cycle(around, before) and one_cycle(around, after)):
+                        return None
+                    parts.append(replace(around, orbit=orbit))
+                    before = after
+        except (ValueError, ArithmeticError):
+            return None
         return parts[0], parts[-1]
 
-    def _branch(self, around: Saddle, lam: Fraction, bits: int) -> Branch:
-        """The series of the unstable manifold at one contraction, its remainder proved; `TooWideError`."""
-        return unstable_branch(around.orbit, self.map, lam, bits, around)
-
-    def _launched(self, branch: Branch, low: Array, high: Array) -> list[tuple[arb, arb]]:
-        """Phase points on pieces of the branch, on one side."""
-        return branch.points(self.side, low.tolist(), high.tolist())
-
     def _turned(self, points: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
-        """Phase points with their turned copies: a round is a bounce and a turn, so an orbit passes one of them."""
+        """Phase points with their rotated copies, one of which each orbit meets."""
         with working(BITS):
             turn = self.saddle.closure.angle(balls(BITS))
             copies = range(Fraction(*self.saddle.closure.shift).denominator)
             return [(theta + k * turn, phi) for k in copies for theta, phi in points]
 
-    def _leaves(self, branch: Branch, taken: tuple[Grid, Mask]) -> bool:
-        """Does the orbit from `start` enter the cells? Followed in balls, each landing a first hit."""
-        at = np.array([self.start])
-        ((theta, phi),) = self._launched(branch, at, at)
-        return enters(self.scene, self.lam[1], (theta, phi), taken)
-
-    def _grown(self, map: PinballImages, start: Boxes) -> tuple[Grid, Mask] | None:
-        return grown(map, (self.columns, self.rows, self.parts), start)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The statement as a JSON document."""
-        said = {"schema": SCHEMA, "name": self.name, "kind": KIND, "scene": self.scene.document}
-        said |= {"saddle": orbit_said(self.saddle)}
-        grid = {"columns": self.columns, "rows": self.rows, "parts": self.parts}
-        ends = {"side": self.side, "lam": [str(x) for x in self.lam]}
-        return said | ends | grid | {"start": self.start, "sink": list(self.sink)}
-
-    @classmethod
-    def from_dict(cls, given: Mapping[str, Any]) -> "BoundaryCrisis":
-        """The crisis of a document; `ValueError` names what is wrong with it."""
-        try:
-            scene, lam = stated(given, KIND, SCHEMA)
-            columns, rows, parts = (whole(name, given[name], most) for name, most in GRID.items())
-            side, start, sink = given["side"], float(given["start"]), (float(given["sink"][0]), float(given["sink"][1]))
-            return cls(scene, orbit_of(given["saddle"]), side, lam, columns, rows, parts, start, sink)
-        except (KeyError, IndexError, TypeError, AttributeError) as error:
-            raise ValueError(f"certificate: the entry {error} is missing or of the wrong kind") from None
-
 
 def bracket(
-    scene: Scene, orbit: Orbit, side: int, lam: tuple[Fraction, Fraction], grid: tuple[int, int, int] = (2048, 2048, 1)
+    scene: Scene,
+    orbit: SaddleCycle,
+    side: int,
+    lam: tuple[Fraction, Fraction],
+    grid: tuple[int, int, int] = (2048, 2048, 1),
 ) -> BoundaryCrisis:
-    """A crisis between two contractions, with an orbit that leaves found by sampling the branch in float64.
+    """A candidate for a crisis between two contractions; the escaping orbit is found by sampling in float64.
 
-    `grid` is columns, rows and parts. `ValueError` where no sample comes to rest on a cycle at `lam[1]`. Nothing of it
-    is proved yet: ask for its `checks`.
+    `grid` is columns, rows and parts. `ValueError` where no sample converges to a cycle at `lam[1]`. Nothing is proved
+    until its `checks` are read.
 
     >>> from verification.proofs.manifolds.known import CONTACTS
     >>> triangle, ends = CONTACTS["boundary"].unstable, (Fraction(3, 5), Fraction(663, 1000))
@@ -237,7 +239,7 @@ def bracket(
     before, here = (bounce(made, j, z).c[0] for j in (-1, 0))
     map = PinballMap(scene, lam=high)
     theta, phi = before - 2 * np.pi * np.rint(before / (2 * np.pi)), plane.angle(before, here)[0]
-    for after in SOON:  # errors of a box grow along the way: the orbits that leave first serve best
+    for after in SOON:  # balls grow along the orbit: orbits that escape early are best
         found = map.exponents(theta, phi, after, SEEN)
         rests = np.append(found.nu_plus < AT_REST, False)
         ends = np.flatnonzero(np.diff(np.append(False, rests).astype(int))).reshape(-1, 2)
@@ -251,29 +253,18 @@ def bracket(
     return BoundaryCrisis(scene, orbit, side, lam, *grid, float(start[k]), sink)
 
 
-def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: tuple[Grid, Mask]) -> bool:
-    """Does the orbit of a phase point enter the cells? Followed in balls, each landing a first hit."""
+def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: AbsorbingSet) -> bool:
+    """True if the orbit of a phase point, followed in balls, is proved to enter the cells within `MOST_BOUNCES`."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, MANY_BITS)
     for here in map.orbit(map.start(*start), MOST_BOUNCES):
-        box = boxed([(here.theta, here.phi)])
-        if box is not None and _within(cells, box):
+        box = bounding_boxes([(here.theta, here.phi)])
+        if box is not None and cells.holds(box):
             return True
     return False
 
 
-def grown(map: PinballImages, grid: tuple[int, int, int], start: Boxes) -> tuple[Grid, Mask] | None:
-    """The cells that boxes meet, with all that their images meet, again and again; None where they have no end."""
-    fine = Grid(map.charts, *grid[:2])
-    numbers = reached(map, fine, start, grid[2], most=CELLS)
-    if numbers is None:
-        return None
-    member = np.zeros((len(map.charts), *grid[:2]), dtype=bool)
-    member.ravel()[numbers] = True
-    return fine, member
-
-
-def boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
-    """Boxes about phase points of a table of one component; None where one is not finite."""
+def bounding_boxes(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
+    """Boxes around phase points of a table of one component; None where one is not finite."""
     (left, right), (bottom, top) = (
         [np.array([_outwards(x, up) for x in values]) for up in (False, True)] for values in zip(*points, strict=True)
     )
@@ -283,7 +274,7 @@ def boxed(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
 
 
 def _next(map: PinballImages, boxes: Boxes) -> Boxes | None:
-    """The images of boxes, one for each; None where one is not proved."""
+    """The images of boxes, one for each; None where one is not enclosed."""
     images = map.images(boxes)
     if images.lost.size or not np.array_equal(images.source, np.arange(boxes.chart.size)):
         return None
@@ -291,52 +282,12 @@ def _next(map: PinballImages, boxes: Boxes) -> Boxes | None:
 
 
 def _turned_back(boxes: Boxes) -> Boxes:
-    """The same boxes with whole turns taken off, rounded outwards."""
+    """The boxes with full turns of `theta` subtracted, rounded outwards."""
     turns = 2 * np.pi * np.rint((boxes.x[0] + boxes.x[1]) / (4 * np.pi))
     slack = SLACK * (1 + np.abs(turns))
     return boxes._replace(x=(boxes.x[0] - turns - slack, boxes.x[1] - turns + slack))
 
 
 def _outwards(x: arb, up: bool) -> float:
-    """A double above, or below, every number of a ball."""
+    """A double above (or below, if not `up`) every number of a ball."""
     return float(np.nextafter(float(x.upper() if up else x.lower()), np.inf if up else -np.inf))
-
-
-def _as_images(boxes: Boxes) -> Images:
-    return Images(np.arange(boxes.chart.size), boxes, np.zeros(0, dtype=np.int64))
-
-
-def marked_cells(member: Mask) -> Cells:
-    """The cells of a grid that are marked."""
-    return Cells._make((*np.nonzero(member), np.ones(np.count_nonzero(member), dtype=np.int64)))
-
-
-def _marked(grid: Grid, met: Rectangles) -> Mask:
-    """The cells of rectangles: counts go up where a rectangle begins, and down where it ends."""
-    counts = np.zeros((len(grid.charts), grid.columns + 1, grid.rows + 1), dtype=np.int32)
-    beyond = met.right >= grid.columns  # they go on at the first column
-    for some, left, right in (
-        (slice(None), met.left, np.minimum(met.right, grid.columns - 1)),
-        (beyond, np.zeros(beyond.sum(), dtype=int), met.right[beyond] - grid.columns),
-    ):
-        chart, bottom, top = met.chart[some], met.bottom[some], met.top[some] + 1
-        for column, row, step in ((left, bottom, 1), (right + 1, top, 1), (left, top, -1), (right + 1, bottom, -1)):
-            np.add.at(counts, (chart, column, row), step)
-    return np.asarray(counts.cumsum(1, dtype=np.int32).cumsum(2, dtype=np.int32)[:, :-1, :-1] > 0)
-
-
-def _meets(kept: tuple[Grid, Mask], taken: tuple[Grid, Mask]) -> bool:
-    """May cells of two grids have a common point?"""
-    grid, member = taken
-    return bool(np.any(_marked(kept[0], kept[0].met(_as_images(grid.boxes(marked_cells(member))))) & kept[1]))
-
-
-def _within(cells: tuple[Grid, Mask], boxes: Boxes) -> bool:
-    """Do all boxes lie in the cells?"""
-    grid, member = cells
-    met = grid.met(_as_images(boxes))
-    return not bool(np.any(_marked(grid, met) & ~member)) and not bool(met.out.any())
-
-
-def _proved(held: bool) -> bool | None:
-    return True if held else None

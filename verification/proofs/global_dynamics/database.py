@@ -1,16 +1,15 @@
-"""A database of Morse graphs: one for each box of contractions and of one shape parameter, and which of them continue.
+"""A database of Morse graphs: one for each box of contractions and values of one shape parameter; which continue.
 
-For all parameters of a box at once phase space is covered and mapped as for one scene, so that what is stated holds
-for each of them. A table that a rotation keeps is looked at up to that rotation, and so are its Morse sets: with `n`
-turns a set stands for one, or for several that the turns exchange.
+For all parameters of a box at once phase space is covered and mapped as for one scene, so each statement holds for all
+of them. A table with `n` rotation symmetries is taken modulo these, and so are its Morse sets: a set stands for one set
+of the table, or for several that the rotations exchange.
 
-Two boxes with a common border are compared there. At a parameter of the border each chain recurrent orbit lies, box
-after box of its walk, in one Morse set of either graph; so sets of the two graphs that have no cell in common hold no
-such orbit in common, and a set that meets none of the other graph holds none at all there. Where the other sets match
-one to one, and the same lead to the same, what is recurrent within matched sets is the same there: it continues from
-box to box, and with it, where the map is continuous, its Conley index. Boxes that are joined by such borders are a
-class. (Arai, Kalies, Kokubu, Mischaikow, Oka and Pilarczyk 2009, A database schema for the analysis of global dynamics
-of multiparameter systems.)
+Two boxes with a common border are compared there. At a parameter of the border each chain recurrent orbit lies in one
+Morse set of either graph. So two sets without a common cell share no such orbit, and a set that meets no set of the
+other graph holds no such orbit there. Where the other sets match one to one, with the same order of walks between them,
+matched sets have the same recurrent orbits: these continue from box to box, as does their Conley index where the map is
+continuous. Boxes that are connected by such borders form a class. (Arai, Kalies, Kokubu, Mischaikow, Oka and Pilarczyk
+2009, A database schema for the analysis of global dynamics of multiparameter systems.)
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,10 +24,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from numeric.sweeps.sweep import Axis, Field, Part, Sweep, map_of, text_of
+from numeric.sweeps.sweep import Axis, Field, Sweep, SweepPart, map_of, text_of
 from symbolic.tables.scene import Scene
-from verification.proofs.global_dynamics.graph import Grid, MorseGraph, morse_graph, refined
 from verification.proofs.global_dynamics.parameter_box import ParameterBox, Range, turns_of, varied
+from verification.rigorous.graph import Grid, MorseGraph, morse_graph, refined
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +41,7 @@ TAKEN = {"sets", "attracting", "top", "cells", "leads", "row", "column", "from",
 
 @dataclass(frozen=True)
 class Graphs:
-    """The task: the Morse graphs of some boxes of parameters."""
+    """A task of the sweep: the Morse graphs of some boxes of parameters."""
 
     scene: str
     parameter: str
@@ -52,14 +51,14 @@ class Graphs:
     rows: int
     coarsest: int
 
-    def __call__(self, part: Part) -> dict[str, NDArray[Any]]:
+    def __call__(self, part: SweepPart) -> dict[str, NDArray[Any]]:
         shapes, lams = (part.values[name] for name in (self.parameter, "lam"))
         made = [list(self.boxes(list(_ranges(self.lams, lams)), shape)) for shape in _ranges(self.values, shapes)]
         names = ("sets", "attracting", "top", "cells", "leads")
         return {name: np.array([[box[i] for box in row] for row in made]) for i, name in enumerate(names)}
 
     def boxes(self, lams: Sequence[Range], shape: Range) -> Iterator[tuple[int, int, float, Cells, Cells]]:
-        """How many Morse sets and how many trapping regions, the strip's height, the cells of sets, and their order."""
+        """For each box: the numbers of Morse sets and trapping regions, strip height, cells and order of the sets."""
         first: ParameterBox | None = None
         for lam in lams:
             cells = np.full((self.rows, self.columns), -1, dtype=np.int8)
@@ -79,18 +78,18 @@ class Graphs:
 
 
 def _painted(graph: MorseGraph) -> NDArray[np.int8]:
-    """The number of the Morse set at each cell of the first chart's rows and columns, -1 where there is none."""
+    """The index of the Morse set at each cell, as an array of rows and columns; -1 where there is none."""
     label = np.full(graph.transitions.count + 1, -1, dtype=np.int64)
     for index, members in enumerate(graph.sets):
         label[members] = index
     leaf = graph.transitions.leaf
     grid = graph.transitions.grid
-    painted = grid.painted(graph.transitions.chosen(np.append(leaf, False)), label[:-1][leaf], -1)
+    painted = grid.to_array(graph.transitions.chosen(np.append(leaf, False)), label[:-1][leaf], -1)
     return np.asarray(np.concatenate(list(painted)).T.astype(np.int8))
 
 
 def _ranges(borders: Sequence[str], middles: NDArray[np.float64]) -> Iterator[Range]:
-    """The boxes of one parameter about some middles."""
+    """The interval between `borders` about each of the `middles`, as a pair of fractions."""
     ends = [Fraction(text) for text in borders]
     for middle in middles:
         index = int(np.searchsorted([float(end) for end in ends], middle)) - 1
@@ -106,9 +105,9 @@ def database(
     rows: int = 128,
     coarsest: int = 8,
 ) -> Sweep:
-    """The sweep over boxes of parameters, whose borders are `values` of a shape parameter and the contractions `lams`.
+    """The sweep over boxes of parameters between the `values` of a shape parameter and between the contractions `lams`.
 
-    Borders are the decimals that the numbers show. `columns` of cells lie along the boundary, up to its rotation, and
+    Each float stands for its shortest decimal. `columns` of cells lie along the boundary, modulo its rotation, and
     `rows` across the strip of exit angles; a box begins with blocks of `coarsest` cells.
 
     >>> sweep = database(Scene("egg", alpha="1/20"), "alpha", [0.05, 0.06], [0.1, 0.2], 24, 16, 4)
@@ -121,7 +120,7 @@ def database(
             f"{parameter} is no shape parameter of {scene.name}; accepted: one of {', '.join(scene.shape)}"
         )
     if parameter in TAKEN:
-        raise ValueError(f"{parameter} is what a field of the results is called; give the parameter another name")
+        raise ValueError(f"{parameter} is the name of a field of the results; give the parameter another name")
     if not 0 <= min(lams) < max(lams) < 1:
         raise ValueError(f"lam = {min(lams)} to {max(lams)} is no range; accepted: 0 <= LOW < HIGH < 1")
     if min(len(values), len(lams)) < 2:
@@ -183,7 +182,7 @@ def _middles(borders: Sequence[Fraction]) -> NDArray[np.float64]:
 
 
 def continued(found: "xr.Dataset") -> Numbers:
-    """The class of each box of parameters, the largest class first; -1 where its Morse graph is not known."""
+    """The class of each box of parameters, 0 for the largest class; -1 where the box's Morse graph is unknown."""
     sets, tops = found.sets.values.astype(np.int64), found.top.values
     cells, leads = found.cells.values, found.leads.values
     known = (sets >= 0) & (sets <= KNOWN)
@@ -210,9 +209,10 @@ def continued(found: "xr.Dataset") -> Numbers:
 def common(
     here: NDArray[np.int8], there: NDArray[np.int8], top_here: float, top_there: float, counts: tuple[int, int]
 ) -> NDArray[np.bool_]:
-    """Which sets of two graphs have cells that overlap; the height of one strip is a power of 2 times the other's.
+    """A matrix: which sets of two graphs have overlapping cells. The strips' heights differ by a power of 2.
 
-    A point on the border of cells lies in cells that overlap in more than a border, too, so these are enough.
+    `here` and `there` are the set of each cell, -1 for none; `counts` are the numbers of sets. Cells that share only a
+    border need not count: a point of the border lies in cells that overlap as well.
 
     >>> one, other = np.array([[0], [1]], dtype=np.int8), np.array([[0], [-1]], dtype=np.int8)
     >>> common(one, other, 1.0, 1.0, (2, 1)).tolist()
@@ -230,7 +230,9 @@ def common(
 
 
 def same_order(met: NDArray[np.bool_], here: NDArray[np.int8], there: NDArray[np.int8]) -> bool:
-    """Are the sets of two graphs that meet any matched one to one, so that the same lead to the same?
+    """True if sets that meet (by the matrix `met`) match one to one, and walks lead between the same ones of them.
+
+    `here` and `there` are matrices: which set of a graph leads to which.
 
     >>> order = np.array([[1, 1], [0, 1]], dtype=np.int8)
     >>> same_order(np.eye(2, dtype=bool), order, order), same_order(np.ones((2, 2), dtype=bool), order, order)

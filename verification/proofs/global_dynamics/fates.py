@@ -1,33 +1,31 @@
-"""Where almost every orbit ends: Morse sets that hold one attracting cycle, and those that hold saddles only.
+"""The limit of almost every orbit: each Morse set holds one attracting cycle, or else only saddles.
 
-Boxes that lie together are held by one rectangle, a *cluster*; between clusters walks lead as between their boxes. An
-orbit is in one Morse set from some bounce on, so it stays in clusters from then on, and in one strongly connected
-component of their graph. Over a whole cluster, whose landings lie on one component of the table and less than a turn
-apart, the derivative is enclosed. The difference of two points of a cluster is taken to that of their images by a mean
-of derivatives along the segment between them, which lies in the cluster; so two orbits that visit the same clusters
-are compared as if the map were linear.
+A *cluster* is a rectangle around boxes that lie close together; the graph of clusters has an edge where some of their
+boxes have one. An orbit stays in one Morse set from some bounce on, hence in one strongly connected component of the
+graph of clusters. The derivative is enclosed over each cluster, whose landings must lie on one component of the table
+and less than a turn apart. A mean of derivatives along the segment between two points of a cluster maps their
+difference to that of their images; so two orbits that visit the same clusters are compared as if the map were linear.
 
-*Sink*: each cluster has one successor, and there are vectors `v > 0` of two entries, one to a cluster, with
-`|M|*v <= q*v'` and `q < 1` for the absolute values of the derivative's entries over the cluster of `v`, where `v'` is
-that of its successor. Then two orbits that visit the same clusters approach each other like `q**n`. If a cycle visits
-all clusters, once in a round, every orbit that stays converges to it.
+*Sink*: each cluster has one successor, and there are vectors `v > 0` of two entries, one to a cluster, with `|M|*v <=
+q*v'` and `q < 1` for the absolute values of the derivative's entries over the cluster of `v`, where `v'` is the vector
+of its successor. Then two orbits that visit the same clusters approach each other like `q**n`. If a cycle visits each
+cluster once in a round, every orbit that stays in the clusters converges to it.
 
-*Saddle*: each cluster has a cone of slopes `dphi/dtheta`, that the derivative takes into the cones of its successors,
-and vectors in it grow by `growth > 0` at least, in `|dtheta|`. Two points on one horizontal segment, which visit the
-same clusters for `n` bounces, part by the product of the factors, and stay within the width of a cluster. So what
-stays for `n` bounces, of the segment, is no longer than the width times the sum of the products of `1/growth` over all
-walks of `n` clusters. If these sums tend to 0, the points that stay for ever have measure 0 on each horizontal segment,
-hence in the plane (Fubini).
+*Saddle*: each cluster has a cone of slopes `dphi/dtheta` that the derivative maps into the cones of its successors, and
+`|dtheta|` grows by a factor of at least `growth > 0` along its vectors. Take two points on a segment with a slope of
+the cone that visit the same clusters for `n` bounces. Their distance grows by the product of the factors and stays
+within the width of a cluster. So the points of the segment that stay for `n` bounces have a total length of at most the
+width times the sum of the products of `1/growth` over all walks of `n` clusters. If these sums tend to 0, the points
+that stay for ever have measure 0 on each segment of such a slope, hence in the plane (Fubini).
 
-For `lam > 0` the map is a diffeomorphism wherever it is smooth: its determinant is not 0. (Of a law other than the
-paper's its slope is enclosed over all incidence angles and places; it must keep its sign.) So what comes to such a set,
-or to a join, after some number of bounces has measure 0 too. Therefore *almost every orbit converges to the cycles of
-the sinks*, when every Morse set is part of one or the other.
+For `lam > 0` the map is a diffeomorphism wherever it is smooth: its determinant is not 0. (The slope of a law other
+than the paper's is enclosed over all incidence angles and places; it must keep its sign.) So the points that reach such
+a set, or a join, after some number of bounces have measure 0 too. Therefore *almost every orbit converges to the cycles
+of the sinks*, when every Morse set is a sink or a saddle.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -36,56 +34,61 @@ from scipy.ndimage import binary_dilation, label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from symbolic.tables.scene import Scene
+from numeric.backends import elementary
 from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.flights import Slopes, matrix
-from verification.proofs.global_dynamics.graph import Cells, Grid, Mask, Transitions, refined
-from verification.proofs.global_dynamics.images import PinballImages, invertible
-from verification.proofs.global_dynamics.regions import carried
+from verification.proofs.global_dynamics.images import PinballImages, RangeTheorem, invertible
+from verification.proofs.global_dynamics.regions import Derivatives, factors, grown_cones, least_mean, push_slopes
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.graph import Cells, Grid, Mask, Transitions, refined
+from verification.rigorous.norms import shrinkage
+from verification.rigorous.theorem import hypothesis
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Point = tuple[int, float, float]  # component, theta, phi
-ROUNDS = 400  # of power iterations, and of cones that grow
-SLACK = 1e-9  # more than a dozen roundings of doubles, relatively
-CUT = 48, 4  # parts of a rectangle along theta and along phi, over each of which the derivative is enclosed
-WIDENED = 1.02  # a cone that has grown, so that the next rounds find it large enough
-NEAR = 3  # cells by which boxes are widened before those that touch count as one cluster
+ROUNDS = 400  # the most rounds in which boxes around a cycle grow
+SLACK = 1e-9  # relative; more than the rounding of a dozen operations
+CUT = 48, 4  # a rectangle is cut into so many parts along theta and phi to enclose the derivative
+WIDENED = 1.02  # by which a box that grows is widened, so that fewer rounds are needed
+NEAR = 3  # boxes are widened by so many cells, and those that touch then form one cluster
 TURN = 6.28  # below a whole turn
-WALKS = 64  # bounces over which walks of clusters are summed
+CLOSE, LEAST = 1e-6, 1e-10  # the largest distance of given points from a cycle; half the width of the first boxes
+WALKS = 64  # the length of walks over which stretches are summed
 
 
 @dataclass(frozen=True)
 class Cluster:
-    """What is proved of one strongly connected component of clusters: rectangles, and the map's factor there.
+    """A strongly connected component of clusters: its rectangles, whether it is a `sink`, and proved bounds.
 
-    A sink contracts by `factor` a bounce at least; of a saddle the points that stay `WALKS` bounces have at most the
-    share `factor`. None where neither is proved.
+    In a sink distances shrink by `factor < 1` or more per bounce in some norm, so that it holds at most one cycle. In a
+    saddle the points that stay for `WALKS` bounces make up at most the share `factor`, and vectors in the cones grow by
+    `exp(growth)` or more per bounce in the mean of `WALKS`, so that each cycle is unstable where `growth > 0`. None
+    where nothing is proved.
     """
 
     boxes: Boxes
     sink: bool
     factor: float | None
+    growth: float | None = None
 
 
 def clusters(
     map: PinballImages, graph: Transitions, near: int = NEAR, among: Mask | None = None
 ) -> list[Cluster] | None:
-    """The components of clusters that hold every box where orbits may return, each with what is proved of it.
+    """The components of clusters in which orbits may return, with bounds for each; None where these are not proved.
 
-    Where some vertices `among` them are given, these alone: no orbit stays in them that they do not hold. Boxes at most
-    `2*near` cells apart are held by one cluster. None where a box is lost, or where a cluster may land
-    on both sides of a join.
+    With a mask `among` only those vertices are used: no orbit stays outside of them. Boxes at most `2*near` cells apart
+    form one cluster. None is returned where a box is lost, or where a cluster may land on both sides of a join.
     """
     recurrent = graph.recurrent if among is None else among
     if graph.recurrent[-1] and np.any(graph.edges.indices[: graph.edges.indptr[-2]] == graph.count):
-        return None  # some box is lost, and orbits may do anything
+        return None  # some box is lost
     cells = graph.chosen(recurrent)
     if not cells.chart.size:
-        return []  # no orbit stays for ever
+        return []  # no orbit returns
     if not graph.complete(recurrent):
-        return None  # orbits may walk where these edges do not show it
+        return None  # an orbit may use edges of a refined block
     names = _named(graph, cells, near)
     chosen = recurrent[:-1] & graph.leaf
     inner = graph.edges[:-1, :-1][chosen][:, chosen].tocoo()
@@ -109,7 +112,7 @@ def clusters(
         own = np.flatnonzero(labels == name)
         inside = walks[own][:, own].tocsr()
         if inside.nnz == 0:
-            continue  # passed once
+            continue  # orbits pass it at most once
         on = np.isin(source, own)
         some = Slopes(*(BallArray(*(np.broadcast_to(x, source.shape)[on] for x in (s.m, s.r))) for s in slopes))
         where = np.searchsorted(own, source[on])
@@ -119,13 +122,14 @@ def clusters(
         if shrinks < 1:
             parts.append(Cluster(held, True, shrinks))
         else:
-            parts.append(Cluster(held, False, _staying(some, where, inside)))
+            landed = Derivatives(where, piece.chart[on], some)
+            parts.append(Cluster(held, False, *_staying(landed, inside, held.chart)))
     return parts
 
 
 def _named(graph: Transitions, cells: Cells, near: int) -> Indices:
-    """The number of the cluster of each box."""
-    member = graph.grid.painted(cells, np.ones(cells.chart.size, dtype=bool)).astype(bool)
+    """The index of the cluster of each box."""
+    member = graph.grid.to_array(cells, np.ones(cells.chart.size, dtype=bool)).astype(bool)
     labels, count = np.zeros(member.shape, dtype=np.int64), 0
     for chart, mask in enumerate(member):
         wide = binary_dilation(mask, np.ones((3, 3)), near) if near else mask
@@ -137,7 +141,7 @@ def _named(graph: Transitions, cells: Cells, near: int) -> Indices:
 
 
 def _rectangles(graph: Transitions, cells: Cells, names: Indices, count: int) -> Boxes:
-    """The least rectangle about each cluster."""
+    """The smallest rectangle that holds the boxes of each cluster."""
     own = graph.grid.boxes(cells)
     chart = np.zeros(count, dtype=np.int64)
     chart[names] = own.chart
@@ -151,126 +155,176 @@ def _rectangles(graph: Transitions, cells: Cells, names: Indices, count: int) ->
 
 
 def _reach(ends: Array, source: Indices, count: int) -> Array:
-    """The greatest entry of each cluster."""
+    """The largest entry of each cluster."""
     found = np.full(count, -np.inf)
     np.maximum.at(found, source, ends)
     return found
 
 
 def _contraction(s: Slopes, where: Indices, walks: csr_matrix) -> float:
-    """The least `q` found with `|M|*v <= q*v'` along all walks; `where` is the cluster of each entry."""
-    (a, b), (c, d) = matrix(s)
+    """An upper bound of the contraction factor along all walks of a sink; `where` is the cluster of each entry."""
     size = np.zeros((4, walks.shape[0]))
-    for entry, x in zip(size, (a, b, c, d), strict=True):
+    for entry, x in zip(size, (x for row in matrix(s) for x in row), strict=True):
         np.maximum.at(entry, where, np.where(np.isfinite(x.r), x.magnitude(), np.inf))
-    if not np.all(np.isfinite(size)):
-        return np.inf
-    size = size.reshape(2, 2, -1) * (1 + SLACK) + 1e-300
-    vectors = _vectors(size, walks.indices)
-    moved = np.einsum("ijk,jk->ik", size, vectors)
-    return float(np.max(moved / vectors[:, walks.indices])) * (1 + SLACK)
+    return shrinkage(size.reshape(2, 2, -1), walks.indices)
 
 
-def _vectors(size: Array, target: Indices) -> Array:
-    """Positive vectors of clusters that their matrices, by power iterations, nearly keep: whichever they are."""
-    vectors = np.ones((2, size.shape[2]))
-    for _ in range(ROUNDS):
-        image = np.zeros_like(vectors)
-        moved = np.einsum("ijk,jk->ik", size, vectors)
-        np.maximum.at(image.T, target, moved.T)
-        vectors = vectors + image
-        vectors /= vectors.max()
-    return vectors
-
-
-def _staying(s: Slopes, where: Indices, walks: csr_matrix) -> float | None:
-    """The greatest sum of the inverse growths over walks of `WALKS` clusters; None where no cones are found."""
-    count = walks.shape[0]
-    source = np.repeat(np.arange(count), np.diff(walks.indptr))
-    cones = np.zeros(count), np.zeros(count)
-    for _ in range(ROUNDS):
-        slope = hull(cones[0][where], cones[1][where])
-        with np.errstate(all="ignore"):
-            stretch, image = carried(s, slope)
-        sign = np.sign(stretch.m)
-        one = sign == sign[np.searchsorted(where, where)]
-        if not np.all(one & (np.abs(stretch.m) > stretch.r) & np.isfinite(stretch.r) & np.isfinite(image.r)):
-            return None
-        least, ends = np.full(count, np.inf), (np.full(count, np.inf), np.full(count, -np.inf))
-        np.minimum.at(least, where, (np.abs(stretch.m) - stretch.r) * (1 - SLACK))
-        np.minimum.at(ends[0], where, image.lower())
-        np.maximum.at(ends[1], where, image.upper())
-        low, high = cones[0].copy(), cones[1].copy()
-        np.minimum.at(low, walks.indices, ends[0][source])
-        np.maximum.at(high, walks.indices, ends[1][source])
-        if np.array_equal(low, cones[0]) and np.array_equal(high, cones[1]):
-            weights = csr_matrix((1 / least[source], walks.indices, walks.indptr), shape=walks.shape)
-            sums = np.ones(count)
-            for _ in range(WALKS):
-                sums = weights @ sums * (1 + SLACK)
-            return float(sums.max())
-        more = (high - low) * (WIDENED - 1)
-        cones = low - more * (low < cones[0]), high + more * (high > cones[1])
-    return None
+def _staying(found: Derivatives, walks: csr_matrix, chart: Indices) -> tuple[float | None, float | None]:
+    """The largest sum of inverse stretches over walks of `WALKS` clusters, and the least mean of their logarithms."""
+    cones, entered = grown_cones(found, walks, chart)
+    with np.errstate(all="ignore"):
+        sign = np.sign(push_slopes(found.slopes, hull(*cones)[found.source])[0].m)
+    if entered is None or np.any(sign != sign[np.searchsorted(found.source, found.source)]):
+        return None, None  # the stretch may vanish on average along a segment
+    least, _ = factors(found, cones, chart.size)
+    inverse = elementary.exp(-least)[np.repeat(np.arange(chart.size), np.diff(walks.indptr))] * (1 + SLACK)
+    weights = csr_matrix((inverse, walks.indices, walks.indptr), shape=walks.shape)
+    sums = np.ones(chart.size)
+    for _ in range(WALKS):
+        sums = weights @ sums * (1 + SLACK)
+    return float(sums.max()), least_mean(least, walks, WALKS) - SLACK
 
 
 @dataclass(frozen=True)
-class Fate:
-    """The statement that almost every orbit of a scene converges to one of some cycles, for `0 < lam` in a range.
+class RecurrentClusters(RangeTheorem):
+    """A theorem about the clusters in which orbits return.
 
-    `cycles` are phase points `(component, theta, phi)`, bounce by bounce, which are known to be cycles throughout the
-    range. The grid has `columns` by `rows` cells, in blocks of `coarsest` where orbits do not return.
-
-    >>> horizontal = ((0, 0.0, 0.0), (1, 0.0, 0.0))
-    >>> low = Fate(Scene("cuspless"), (Fraction(0), Fraction(1, 100)), (1024, 16), 4, (horizontal,))
-    >>> set(low.checks.values())
-    {True}
+    They come from a grid of `columns` by `rows` cells that starts with blocks of `coarsest` cells.
     """
 
-    scene: Scene
-    lam: tuple[Fraction, Fraction]
     grid: tuple[int, int]
     coarsest: int
-    cycles: tuple[tuple[Point, ...], ...]
-
-    @cached_property
-    def map(self) -> PinballImages:
-        """The map, over all of the range at once; `ValueError` unless the table is convex."""
-        return PinballImages(self.scene, self.lam)
 
     @cached_property
     def graph(self) -> Transitions:
-        """The graph of boxes, finest where orbits may return."""
+        """The transition graph, refined where orbits may return."""
         return refined(self.map, Grid(self.map.charts, *self.grid), self.coarsest)
 
     @cached_property
     def parts(self) -> list[Cluster] | None:
-        """The components of clusters, over all of the range at once."""
-        return clusters(self.map, self.graph) if invertible(self.map) else None
-
-    @cached_property
-    def checks(self) -> dict[str, bool | None]:
-        """What is proved, item by item: `returning`, that boxes hold all that returns; None where nothing is."""
-        checks: dict[str, bool | None] = dict.fromkeys(("returning", "sinks", "saddles"))
-        if self.parts is None:
-            return checks
-        sinks, others = ([part for part in self.parts if part.sink is wanted] for wanted in (True, False))
-        found = [holding(self.parts, cycle) for cycle in self.cycles]
-        each = len(sinks) == len(found) == len({id(part) for part in found}) and None not in found
-        few = all(part.factor is not None and part.factor < 1 for part in others)
-        return {"returning": True, "sinks": True if each else None, "saddles": True if few else None}
+        """The components of clusters, for the whole range of contractions at once; None where not proved."""
+        return clusters(self.map, self.graph)
 
     @property
-    def proved(self) -> bool:
-        """Is all of it proved?"""
-        return all(value is True for value in self.checks.values())
+    def saddle_parts(self) -> list[Cluster]:
+        """The components that are not sinks; `ArithmeticError` where the components are not known."""
+        if self.parts is None:
+            raise ArithmeticError("clusters do not hold all that returns")
+        return [part for part in self.parts if not part.sink]
+
+
+@dataclass(frozen=True)
+class FewAttractingCycles(RecurrentClusters):
+    """All cycles but at most `count` are unstable, for each contraction of a range; each sink holds at most one.
+
+    >>> from fractions import Fraction
+    >>> from symbolic import Scene
+    >>> low = FewAttractingCycles(Scene("cuspless"), (Fraction(0), Fraction(1, 100)), (1024, 16), 4, 1)
+    >>> low.proved
+    True
+    """
+
+    count: int
+
+    @hypothesis
+    def returning(self) -> bool:
+        """Clusters hold all orbits that return, and each cluster lands on one side of each join."""
+        return self.parts is not None
+
+    @hypothesis
+    def sinks(self) -> bool:
+        """At most `count` of the components of clusters are sinks."""
+        return self.parts is not None and sum(part.sink for part in self.parts) <= self.count
+
+    @hypothesis
+    def repelling(self) -> bool:
+        """In the other components vectors of a cone grow."""
+        return all((part.growth or 0) > 0 for part in self.saddle_parts)
+
+
+@dataclass(frozen=True)
+class AlmostEveryOrbit(RecurrentClusters):
+    """Almost every orbit of a scene converges to one of the given cycles, for each `lam > 0` of a range.
+
+    Each of the `cycles` is given by its phase points `(component, theta, phi)`. Boxes at most `2*near` cells apart form
+    one cluster.
+
+    >>> from fractions import Fraction
+    >>> from symbolic import Scene
+    >>> horizontal = ((0, 0.0, 0.0), (1, 0.0, 0.0))
+    >>> low = AlmostEveryOrbit(Scene("cuspless"), (Fraction(0), Fraction(1, 100)), (1024, 16), 4, (horizontal,))
+    >>> low.proved
+    True
+    """
+
+    cycles: tuple[tuple[Point, ...], ...]
+    near: int = NEAR
+
+    @cached_property
+    def staying(self) -> Mask:
+        """The vertices of the graph in which orbits may stay: all that lie on closed walks."""
+        return self.graph.recurrent
+
+    @cached_property
+    def parts(self) -> list[Cluster] | None:
+        """The components of clusters; None where they are not proved or the map may not be invertible."""
+        return clusters(self.map, self.graph, self.near, self.staying) if invertible(self.map) else None
+
+    @hypothesis
+    def returning(self) -> bool:
+        """Clusters hold all orbits that return, and the map is a diffeomorphism where it is smooth."""
+        return self.parts is not None
+
+    @hypothesis(name="cycles")
+    def cycles_exist(self) -> bool:
+        """There is a cycle within 1e-6 of the given points of each cycle, at each contraction of the range."""
+        return all(exists(self.map, cycle) for cycle in self.cycles)
+
+    @hypothesis
+    def sinks(self) -> bool:
+        """Each sink holds one of the cycles, and each cycle is in a sink."""
+        found = [holding(self.parts or (), cycle) for cycle in self.cycles]
+        count = sum(part.sink for part in self.parts or ())
+        return self.parts is not None and count == len(found) == len({*map(id, found)}) and None not in found
+
+    @hypothesis
+    def saddles(self) -> bool:
+        """In the other components the points that stay for ever have measure 0."""
+        return all(part.factor is not None and part.factor < 1 for part in self.saddle_parts)
+
+
+def exists(map: PinballImages, points: Sequence[Point]) -> bool:
+    """True if a cycle is proved within `CLOSE` of the points, at each contraction of the map's range.
+
+    A box around each point is mapped into the next box, so by Brouwer's theorem the first box holds a periodic point.
+    """
+    chart = np.array([each[0] for each in points], dtype=np.int64)
+    middle = np.array([each[1:] for each in points], dtype=float).T
+    size = np.full(middle.shape, LEAST)
+    for _ in range(ROUNDS):
+        low, high = middle - size, middle + size
+        found = map.images(Boxes(chart, (low[0], high[0]), (low[1], high[1])))
+        if found.lost.size or not np.array_equal(found.source, np.arange(chart.size)):
+            return False
+        if not np.array_equal(found.boxes.chart, np.roll(chart, -1)):
+            return False
+        gap = np.array([found.boxes.x, found.boxes.y]) - np.roll(middle, -1, axis=1)[:, None]  # coordinate, end, box
+        if map.closed:
+            gap[0] -= 2 * np.pi * np.round(gap[0, 0] / (2 * np.pi))
+        reach = np.roll(np.max(np.abs(gap), axis=1), 1, axis=1)
+        if np.all(reach + LEAST / 100 < size):  # above the rounding of the differences
+            return bool(np.all(size < CLOSE))
+        size = reach * WIDENED + LEAST
+        if not np.all(size < CLOSE):
+            return False
+    return False
 
 
 def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None:
-    """The sink of whose clusters each holds exactly one of the points, `(component, theta, phi)`, in its interior.
+    """The sink each of whose clusters holds exactly one of the points in its interior; or None.
 
-    No cluster of another part may hold a point, even on its border: rectangles may overlap, and the boxes of the cycle
-    be those of the other part.
+    Points are `(component, theta, phi)`. No cluster of another component may hold a point, even on its border:
+    rectangles may overlap, and the boxes around the cycle could belong to the other component.
     """
     for part in parts:
         if not part.sink:
@@ -284,7 +338,7 @@ def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None
 
 
 def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> NDArray[np.bool_]:
-    """Which cluster, in columns, holds which point, in rows."""
+    """A matrix of booleans: which cluster (column) holds which point (row)."""
     (left, right), (bottom, top) = part.boxes.x, part.boxes.y
     rows = [
         (part.boxes.chart == chart) & below(left, x) & below(x, right) & below(bottom, y) & below(y, top)

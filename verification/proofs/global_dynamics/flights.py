@@ -1,7 +1,7 @@
-"""Flights that leave boxes: arcs that hold their landings, the landings themselves, and the derivative over a box.
+"""Flights from boxes of phase points: arcs that hold the landings, enclosures of the landings, and derivatives.
 
-The arc of a box comes from two signs of a cross product, as in `images`; within it the mean-value theorem encloses
-landing and incidence.
+Two signs of a cross product prove the arc, as `images` explains; within it the mean-value theorem encloses landing and
+incidence. `z0` is a start, `(v, w)` the direction of a flight, and a *bend* the rate at which the tangent turns.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,23 +15,23 @@ from sympy import Rational, simplify
 from symbolic.tables.geometry import velocity
 from symbolic.tables.table import Table, theta
 from verification.arithmetic.arrays import ROUNDING, ArrayOps, BallArray, Compiled, common_part, direction, hull, turned
-from verification.proofs.global_dynamics.boxes import Boxes, centred
+from verification.rigorous.boxes import Boxes, centred
 
 if TYPE_CHECKING:
     from verification.proofs.global_dynamics.images import PinballImages
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-TRIES = 7  # widenings of a guessed arc
-SIDES = "x", "y", "v", "w", "cos", "speed", "bend"  # on which the side of a flight depends
-CENTRE = 1e-10  # half the length of the arc guessed about one landing, in the parameter
-PLACES, CLOSE = (Rational(1, 7), Rational(1, 5)), 1e-9  # where a bend that varies is seen to do so
+TRIES = 7  # the most widenings of a guessed arc
+SIDES = "x", "y", "v", "w", "cos", "speed", "bend"  # what the side of a flight depends on
+CENTRE = 1e-10  # half the length, in the parameter, of the arc guessed around one landing
+PLACES, CLOSE = (Rational(1, 7), Rational(1, 5)), 1e-9  # places and a tolerance for the test whether a bend is constant
 OPS = ArrayOps()
-CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # of a boundary point
+CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # position, velocity and acceleration of a boundary point
 
 
-class Piece(NamedTuple):
-    """Boxes, and for each a part of its arc of landings, on one component; `smooth` if it is all of the arc."""
+class LandingArcs(NamedTuple):
+    """For some boxes the part of their arc of landings that lies on one component; `smooth` if it is the whole arc."""
 
     on: Indices
     chart: Indices
@@ -41,10 +41,10 @@ class Piece(NamedTuple):
 
 
 class Slopes(NamedTuple):
-    """The landing's derivatives by `theta` and `phi`, how fast the tangent turns at start and landing, the law's slope.
+    """The landing's derivatives by `theta` and `phi`, the bends at start and landing, and the law's slopes.
 
     With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = drift*d theta1 - law*d eta1`;
-    `drift` is 0 for a law that is the same everywhere.
+    `drift` is 0 for a law that does not depend on the place.
     """
 
     by_theta: BallArray
@@ -58,11 +58,17 @@ class Slopes(NamedTuple):
 End = tuple[Indices, Array]  # component and parameter of boundary points
 Places = dict[str, BallArray]
 Matrix = list[list[BallArray]]
-Landing = tuple[Piece, BallArray, BallArray, BallArray | None]  # where, the incidence, the exit if place and law mix
+Landing = tuple[
+    LandingArcs, BallArray, BallArray, BallArray | None
+]  # place, incidence, and exit for a law of the place
 
 
 class Flights:
-    """What a block of boxes needs more than once."""
+    """The flights from a block of boxes, with the values that several computations share.
+
+    In its methods `on` are indices of boxes, and `chart` and `arc` the components and balls of parameters where these
+    boxes may land.
+    """
 
     def __init__(self, map: "PinballImages", boxes: Boxes) -> None:
         self.map, self.boxes, self.chart = map, boxes, boxes.chart
@@ -70,26 +76,26 @@ class Flights:
         self.theta, self.phi = theta, phi
         self.centre = self._leaving(theta, phi)
         self.whole = self._leaving(self.thetas, self.phis)
-        self.landed: tuple[Indices, Array, list[BallArray]]  # of the midpoints, in float64, and the boundary there
+        self.landed: tuple[Indices, Array, list[BallArray]]  # of the midpoints in float64, with the boundary there
         self.last: tuple[BallArray, list[BallArray], BallArray] | None = None  # an arc, the boundary, and incidences
 
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
-        """Start, velocity and acceleration of the boundary, its speed and bend, and the direction of flight."""
+        """Values at the starts: boundary point, velocity, acceleration, speed, bend, and the direction of flight."""
         place = self.map.place(self.chart, theta)
         return dict(zip((*CURVE, "v", "w", "cos", "speed", "bend"), (*place, *departing(*place, phi)), strict=True))
 
     def among(self, places: Places, names: tuple[str, ...], on: Indices) -> list[BallArray]:
-        """Some of what is known of some of the boxes, as they stand."""
+        """The named values at the boxes `on`; without copying where these are all boxes."""
         return [places[name] for name in names] if on.size == self.chart.size else [places[name][on] for name in names]
 
     def sides(self, end: End, on: Indices) -> BallArray:
-        """`v x (z - z0)` for the flights of each box and one boundary point: positive to the left of every flight."""
+        """Product `v x w` of direction and vector `w` to the point `end`, positive if it is left of a box's flights."""
         x, y, *_ = self.map.place(end[0], BallArray(end[1]))
         at, all_of = self.among(self.centre, SIDES[:4], on), self.among(self.whole, SIDES, on)
         return aside(x, y, *at, *all_of, self.reach[0][on], self.reach[1][on])[0]
 
     def arcs(self) -> tuple[End, End]:
-        """An arc for each box that holds its landings; parameters are nan where none is proved."""
+        """Both ends of an arc for each box that holds its landings; parameters are NaN where none is proved."""
         chart, theta, *widths = self.guess()
         found = []
         for sign, width in zip((-1, 1), widths, strict=True):
@@ -110,7 +116,7 @@ class Flights:
         return found[0], found[1]
 
     def guess(self) -> tuple[Indices, Array, Array, Array]:
-        """Landings of the midpoints, and how far the box's landings may lie before and after, in float64."""
+        """The landings of the midpoints in float64, and how far the box's landings may extend before and after them."""
         ends = self.map.map.states.ends
         low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
         theta = self.theta.m if self.map.closed else np.clip(self.theta.m, low, high)
@@ -130,7 +136,7 @@ class Flights:
         return chart, landed, width, width
 
     def _moved(self, chart: Indices, theta: Array, by: Array) -> End:
-        """Boundary points moved along by a parameter; past a join onto the next component, by the same length."""
+        """Boundary points moved along by a parameter; beyond a join, on the next component by the same length."""
         if self.map.closed:
             return chart, theta + by
         count = len(self.map.ends)
@@ -147,29 +153,30 @@ class Flights:
             chart[over] = after
         return chart, np.clip(moved, low[chart], high[chart])
 
-    def pieces(self, low: End, high: End) -> list[Piece]:
-        """The arcs of landings, cut where components meet."""
+    def pieces(self, low: End, high: End) -> list[LandingArcs]:
+        """The arcs of landings, split at the joins."""
         if self.map.closed:
-            return [Piece(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
+            return [LandingArcs(np.arange(self.chart.size), self.chart, low[1], high[1], True)]
         count = len(self.map.ends)
         whole = (low[0] == high[0]) & (low[1] < high[1]) & ~np.isnan(low[1])
-        found = [Piece(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True)]
+        found = [LandingArcs(np.flatnonzero(whole), high[0][whole], low[1][whole], high[1][whole], True)]
         joined = np.flatnonzero(~whole)
         steps = (high[0][joined] - low[0][joined]) % count
-        steps = np.where(steps == 0, count, steps)  # around all of the boundary
+        steps = np.where(steps == 0, count, steps)  # once around the boundary
         for step in range(int(steps.max(initial=0)) + 1):
             on = joined[steps >= step]
             last = steps[steps >= step] == step
             chart = (low[0][on] + step) % count
             bottom, top = self.map.outer[:, chart]
             a = low[1][on] if step == 0 else bottom
-            found.append(Piece(on, chart, a, np.where(last, high[1][on], top), False))
+            found.append(LandingArcs(on, chart, a, np.where(last, high[1][on], top), False))
         return found
 
-    def landing(self, piece: Piece) -> Landing:
-        """For each box of a piece, whose landings lie on one component between two parameters.
+    def landing(self, piece: LandingArcs) -> Landing:
+        """Landing and incidence of the boxes of a piece.
 
-        Without `smooth` the arc may not hold all landings of the box, and the mean-value theorem is not used.
+        Where the piece is not `smooth`, it may not hold all landings of the box, and the mean-value theorem is not
+        used.
         """
         on, chart, low, high, smooth = piece
         arc = hull(low, high)
@@ -180,7 +187,7 @@ class Flights:
         return piece, common_part(arc, theta), eta, phi
 
     def over(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[list[BallArray], BallArray]:
-        """The boundary over an arc, and incidences there; of one that is asked for again at once as they were."""
+        """The boundary over an arc and the incidence angles there; the last result is kept."""
         if self.last is None or self.last[0] is not arc:
             place = self.map.place(chart, arc)
             turn = turn_between(self.tangent(on, self.whole), place[2:4])
@@ -195,31 +202,31 @@ class Flights:
     def mean_value(
         self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
     ) -> tuple[BallArray, BallArray, BallArray | None]:
-        """Landing, incidence and, under a law of the place, exit, by the mean-value theorem about the midpoint's."""
+        """Landing, incidence and, for a law of the place, exit angle, by the mean-value theorem about the midpoint."""
         by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
         middle = self.midpoint(on, chart, arc)
         turn = turn_between(self.tangent(on, self.centre), self.map.place(chart, middle)[2:4])
         theta, fine, *by = moved(middle, self.phi[on], turn, by_theta, by_phi, here, there, *reach)
         phi = None
-        if self.map.placed:  # place and incidence move together
+        if self.map.placed:  # place and incidence are correlated
             phi = self.map.exit(incidence(self.phi[on] + turn), middle)
             phi = phi + (drift * by_theta - law * by[0]) * reach[0] + (drift * by_phi - law * by[1]) * reach[1]
         return theta, common_part(eta, incidence(fine)), phi
 
     @cached_property
     def speed(self) -> BallArray:
-        """How fast the parameter runs over each box."""
+        """The speed of the boundary parameter over each box."""
         here = [self.whole[name] for name in CURVE]
         return speed(self.centre["speed"], self.whole["speed"], here, self.reach[0])
 
     @cached_property
     def bend(self) -> BallArray:
-        """How fast the tangent turns over each box."""
+        """The rate at which the tangent turns over each box, by the parameter."""
         return closer(lambda: self.whole["bend"], self.map, self.chart)
 
     def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
-        """A double in each arc, about which the mean-value theorem is used, and the boundary there."""
+        """For each arc the double at its middle, as centre for the mean-value theorem, and the boundary there."""
         return (at := BallArray(np.asarray(arc.m))), self.map.place(chart, at)
 
     def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
@@ -230,7 +237,7 @@ class Flights:
             d theta1/d theta0 = (bend0*l - cos(phi0)*speed0)/(speed1*cos(eta1)),
             d theta1/d phi0 = -l/(speed1*cos(eta1)).
 
-        The length, which hardly varies, the speeds and the incidence are enclosed by the mean-value theorem.
+        Length, speeds and incidence are enclosed by the mean-value theorem.
         """
         beyond, (there, rough_eta) = self.reach[0][on], self.over(on, chart, arc)
         at, last = self.near(on, chart, arc)
@@ -247,7 +254,7 @@ class Flights:
     def across(
         self, on: Indices, chart: Indices, arc: BallArray
     ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
-        """The boxes `on`; velocity and acceleration over an arc; how far it is, and how fast it leaves the lines."""
+        """Values at the boxes `on`; and over an arc the boundary's velocity, distance, and speed across the flights."""
         at = {name: value[on] for name, value in self.whole.items()}
         (x, y, *velocity), _ = self.over(on, chart, arc)
         along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
@@ -255,11 +262,11 @@ class Flights:
         return at, velocity, along, BallArray(slope.m, np.where(slope.positive(), slope.r, np.inf))
 
     def midpoint(self, on: Indices, chart: Indices, arc: BallArray) -> BallArray:
-        """Where the midpoints of boxes land, within the arc: one step of interval Newton there."""
+        """The landings of the midpoints of boxes, enclosed by one interval Newton step within the arc."""
         at = self.among(self.centre, SIDES[:4], on)
         (x, y, v, w), guess = (each.m for each in at), BallArray(np.asarray(arc.m))
         place, (slopes, _) = self.map.place(chart, guess), self.over(on, chart, arc)
-        for _ in range(2):  # of Newton's method, in float64
+        for _ in range(2):  # Newton steps in float64
             value = v * (place[1].m - y) - w * (place[0].m - x)
             guess = BallArray(guess.m - value / (v * place[3].m - w * place[2].m))
             place = self.map.place(chart, guess)
@@ -267,7 +274,7 @@ class Flights:
 
 
 def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
-    """The angle from one tangent to another, less half a turn, up to whole turns."""
+    """The angle from one tangent to another minus half a turn, modulo full turns."""
     return between(*first, *last)[0]
 
 
@@ -299,7 +306,7 @@ def aside(x: BallArray, y: BallArray, *known: BallArray) -> list[BallArray]:
 
 @Compiled
 def moved(middle: BallArray, phi: BallArray, turn: BallArray, *slopes: BallArray) -> list[BallArray]:
-    """Landing and incidence by the mean-value theorem, and the incidence's slopes."""
+    """Landing and incidence by the mean-value theorem, and the derivatives of the incidence."""
     by_theta, by_phi, here, there, wide, high = slopes
     by = there * by_theta - here, there * by_phi + 1
     return [middle + by_theta * wide + by_phi * high, phi + turn + by[0] * wide + by[1] * high, *by]
@@ -307,7 +314,7 @@ def moved(middle: BallArray, phi: BallArray, turn: BallArray, *slopes: BallArray
 
 @Compiled
 def flown(*known: BallArray) -> list[BallArray]:
-    """Length, speed at the landing and incidence by the mean-value theorem; see `Flights.slopes`."""
+    """Length, speed at the landing, and incidence, by the mean-value theorem; see `Flights.slopes`."""
     there, start, first, last = known[:6], known[6:10], known[10:14], known[14:18]
     arc, at, wide, high, here, bend, phi, turn, rough_eta = known[18:]
     beside, gap = arc - at, [there[0] - start[0], there[1] - start[1]]
@@ -322,7 +329,7 @@ def flown(*known: BallArray) -> list[BallArray]:
 
 @Compiled
 def newton(guess: BallArray, arc: BallArray, *known: BallArray) -> list[BallArray]:
-    """One step of interval Newton about a landing that is guessed; nothing is known outside the arc."""
+    """One interval Newton step for a landing; the radius is infinite where the guess lies outside of the arc."""
     (x0, y0, v, w), (x, y), (dx, dy) = known[:4], known[4:6], known[6:]
     inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
     found = guess - (v * (y - y0) - w * (x - x0)) / (v * dy - w * dx)
@@ -330,43 +337,39 @@ def newton(guess: BallArray, arc: BallArray, *known: BallArray) -> list[BallArra
 
 
 def incidence(eta: BallArray) -> BallArray:
-    """Angles of incidence known up to whole turns, as they are: they lie within a quarter turn.
+    """Angles of incidence, with an infinite radius where full turns cannot be excluded.
 
-    An enclosure within three quarters of a turn holds no number a whole turn away from one; a wider one is not kept.
+    They lie within a quarter turn of 0, and an enclosure within three quarters of a turn holds no two angles that
+    differ by a full turn.
     """
     return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))
 
 
 def matrix(slopes: Slopes) -> Matrix:
-    """The derivative in `(theta, phi)`."""
+    """The derivative matrix of the map in `(theta, phi)`, from the slopes of flights."""
     by_theta, by_phi, here, there, law, drift = slopes
     turn = [there * by_theta - here, there * by_phi + 1]
     return [[by_theta, by_phi], [drift * by_theta - law * turn[0], drift * by_phi - law * turn[1]]]
 
 
-def times(first: Matrix, second: Matrix) -> Matrix:
-    """The product of two matrices of two rows."""
-    return [[first[i][0] * second[0][j] + first[i][1] * second[1][j] for j in (0, 1)] for i in (0, 1)]
-
-
 def turn_rate(place: list[BallArray]) -> BallArray:
-    """How fast the tangent turns, by the parameter."""
+    """The rate at which the tangent turns, by the parameter, from velocity and acceleration."""
     _, _, dx, dy, ddx, ddy = place
     return (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
 
 
 def norm(ops: ArrayOps, vector: Sequence[BallArray]) -> BallArray:
-    """The length of vectors."""
+    """The Euclidean length of vectors."""
     return ops.sqrt(vector[0] * vector[0] + vector[1] * vector[1])
 
 
 def speed(at: BallArray, rough: BallArray, place: Sequence[BallArray], beside: BallArray) -> BallArray:
-    """The speed of the parameter, by the mean-value theorem, from that at a point and a rough one over a range."""
+    """The speed of the parameter by the mean-value theorem, from its value at a point and a rough enclosure."""
     return common_part(rough, at + (place[2] * place[4] + place[3] * place[5]) / rough * beside)
 
 
 def closer(rough: Callable[[], BallArray], map: "PinballImages", chart: Indices) -> BallArray:
-    """How fast the tangent turns: where that is known to be constant on the component that constant, else as given."""
+    """The bend on a component: the exact constant where it is known to be constant, else the enclosure `rough()`."""
     known = np.array([np.nan if x is None else float(x) for x in constant_bends(map.map.table)])[chart]
     held, given = ~np.isnan(known), BallArray(known, np.abs(known) * ROUNDING)
     if held.all():
@@ -377,7 +380,7 @@ def closer(rough: Callable[[], BallArray], map: "PinballImages", chart: Indices)
 
 @lru_cache(maxsize=16)
 def constant_bends(table: Table) -> tuple[Rational | None, ...]:
-    """How fast the tangent of each component turns, by its parameter, where SymPy finds that to be a constant.
+    """The bend of each component by its parameter where SymPy finds it constant, else None.
 
     >>> from symbolic import tables
     >>> constant_bends(tables.cuspless)

@@ -1,10 +1,10 @@
-"""Outer images of boxes: rectangles that hold every point to which the map takes a point of the box.
+"""Enclosures of the images of boxes under a pinball map: rectangles that hold the image of every point of a box.
 
-In a convex table the line of a flight cuts the boundary in two arcs. Counterclockwise from the start, boundary points
-lie to the right of the line before the landing and to its left after it. So two points, guessed in float64, enclose
-the landings of a whole box as soon as one is proved to lie to the right of every flight of the box and the other to
-the left: two signs of a cross product, and no equation is solved. Within that arc the mean-value theorem encloses the
-image more closely. The exit angle needs no more than the angles `tau` of the tangents,
+In a convex table the line of a flight cuts the boundary into two arcs. Counterclockwise from the start, boundary points
+before the landing lie to the right of the line, and those after it to the left. So two points, guessed in float64,
+enclose the landings of a whole box once one is proved to lie to the right of every flight and the other to the left, by
+signs of cross products; no equation is solved. Within that arc the mean-value theorem gives a closer enclosure. The
+exit angle depends only on the angles `tau` of the tangents,
 
     phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi,
 
@@ -14,6 +14,7 @@ Where the arc holds a join, the image is given for both sides of it. Paper: sect
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -29,18 +30,21 @@ from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import ArrayOps, BallArray, Compiled, common_part, exactly, hull, spread
 from verification.cycles.systems import reflected
 from verification.maps.first_hit import closes_smoothly, convex, tangents
-from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, Row, collected
-from verification.proofs.global_dynamics.flights import Flights, Piece, Slopes
+from verification.proofs.global_dynamics.flights import Flights, LandingArcs, Slopes
+from verification.rigorous.boxes import Boxes, Chart, Images, Row, collected
+from verification.rigorous.certificate import RANGE, entry
+from verification.rigorous.theorem import Theorem
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-STEPS, PLACES = 1 << 12, 1 << 6  # pieces of the incidence angles, and of each component under a law of the place
+STEPS, PLACES = 1 << 12, 1 << 6  # pieces of the incidence angles, and of each component for a law of the place
 QUARTER = 1.5707963267948966  # below pi/2
+SCENE = entry(lambda given, _: Scene.of(given), lambda scene: scene.document)  # an entry of certificates
 
 
 @lru_cache(maxsize=16)
 def compiled_curve(program: Program) -> Compiled:
-    """A boundary curve on balls, compiled once for all maps of a table."""
+    """A boundary curve as a function of balls, compiled once for all maps of a table."""
     return Compiled(lambda *values: program(ArrayOps(), *values))
 
 
@@ -70,19 +74,20 @@ class PinballImages:
             raise ValueError(f"{scene.name}: the boundary is not proved smooth where it closes; write it in components")
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
         if (law := scene.law.on(self.map.table)).measured or law.along is not None:
-            raise ValueError(f"law = {law}: boxes know theta, and s where it is a formula on one closed curve alone")
+            wanted = "formulas without s, or with s on one closed curve whose arc length has a formula"
+            raise ValueError(f"law = {law}: the arc length s is not known on boxes; accepted: {wanted}")
         self.law, self.placed = None if law.uniform else lower_law(law, lambda: self.map.table), law.placed
         if self.placed and self.closed and not is_periodic(law.phi):
-            raise ValueError(f"law = {law}: a whole turn of theta is not seen to change nothing, as boxes need it")
+            raise ValueError(f"law = {law}: it is not proved to have the period 2*pi in theta, which boxes need")
         self.contract()
 
     def contract(self) -> None:
-        """What depends on the range of contractions."""
+        """Sets the attributes that depend on the range of contractions."""
         self.lam = hull(exactly(self.range[0]).lower(), exactly(self.range[1]).upper())
         self.top = float((self.lam * self.ops.pi / 2).upper()) if self.law is None else self._steepest()
 
     def _steepest(self) -> float:
-        """A bound below a quarter turn for the exit angles of the law, over all incidence angles and contractions."""
+        """An upper bound below `pi/2` of the law's exit angles, over all incidence angles and contractions."""
         law = self.scene.law
         law.check(self.range, *law.places(self.map.table))
         size = max(float(np.max(self.exit(*some).magnitude())) for some in self.incidences())
@@ -91,7 +96,7 @@ class PinballImages:
         raise ValueError(f"law = {law}: |phi| is not proved to stay below pi/2 by a margin, as boxes need it")
 
     def incidences(self) -> Iterator[tuple[BallArray, BallArray]]:
-        """All incidence angles in pieces, on each piece of the boundary that the law tells apart."""
+        """All incidence angles, in pieces, with each piece of the boundary on which the law may differ."""
         angles = np.linspace(-1, 1, STEPS + 1) * float((self.ops.pi / 2).upper())
         ends, cuts = (self.ends, PLACES) if self.placed else (self.ends[:1], 1)
         for start, end in ends:
@@ -99,7 +104,7 @@ class PinballImages:
                 yield hull(angles[:-1], angles[1:]), hull(near, far)
 
     def exit(self, eta: BallArray, theta: BallArray) -> BallArray:
-        """The exit angles, by the mean-value theorem about the middles of incidence angles and places."""
+        """The exit angles, by the mean-value theorem about the midpoints of incidence angles and places."""
         if self.law is None:
             return -(self.lam * eta)
         with np.errstate(all="ignore"):
@@ -118,38 +123,38 @@ class PinballImages:
 
     @cached_property
     def outer(self) -> Array:
-        """Doubles below the first end of each component, and above the last."""
+        """For each component, doubles below its first and above its last parameter."""
         return np.array([(float(first.lower()), float(last.upper())) for first, last in self.ends]).T
 
     @cached_property
     def inner(self) -> Array:
-        """Doubles above the first end of each component, and below the last."""
+        """For each component, doubles above its first and below its last parameter."""
         return np.array([(float(first.upper()), float(last.lower())) for first, last in self.ends]).T
 
     @property
     def charts(self) -> tuple[Chart, ...]:
-        """The components from end to end, rounded outwards; of a closed curve the period to the nearest double."""
+        """The components as charts, rounded outwards; the period of a closed curve is the nearest double."""
         ends = [[float(end.m) for end in self.ends[0]]] if self.closed else self.outer.T.tolist()
         parts = zip(self.map.ir.parts, ends, strict=True)
         return tuple(Chart(part.name, (*x,), (-self.top, self.top), self.closed, True) for part, x in parts)
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of components: the end of the first is the start of the second; none on one closed curve."""
+        """Pairs of components: the end of the first is the start of the second; none on a single closed curve."""
         count = len(self.ends)
         return () if self.closed else tuple((i, (i + 1) % count) for i in range(count))
 
     @cached_property
     def mirrored(self) -> bool:
-        """Is the map of `(-theta, -phi)` the mirror image of that of `(theta, phi)`? Of table and law it is asked."""
+        """True if table and law are proved symmetric, so that the map commutes with `(theta, phi) -> -(theta, phi)`."""
         return reflected(self.map.table) and (self.law is None or self.scene.law.odd)
 
     @cached_property
     def homeomorphism(self) -> bool:
-        """Is it proved continuous across joins and one-to-one, with a determinant not 0 where it is smooth?
+        """True if the map is proved continuous across joins and one-to-one, with a determinant not 0 where smooth.
 
-        There is one tangent at each join, so flights that land there leave alike; one law, whatever the place; and a
-        flight taken back ends at one place, as the table is convex.
+        At each join there is one tangent, so flights that land there leave alike, under a law that does not depend on
+        the place; and a reversed flight ends at one place, as the table is convex.
         """
         turns = tangents(self.map.table)
         alike = not self.placed and all(bool(a.is_zero and b.is_positive) for a, b in turns)
@@ -162,7 +167,7 @@ class PinballImages:
         return f"{self.scene.name}{shape}{law}, lam = {low}" + ("" if low == high else f" to {high}")
 
     def place(self, chart: Indices, theta: BallArray) -> list[BallArray]:
-        """Point, velocity and acceleration at parameters of components."""
+        """Boundary point, velocity and acceleration at parameters of components."""
         if self.closed:
             return self.curves[0](theta, *self.shape)
         m, r = np.broadcast_arrays(theta.m, theta.r)
@@ -175,7 +180,7 @@ class PinballImages:
 
     @cached_property
     def curves(self) -> list[Compiled]:
-        """Point, velocity and acceleration on each component, from the parameter and the numbers of the shape."""
+        """For each component the function that gives point, velocity and acceleration from parameter and shape."""
         return [compiled_curve(part.curve) for part in self.map.ir.parts]
 
     def flights(self, boxes: Boxes) -> Flights:
@@ -183,13 +188,13 @@ class PinballImages:
         return Flights(self, boxes)
 
     def images(self, boxes: Boxes) -> Images:
-        with np.errstate(all="ignore"):  # what overflows or is no number counts as not known
+        with np.errstate(all="ignore"):  # infinite and NaN entries count as not proved
             flights = self.flights(boxes)
             rows = [self.row(*flights.landing(piece)) for piece in flights.pieces(*flights.arcs())]
         return collected(rows, boxes.chart.size)
 
-    def row(self, piece: Piece, theta: BallArray, eta: BallArray, phi: BallArray | None) -> Row:
-        """One rectangle for each box of a piece."""
+    def row(self, piece: LandingArcs, theta: BallArray, eta: BallArray, phi: BallArray | None) -> Row:
+        """The image rectangle of each box of a piece."""
         on, chart, low, high, smooth = piece
         exit, top = self.exit(eta, theta), self.top
         phi = exit if phi is None else common_part(phi, exit)
@@ -201,16 +206,29 @@ class PinballImages:
         left, right = np.where(bad, np.nan, theta.lower()), np.where(bad, np.nan, theta.upper())
         return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
 
-    def derivatives(self, boxes: Boxes) -> list[tuple[Piece, Slopes]]:
-        """The derivative over whole boxes, for each piece of their arcs; entries of infinite radius are not known."""
+    def derivatives(self, boxes: Boxes) -> list[tuple[LandingArcs, Slopes]]:
+        """The derivative over whole boxes, for each piece of their arcs; an infinite radius means not proved."""
         with np.errstate(all="ignore"):
             pieces = (flights := self.flights(boxes)).pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]
 
 
+@dataclass(frozen=True)
+class RangeTheorem(Theorem):
+    """A theorem on a scene with a convex table that holds for each contraction of a range."""
+
+    scene: Scene = field(metadata=SCENE)
+    lam: tuple[Fraction, Fraction] = field(metadata=RANGE)
+
+    @cached_property
+    def map(self) -> PinballImages:
+        """The map in boxes, over the whole range at once; `ValueError` unless the table is proved convex."""
+        return PinballImages(self.scene, self.lam)
+
+
 def invertible(map: PinballImages) -> bool:
-    """Is the law's slope proved to vanish nowhere? Else what comes to a set of no area may have area."""
+    """True if the law's slope is proved to vanish nowhere, so that preimages of sets of measure 0 have measure 0."""
     if map.law is None:
-        return True  # it is `lam > 0`
+        return True  # the slope is -lam, not 0
     slopes = [map.slopes(*some)[0] for some in map.incidences()]
     return all(np.all(slope.positive()) for slope in slopes) or all(np.all(slope.negative()) for slope in slopes)

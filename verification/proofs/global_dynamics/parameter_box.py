@@ -1,8 +1,8 @@
-"""The map over a box of parameters: for every contraction of a range and every value of a shape parameter in another.
+"""Images of boxes for all parameters of a box at once: a range of contractions and a range of a shape parameter.
 
 On a smooth closed curve the shape parameter is a third coordinate of the mean-value theorem: the boundary moves by its
-derivative with respect to it, and so do landing and incidence. A table that a rotation keeps is looked at up to that
-rotation. Where a particle lands does not depend on the contraction, so boxes that differ in it alone share landings.
+derivative with respect to it, and so do landing and incidence. Phase space is taken modulo the rotation symmetry of the
+table. Landings do not depend on the contraction, so boxes of parameters that differ in it alone share them.
 """
 
 from collections.abc import Callable
@@ -22,23 +22,23 @@ from symbolic.tables.table import Table, theta
 from verification.arithmetic.arrays import BallArray, common_part, exactly, hull, spread
 from verification.cycles.systems import rotations
 from verification.maps.first_hit import closes_smoothly, convex
-from verification.proofs.global_dynamics.boxes import Boxes, Chart, Images, collected
 from verification.proofs.global_dynamics.flights import (
     Array,
     Flights,
     Indices,
     Landing,
-    Piece,
+    LandingArcs,
     incidence,
     turn_between,
 )
 from verification.proofs.global_dynamics.images import QUARTER, PinballImages
+from verification.rigorous.boxes import Boxes, Chart, Images, collected
 
 Range = tuple[Fraction, Fraction]
 
 
 class ParameterBox(PinballImages):
-    """The map for every contraction of a range and every value of a shape parameter in another, up to rotation.
+    """The map for a range of contractions and a range of a shape parameter, modulo the table's rotations.
 
     >>> box = ParameterBox(Scene("egg", alpha="1/20", lam="1/2"), (Fraction(1, 2), Fraction(33, 64)), "alpha",
     ...     (Fraction(1, 20), Fraction(33, 640)))
@@ -58,10 +58,10 @@ class ParameterBox(PinballImages):
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
         turns, self.rates = _over(self.scene.text, parameter, *map(str, shape))
         self.turns = 1 if self.placed else turns
-        self.shared = Landings() if self.closed and not self.placed else None
+        self.shared = BoxLandings() if self.closed and not self.placed else None
 
     def at(self, lam: Range) -> "ParameterBox":
-        """The same shapes under other contractions; what is known of landings is shared."""
+        """The map for the same shapes and another range of contractions; computed landings are shared."""
         other = copy(self)
         other.range = lam
         other.contract()
@@ -77,7 +77,7 @@ class ParameterBox(PinballImages):
             return collected([self.row(*self.shared.of(boxes, self.landed))], boxes.chart.size)
 
     def landed(self, boxes: Boxes) -> Landing:
-        """Landings, worked out."""
+        """The landings of boxes, computed anew."""
         flights = self.flights(boxes)
         (piece,) = flights.pieces(*flights.arcs())
         return flights.landing(piece)
@@ -92,9 +92,9 @@ class ParameterBox(PinballImages):
 
     @property
     def height(self) -> float:
-        """Half the height of the charts: a quarter turn, halved as often as it still holds all exit angles.
+        """Half the height of the charts: a quarter turn, halved as long as it bounds all exit angles.
 
-        So the cells of boxes with other contractions are the same, or parts of one another.
+        So the cells for different contractions coincide, or are parts of one another.
         """
         height = QUARTER
         while height / 2 >= self.top:
@@ -108,11 +108,12 @@ class ParameterBox(PinballImages):
         return ", ".join([self.scene.name, *(f"{key} = {value}" for key, value in said.items())])
 
 
-class Landings:
-    """The landings of boxes that were asked for, on one smooth closed curve: found once, and found again.
+class BoxLandings:
+    """A cache of the landings of boxes, on one smooth closed curve.
 
-    >>> shared, box = Landings(), Boxes(np.array([0]), (np.array([0.1]), np.array([0.2])), (np.zeros(1), np.ones(1)))
-    >>> find = lambda boxes: (Piece(boxes.chart, boxes.chart, *boxes.x, True), hull(*boxes.x), hull(*boxes.y), None)
+    >>> shared, box = BoxLandings(), Boxes(np.array([0]), (np.array([0.1]), np.array([0.2])), (np.zeros(1), np.ones(1)))
+    >>> arcs = lambda boxes: LandingArcs(boxes.chart, boxes.chart, *boxes.x, True)
+    >>> find = lambda boxes: (arcs(boxes), hull(*boxes.x), hull(*boxes.y), None)
     >>> first, again = shared.of(box, find), shared.of(box, None)
     >>> bool(first[1].m[0] == again[1].m[0])
     True
@@ -120,24 +121,24 @@ class Landings:
 
     def __init__(self) -> None:
         self.index: dict[bytes, int] = {}
-        self.known = np.empty((6, 0))  # ends of the arc, and the landing's and the incidence's midpoint and radius
+        self.known = np.empty((6, 0))  # ends of the arc; midpoints and radii of landing and incidence
 
     def of(self, boxes: Boxes, find: Callable[[Boxes], Landing]) -> Landing:
-        """The landings, those that are new by `find`."""
+        """The landings of the boxes, where `find` computes those that are new."""
         keys = np.stack([*boxes.x, *boxes.y], axis=-1).view("V32").ravel().tolist()
-        new = {key: i for i, key in enumerate(keys) if key not in self.index}  # once, where a box is there twice
+        new = {key: i for i, key in enumerate(keys) if key not in self.index}  # equal boxes once
         if new:
             self.index |= {key: len(self.index) + count for count, key in enumerate(new)}
             piece, theta, eta, _ = find(boxes.chosen(np.array([*new.values()])))
             columns = np.broadcast_arrays(piece.low, piece.high, theta.m, theta.r, eta.m, eta.r)
             self.known = np.concatenate([self.known, np.stack(columns)], axis=1)
         low, high, *balls = self.known[:, [self.index[key] for key in keys]]
-        piece = Piece(np.arange(len(keys)), boxes.chart, low, high, True)
+        piece = LandingArcs(np.arange(len(keys)), boxes.chart, low, high, True)
         return piece, BallArray(balls[0], balls[1]), BallArray(balls[2], balls[3]), None
 
 
 class ParameterFlights(Flights):
-    """Flights in a table whose shape parameter is known to lie in a range, and is a third coordinate."""
+    """Flights in a table whose shape parameter lies in a range, and is a third coordinate."""
 
     map: ParameterBox
 
@@ -167,7 +168,7 @@ class ParameterFlights(Flights):
         return theta, common_part(eta, incidence(fine)), None
 
     def _by_shape(self, on: Indices, chart: Indices, arc: BallArray, start: BallArray) -> tuple[BallArray, BallArray]:
-        """How the landing moves with the shape parameter, and by how much more the tangent turns there than here."""
+        """The landing's derivative by the shape parameter, and that of the tangent's turn between start and landing."""
         at, (dx, dy, *_), along, slope = self.across(on, chart, arc)
         here, there = (self._rates(place) for place in (start, arc))
         dx0, dy0 = self.map.place(self.chart[on], start)[2:4]
@@ -184,9 +185,10 @@ class ParameterFlights(Flights):
 
 @lru_cache(maxsize=256)
 def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]:
-    """The turns that keep a table, over a range of one parameter, and the program of the derivatives by it.
+    """The order of a table's rotation symmetry over a range of one parameter, and a program for derivatives by it.
 
-    They are those of point and velocity of the first component. `ValueError` where the table is not proved convex.
+    The program gives the derivatives of point and velocity of the first component. `ValueError` where the table is not
+    proved convex.
     """
     table = varied(Scene.parse(text), parameter, low, high)
     if convex(table) is not True:
@@ -201,9 +203,9 @@ def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]
 
 
 def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
-    """The table with one parameter free; `ValueError` where that moves the cells' borders, or the law beside the table.
+    """The table with one parameter free; `ValueError` where that moves ends of components, or enters the law.
 
-    Charts end where components do, at the same places for all boxes; and of a law the numbers are those of one scene.
+    Charts must have the same ends for all boxes of parameters, and one law serves them all.
     """
     table: Table = scene.over(parameter, low, high)
     if any(parameter in map(str, S(end).free_symbols) for part in table.components for end in (part.start, part.end)):
@@ -214,5 +216,5 @@ def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
 
 
 def turns_of(table: Table) -> int:
-    """How many turns keep a table that closes smoothly; 1 for others."""
+    """The order of the rotation symmetry of a table that closes smoothly; 1 for other tables."""
     return rotations(table) if closes_smoothly(table) else 1

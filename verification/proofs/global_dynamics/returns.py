@@ -1,9 +1,9 @@
-"""The margins of `symbolic.cycles.returns` are positive: boxes of exit angle, incidence on the wall, and contraction.
+"""A proof in balls that the two margins of `symbolic.cycles.returns` are positive, by bisection of a box.
 
-Paper: section 5. The exit angle at the arc is `phi = (2*u - 1)*lam*pi/2`, the polar angle of the start three halves
-of which is `v*(phi + pi/2)`; with `u` and `v` in `[0, 1]` these are all ways by the wall on which the start is not
-below the axis, since `eta = phi - 3/2*theta0` is above `-pi/2`. Boxes that prove nothing are cut in two along each
-side.
+Paper: section 5. The box is that of `(u, v, lam)`, where the exit angle at the arc is `phi = (2*u - 1)*lam*pi/2`, and
+the start has the polar angle `theta0` with `3/2*theta0 = v*(phi + pi/2)`. With `u` and `v` in `[0, 1]` these are all
+flights to the wall whose start is not below the axis, since `eta = phi - 3/2*theta0` is above `-pi/2`. Undecided boxes
+are halved along each side.
 """
 
 from dataclasses import dataclass
@@ -17,32 +17,32 @@ from numeric.lowering.lower import converted
 from numeric.lowering.program import Builder, Program
 from symbolic.cycles.defocusing import half
 from symbolic.cycles.returns import HIGHEST, LOWEST, leaves, margins, returns
-from symbolic.expressions.signs import Finding, Outcome, conjunction
+from symbolic.expressions.signs import Outcome, SignFinding, conjunction
 from symbolic.tables.table import lam
 from verification.arithmetic.arrays import ArrayOps, exactly, hull
 
 LETTERS = half, leaves, lam
-FIRST, DEPTH, MOST = (16, 16, 32), 10, 1 << 19  # boxes along each side, how often they are halved, how many at once
-LEAST = 2.0**-9  # what a margin is to be at least: where one vanishes, boxes would have no end
+FIRST, DEPTH, MOST = (16, 16, 32), 10, 1 << 19  # boxes along each side, the most halvings, the most boxes at once
+LEAST = 2.0**-9  # the bound to prove for the margins; it is above 0, so that the search ends
 
 
 @dataclass(frozen=True)
 class Margins:
-    """Are both margins `LEAST` or more on all ways by the wall? None where boxes do not say; and how many that took."""
+    """`positive`: True if both margins are proved to be at least `LEAST`, else None; `boxes`: the number of boxes."""
 
     positive: bool | None
     boxes: int
 
 
 def program(*formulas: Expr) -> Program:
-    """Formulas in `theta0/2`, the exit angle and `lam`, for any number system."""
+    """Formulas in `theta0/2`, the exit angle and `lam` as a program for any number system."""
     builder = Builder(*map(str, LETTERS))
     nodes = dict(zip(LETTERS, builder.nodes, strict=True))
     return builder.program(*(converted(builder, formula, nodes) for formula in formulas))
 
 
 def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fraction(str(HIGHEST))) -> Margins:
-    """Are both margins positive for every contraction from `low` to `high`?
+    """The proof that both margins are at least `LEAST` for every contraction from `low` to `high`.
 
     >>> positive_margins(Fraction(1, 5), Fraction(3, 5)).positive
     True
@@ -70,8 +70,11 @@ def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fra
 
 
 @cache
-def every_return() -> Finding:
-    """Every return to the arc stretches for `LOWEST <= lam <= HIGHEST`: the identities, and the margins in balls."""
+def every_return() -> SignFinding:
+    """The finding that every return to the arc stretches, for `LOWEST <= lam <= HIGHEST`.
+
+    It joins the exact identities of `symbolic.cycles.returns` and the margins proved in balls.
+    """
     found = positive_margins()
     reason = f"both margins by way of the wall are at least {LEAST} in {found.boxes} boxes"
-    return conjunction(returns(), Finding(Outcome.PROVED if found.positive else Outcome.UNKNOWN, reason))
+    return conjunction(returns(), SignFinding(Outcome.PROVED if found.positive else Outcome.UNKNOWN, reason))

@@ -1,4 +1,4 @@
-"""Invariant manifolds of saddles, and where two of them touch."""
+"""Invariant manifolds of saddles, and tangencies between two of them."""
 
 import lazy_loader
 

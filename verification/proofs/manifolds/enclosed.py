@@ -1,14 +1,14 @@
-"""Saddles and their local manifolds in complex balls, for every parameter in a ball at once.
+"""Enclosures of saddles and their local manifolds in complex balls, for every parameter in a ball at once.
 
-A saddle of `p` bounces is the zero of its `p` rules, enclosed by an interval Newton step; the product of
-its bounces' derivatives gives the multipliers. With them in balls `doubled` encloses the coefficients of the
-series one after the other, since each order is a linear system whose right side has only lower orders.
-What the truncated series leave out is bounded in `remainder`, as follows.
+A saddle of `p` bounces is the zero of its `p` collision rules, enclosed by an interval Newton step; the product of the
+derivatives gives the multipliers. With these in balls `doubled` encloses the coefficients of the series order by order,
+since each order is a linear system whose right side has only lower orders. The function `remainder` bounds the
+truncation error, as follows.
 
-Let `P[i]`, `0 <= i < p`, be the polynomials of order `N`, continued to all `i` by
-`P[i+p](z) = sign*P[i](mu*z) + shift`. Sought are functions `h[i]`, analytic on the unit disc, without terms up
-to order `N` and continued likewise, such that `P + h` obeys the rule. Let `m` be the multiplier outwards: `mu` for
-the unstable manifold, `1/mu` for the stable one. Going outwards, each rule is solved for its outermost point:
+Let `P[i]`, `0 <= i < p`, be the polynomials of order `N`, continued to all `i` by `P[i+p](z) = sign*P[i](mu*z) +
+shift`. Sought are functions `h[i]`, analytic on the unit disc, without terms up to order `N` and continued likewise,
+such that `P + h` obeys the rule. Let `m` be the multiplier outwards: `mu` for the unstable manifold, `1/mu` for the
+stable one. Going outwards, each rule is solved for its outermost point:
 
 1. The rule along `P` is an analytic function without terms up to order `N`. So on the unit disc it is at
    most `R**-(N+1)` times its bound on the disc of radius `R` (Schwarz's lemma): one evaluation in balls.
@@ -18,11 +18,10 @@ the unstable manifold, `1/mu` for the stable one. Going outwards, each rule is s
    `(defect + slope1*e1 + slope2*e2)/slope0`. The slopes are bounded over a convex tube around `P`, and `slope0`
    is not 0 there, so such a point exists and is the only one in the tube (an interval Newton step).
 
-So a round outwards takes bounds `e[0], ..., e[p-1]` to bounds `E(e)`, an affine and monotone map. It is checked that
-`E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are taken to functions bounded by `e`, and their
-distances, in the norm weighted by `e`, at least halved. The one fixed point is `h`. It is analytic in the parameter,
-and real where the parameter is, as all else is. Dividing `z` by `m` again and again leads along an orbit to the saddle:
-this is the manifold.
+So a round outwards maps bounds `e[0], ..., e[p-1]` to bounds `E(e)`, and `E` is affine and monotone. It is checked that
+`E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are mapped to functions bounded by `e`, and distances
+in the norm weighted by `e` are at least halved. The unique fixed point is `h`. It is analytic in the parameter, and
+real for real parameters. Dividing `z` by `m` repeatedly leads along an orbit to the saddle: this is the manifold.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,14 +31,14 @@ from typing import Any
 
 from flint import acb, acb_mat, arb, ctx, fmpq
 
-from verification.arithmetic.balls import FUNCTIONS, Words
+from verification.arithmetic.balls import FUNCTIONS, BallWords, working
 from verification.arithmetic.iteration import Stop, iterated
 from verification.arithmetic.series import Jet
 from verification.cycles.chain import trace_and_determinant
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import (
-    Orbit,
     Saddle,
+    SaddleCycle,
     direction,
     doubled,
     horner,
@@ -48,37 +47,37 @@ from verification.proofs.manifolds.saddle import (
     padded,
     slopes,
 )
-from verification.proofs.periodic.interval_newton import Status, stepped
+from verification.proofs.periodic.interval_newton import ZeroStatus, stepped
 
 NEWTON = 12
 Rows = list[list[Any]]
 
 
 class TooWideError(ValueError):
-    """A step of the proof whose balls are too wide; `item` is the check that stays unknown."""
+    """Balls are too wide for a step of the proof; `item` is the hypothesis that stays open."""
 
     def __init__(self, item: str, message: str) -> None:
         super().__init__(message)
         self.item = item
 
 
-def complex_balls(bits: int) -> Words[acb]:
-    """The words of the kernels for complex balls, analytic wherever they are finite."""
+def complex_balls(bits: int) -> BallWords[acb]:
+    """The functions of the generated kernels for complex balls, analytic wherever they are finite."""
 
     @cache
-    def rational(p: int, n: int) -> acb:  # a kernel has few, and asks for them at every call
-        with ctx.workprec(bits):
+    def rational(p: int, n: int) -> acb:  # cached: a kernel asks for the same few at every call
+        with working(bits):
             return acb(arb(fmpq(p, n)))
 
-    with ctx.workprec(bits):
+    with working(bits):
         pi = acb.pi()
     cut = {"atan": lambda x: abs(x.imag) < 1, "sqrt": lambda x: x.real > 0, "log": lambda x: x.real > 0}
     words = {word: _analytic(word, cut.get(word)) for word in FUNCTIONS}
-    return Words(pi=pi, q=rational, root=lambda x, n: (words["log"](x) / n).exp(), **words)
+    return BallWords(pi=pi, q=rational, root=lambda x, n: (words["log"](x) / n).exp(), **words)
 
 
 def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any], acb]:
-    """The function where it is analytic over the whole ball, and nothing at all where a cut may pass through."""
+    """A function of complex balls that is NaN where it may not be analytic over the whole ball."""
 
     method = getattr(acb, word)
 
@@ -91,7 +90,7 @@ def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any
 
 
 def around_zero(radius: arb) -> acb:
-    """A complex ball (a square) that contains all numbers of at most this size."""
+    """A complex ball (a square) that contains all numbers of at most this absolute value."""
     half = arb(0, radius.abs_upper())
     return acb(half, half)
 
@@ -101,8 +100,8 @@ def size(x: Any) -> arb:
     return arb(abs(x).abs_upper())
 
 
-def enclosed_saddle(orbit: Orbit, map: PlaneMap, parameter: acb) -> Saddle:
-    """The one cycle near the start, for every parameter in a ball, with real multipliers either side of the circle."""
+def enclosed_saddle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> Saddle:
+    """The one saddle near the start for every parameter in a ball, with real multipliers; else `TooWideError`."""
     found = enclosed_cycle(orbit, map, parameter)
     stable, unstable = multipliers_of(orbit, map, found, parameter)
     if not (abs(stable) < 1 and abs(unstable) > 1):
@@ -110,8 +109,8 @@ def enclosed_saddle(orbit: Orbit, map: PlaneMap, parameter: acb) -> Saddle:
     return Saddle(orbit, map, parameter, tuple(found), stable, unstable)
 
 
-def enclosed_cycle(orbit: Orbit, map: PlaneMap, parameter: acb) -> list[acb]:
-    """The points of the one cycle near the start, for every parameter in a ball; `TooWideError`."""
+def enclosed_cycle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> list[acb]:
+    """The points of the one cycle near the start, for every parameter in a ball; else `TooWideError`."""
 
     def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
         ring = padded(orbit, map, x)
@@ -121,8 +120,8 @@ def enclosed_cycle(orbit: Orbit, map: PlaneMap, parameter: acb) -> list[acb]:
     return only_zero(rule, [acb(x) for x in orbit.start])
 
 
-def attracting(orbit: Orbit, map: PlaneMap, parameter: acb) -> bool | None:
-    """Is there a cycle near the start, whose multipliers of a round lie inside the unit circle? None: not proved."""
+def attracting(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> bool | None:
+    """True if there is one cycle near the start and its multipliers lie inside the unit circle; else None."""
     try:
         points = enclosed_cycle(orbit, map, parameter)
     except TooWideError:
@@ -132,7 +131,7 @@ def attracting(orbit: Orbit, map: PlaneMap, parameter: acb) -> bool | None:
 
 
 def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Sequence[acb]) -> list[acb]:
-    """The zero that an interval Newton step proves to be near `start`, and alone in a box."""
+    """The zero near `start` that an interval Newton step proves unique in a box; else `TooWideError`."""
 
     def step(values: list[acb], rows: Rows) -> list[acb]:
         try:
@@ -145,19 +144,19 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
     values, rows = rule(middle)
     box = tried(middle, step(values, rows))
     found = stepped(middle, box, lambda: step(values, rule(box)[1]))
-    if found.status is not Status.UNIQUE:
+    if found.status is not ZeroStatus.UNIQUE:
         raise TooWideError("saddle", "an interval Newton step did not contract; the balls are too wide")
     return found.zero
 
 
 def tried(middle: Sequence[acb], steps: Sequence[acb]) -> list[acb]:
-    """A box about points in which a zero may be, some times as far as Newton's method moves them: to be proved."""
+    """A box around the points `middle` that may hold a zero: four times as wide as Newton's method moves them."""
     least = arb(2) ** (-ctx.prec + 8)
     return [x + around_zero(4 * size(step) + least) for x, step in zip(middle, steps, strict=True)]
 
 
-def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], parameter: acb) -> tuple[acb, acb]:
-    """The roots of the characteristic polynomial of one round, the one inside the unit circle first."""
+def multipliers_of(orbit: SaddleCycle, map: PlaneMap, points: Sequence[acb], parameter: acb) -> tuple[acb, acb]:
+    """The stable and the unstable multiplier of one round; `TooWideError` unless they are proved real."""
     trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
     root = (trace * trace - 4 * determinant).sqrt()
     if not root.real > 0:
@@ -168,7 +167,10 @@ def multipliers_of(orbit: Orbit, map: PlaneMap, points: Sequence[acb], parameter
 
 @dataclass(frozen=True)
 class Enclosed:
-    """The terms of the series to some order, where `z = 1` is `unit` along the eigenvector with entry `chief` 1."""
+    """The enclosed series of a local manifold to some order; `z = 1` is `unit` along the eigenvector.
+
+    The eigenvector has 1 as its entry `chief`. `coefficients` holds those of each bounce.
+    """
 
     saddle: Saddle
     unstable: bool
@@ -181,7 +183,7 @@ class Enclosed:
         return len(self.coefficients[0]) - 1
 
     def over(self, i: int, radius: arb) -> acb:
-        """The polynomial of bounce `i`, any integer, over the disc of this radius: its terms in absolute value."""
+        """An enclosure of the polynomial of bounce `i`, any integer, over the disc of this radius."""
         closure, (rounds, place) = self.saddle.orbit.closure, divmod(i, len(self.coefficients))
         x, *rest = self.coefficients[place]
         reach = radius * size(self.factor**rounds)
@@ -189,18 +191,18 @@ class Enclosed:
         return moved + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
 
     def ring(self) -> list[Jet]:
-        """The polynomials of the bounces, with one more on either side."""
+        """The polynomials of the bounces, with one more on either side, as jets."""
         powers = [self.factor**k for k in range(self.order + 1)]
         return neighbours(self.saddle, [list(c) for c in self.coefficients], powers)
 
     def pair(self) -> tuple[Jet, Jet]:
-        """Two neighbours that need no parameter outside the disc: bounces -1 and 0 going out, 0 and 1 coming in."""
+        """Two neighbours whose parameters stay in the disc: bounces -1 and 0 if unstable, else 0 and 1."""
         ring = self.ring()
         return (ring[0], ring[1]) if self.unstable else (ring[1], ring[2])
 
 
 def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float, chief: int) -> Enclosed:
-    """The series to `order` with enclosed coefficients; entry `chief` of the eigenvector is 1."""
+    """The series of a local manifold to `order`, with enclosed coefficients; entry `chief` of the eigenvector is 1."""
     factor = saddle.unstable if unstable else saddle.stable
     found = direction(saddle, slopes(saddle.orbit, saddle.map, saddle.points, saddle.parameter), factor)
     series = [[x, v / found[chief]] for x, v in zip(saddle.points, found, strict=True)]
@@ -210,11 +212,11 @@ def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float, chief: int
     return Enclosed(saddle, unstable, factor, scaled)
 
 
-TUBE = "1e-6"  # what the remainder may not exceed, so that the slopes are bounded beforehand
+TUBE = "1e-6"  # the radius of the tube over which slopes are bounded; the remainder must stay below it
 
 
 def remainder(made: Enclosed, outer: int) -> arb:
-    """What bounds the remainder of every bounce on the unit disc, by the rule on the disc of radius `outer`."""
+    """A bound of all bounces' remainders on the unit disc, from the rule on radius `outer`, or `TooWideError`."""
     if not vanishing(made):
         raise TooWideError("remainder", "the rule has terms of low order; these are no coefficients of a manifold")
     slopes = round_outwards(made, outer)
@@ -227,18 +229,18 @@ def remainder(made: Enclosed, outer: int) -> arb:
 
 
 def vanishing(made: Enclosed) -> bool:
-    """Do the rules' coefficients up to the order of the series contain 0?"""
+    """True if the coefficients of the rules along the series contain 0, up to the order of the series."""
     map, ring = made.saddle.map, made.ring()
     triples = [ring[i : i + 3] for i in range(len(ring) - 2)]
     rules = [map.rule_along(triple, made.saddle.parameter) for triple in triples]
     return all(c.contains(0) for rule in rules for c in rule.c)
 
 
-Outwards = list[tuple[int, arb, arb, arb]]  # for each bounce: defect, slope by the point inside it and the one before
+Outwards = list[tuple[int, arb, arb, arb]]  # for each bounce: defect, slopes by the next and second next point inwards
 
 
 def round_outwards(made: Enclosed, outer: int) -> Outwards:
-    """One round from the saddle, each rule solved for its outermost point, with bounds in units of `slope0`."""
+    """For each bounce of a round, the defect of its rule and two slopes, in units of `slope0`."""
     map, parameter, p = made.saddle.map, made.saddle.parameter, len(made.coefficients)
     inside = -1 if made.unstable else 1
     found: Outwards = []
@@ -256,7 +258,7 @@ def round_outwards(made: Enclosed, outer: int) -> Outwards:
 
 
 def bounds(made: Enclosed, slopes: Outwards, errors: list[arb]) -> list[arb]:
-    """`E(e)` of the text above: bounds one round outwards from `errors`."""
+    """The bounds `E(e)` of the module docstring, one round outwards from `errors`."""
     p, inside = len(errors), -1 if made.unstable else 1
     shrink = size(1 / made.factor if made.unstable else made.factor) ** (made.order + 1)
     known: dict[int, arb] = {}

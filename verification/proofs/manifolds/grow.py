@@ -1,15 +1,13 @@
-"""Manifolds grown from their local series to a given length, with points as close as the curve's bends ask for.
+"""Invariant manifolds in float64, grown from their local series to a given length, and candidates for tangencies.
 
-The parameter `z` of the series is good for the whole branch: a point far out is one near the saddle, some
-rounds of the map later (or earlier, on a stable manifold). So new points are put between neighbours
-that are too far apart, or between which the curve turns too much, and nothing is interpolated.
+The parameter `z` of the series extends to the whole branch: a point far out is one near the saddle, some rounds of the
+map later (or earlier, on a stable manifold). So points can be inserted where neighbours are too far apart or the curve
+turns too much, without interpolation.
 
-Starts for `tangency` are the places on an unstable manifold at which the gap to a stable one is least. A fundamental
-domain of the unstable branch, both sides of the saddle, is followed bounce by bounce. Wherever its points
-fall into the neighbourhood in which the local stable manifold is a graph, the gap is a function of
-`z`; its local extrema near 0 are candidates, and `tangency` moves the map's parameter until they are 0. What
-comes back are tangencies near that value, the one that ends an attractor among others: which one it is,
-sampling has to say.
+Tangencies are sought near extrema of the gap between an unstable and a stable manifold. A fundamental domain of the
+unstable branch, on both sides of the saddle, is followed bounce by bounce. Where its points fall into the neighbourhood
+in which the local stable manifold is a graph, the gap is a function of `z`; its local extrema near 0 are candidates,
+and `tangency` varies the map's parameter until they are 0.
 """
 
 import math
@@ -23,18 +21,21 @@ from numpy.typing import NDArray
 from numeric.backends import elementary
 from verification.arithmetic.balls import ARRAYS, FLOAT64
 from verification.proofs.manifolds.plane_map import PlaneMap
-from verification.proofs.manifolds.saddle import Local, Orbit, local, saddle
+from verification.proofs.manifolds.saddle import Local, SaddleCycle, local, saddle
 from verification.proofs.manifolds.tangency import Contact, Touch, tangency
 
 FIRST = 24  # points of a round before any is added
-PASSES = 14
-SETTLED = 3.0  # `ln(abs(z))` from which a short round means a sink
+PASSES = 14  # the most passes that insert points
+SETTLED = 3.0  # a short round beyond this `ln(abs(z))` means a sink
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Branch:
-    """Points in the order of the curve, from the saddle outwards, and their parameters `ln(abs(z))`."""
+class ManifoldCurve:
+    """Points along a branch, from the saddle outwards, and their parameters `ln(abs(z))`.
+
+    `here` and `following` are neighbouring bounces, `x` and `y` coordinates in the plane of the map.
+    """
 
     here: Array
     following: Array
@@ -44,21 +45,20 @@ class Branch:
 
     @property
     def length(self) -> float:
-        """Arc length of the polygon, in the plane of the map."""
+        """The arc length of the polygon through the points, in the plane of the map."""
         return float(np.sum(np.hypot(np.diff(self.x), np.diff(self.y))))
 
 
-def branch(local: Local, side: int, length: float, spacing: float = 0.02, turning: float = 0.2) -> Branch:
+def branch(local: Local, side: int, length: float, spacing: float = 0.02, turning: float = 0.2) -> ManifoldCurve:
     """One branch of a manifold, `side` 1 or -1, until it is `length` long.
 
-    It ends sooner where it leaves the domain of the map, or at a sink: where a round adds less than ten times
-    `spacing`.
+    It ends sooner where it leaves the domain of the map, or where a round adds less than ten times `spacing` (a sink).
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
-    >>> from verification.proofs.manifolds.saddle import Orbit, saddle
+    >>> from verification.proofs.manifolds.saddle import SaddleCycle, saddle
     >>> from verification.proofs.manifolds.saddle import local
-    >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
+    >>> fixed = saddle(SaddleCycle("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> 5 < branch(local(fixed, unstable=True), 1, 5).length < 5.1
     True
     """
@@ -74,15 +74,15 @@ def branch(local: Local, side: int, length: float, spacing: float = 0.02, turnin
             break
         done += piece.length
         low += step
-    fields = [np.concatenate([getattr(p, name) for p in pieces]) for name in Branch.__dataclass_fields__]
+    fields = [np.concatenate([getattr(p, name) for p in pieces]) for name in ManifoldCurve.__dataclass_fields__]
     good = np.cumsum(~np.isfinite(fields[3])) == 0
     path = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(fields[3]), np.diff(fields[4])))])
     good &= np.concatenate([[True], path[:-1] <= length])
-    return Branch(*(field[good] for field in fields))
+    return ManifoldCurve(*(field[good] for field in fields))
 
 
-def _piece(local: Local, side: int, low: float, high: float, spacing: float, turning: float) -> Branch:
-    """The points with `ln(abs(z))` from `low` up to, but not at, `high`."""
+def _piece(local: Local, side: int, low: float, high: float, spacing: float, turning: float) -> ManifoldCurve:
+    """The points with `low <= ln(abs(z)) < high`."""
     made = _points(local, side, np.linspace(low, high, FIRST))
     for _ in range(PASSES):
         dx, dy = np.diff(made.x), np.diff(made.y)
@@ -96,25 +96,26 @@ def _piece(local: Local, side: int, low: float, high: float, spacing: float, tur
         more = _points(local, side, (made.logarithm[where] + made.logarithm[where + 1]) / 2)
         order = np.argsort(np.concatenate([made.logarithm, more.logarithm]), kind="stable")
         joined = (
-            np.concatenate([getattr(made, name), getattr(more, name)])[order] for name in Branch.__dataclass_fields__
+            np.concatenate([getattr(made, name), getattr(more, name)])[order]
+            for name in ManifoldCurve.__dataclass_fields__
         )
-        made = Branch(*joined)
-    return Branch(*(getattr(made, name)[:-1] for name in Branch.__dataclass_fields__))
+        made = ManifoldCurve(*joined)
+    return ManifoldCurve(*(getattr(made, name)[:-1] for name in ManifoldCurve.__dataclass_fields__))
 
 
-def _points(local: Local, side: int, logarithm: Array) -> Branch:
-    """The points at `z = side*exp(logarithm)`, those of one number of rounds together."""
+def _points(local: Local, side: int, logarithm: Array) -> ManifoldCurve:
+    """The points at `z = side*exp(logarithm)`, computed together for each number of rounds."""
     rounds = np.maximum(0, np.ceil(logarithm / abs(math.log(abs(float(local.factor)))))).astype(int)
     here, following = np.full(logarithm.size, np.nan), np.full(logarithm.size, np.nan)
     for count in np.unique(rounds):
         those = rounds == count
         here[those], following[those] = far(local, side * elementary.exp(logarithm[those]), int(count))
     x, y = local.saddle.map.over(ARRAYS).plane(here, following)
-    return Branch(here, following, logarithm, np.asarray(x), np.asarray(y))
+    return ManifoldCurve(here, following, logarithm, np.asarray(x), np.asarray(y))
 
 
 def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
-    """The points at `z` of the manifold, from those `rounds` rounds nearer to the saddle."""
+    """The points at `z` of the manifold, by iterating points that are `rounds` rounds nearer to the saddle."""
     map, orbit, parameter = local.saddle.map.over(ARRAYS), local.saddle.orbit, float(local.saddle.parameter)
     outwards = abs(float(local.factor)) > 1
     factor = float(local.factor) if outwards else 1 / float(local.factor)
@@ -131,27 +132,27 @@ def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
                 here, following = map.previous(here, following, parameter), here
         if outwards:
             here, following = (closure.carried(x, shift, -1) for x in (here, following))
-        if map.turn:  # a mirror leaves the next bounce behind, where the map takes it ahead
+        if map.turn:  # a reflection reverses the order of neighbours
             following = here + np.remainder(following - here, 2 * np.pi)
     return here, following
 
 
-POINTS = 3000  # of the fundamental domain, on each side
+POINTS = 3000  # points of the fundamental domain, on each side
 NEWTON = 12
-INSIDE = 0.9  # of the range on which the series converges
-SMALL = 0.05  # a gap that counts as near
+INSIDE = 0.9  # the used part of the range on which the series converges
+SMALL = 0.05  # the largest gap of a candidate
 
 
 def touches(
-    orbit: Orbit, map: PlaneMap, parameter: float, rounds: int, most: int = 4, any_bounce: bool = False
+    orbit: SaddleCycle, map: PlaneMap, parameter: float, rounds: int, most: int = 4, any_bounce: bool = False
 ) -> list[Touch]:
-    """Homoclinic tangencies near a parameter, within some rounds, in the order of their parameters; each once.
+    """The homoclinic tangencies found near a parameter, within `rounds` rounds, in the order of their parameters.
 
-    `most` candidates with the smallest gaps are tried, those after whole rounds only or after `any_bounce`.
+    The `most` candidates with the smallest gaps are tried; they come after whole rounds, or after `any_bounce`.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
-    >>> found = touches(Orbit("inner fixed point", (0.63,)), Henon(Rational(3, 10)), 1.3924, 6)
+    >>> found = touches(SaddleCycle("inner fixed point", (0.63,)), Henon(Rational(3, 10)), 1.3924, 6)
     >>> min(round(abs(touch.parameter - 1.39241980792), 9) for touch in found)
     0.0
     """
@@ -166,8 +167,10 @@ def touches(
     return sorted(found, key=lambda touch: float(touch.parameter))
 
 
-def candidates(orbit: Orbit, map: PlaneMap, parameter: float, rounds: int, any_bounce: bool = False) -> list[Contact]:
-    """Extrema of the gap along both branches of the unstable manifold, the smallest first."""
+def candidates(
+    orbit: SaddleCycle, map: PlaneMap, parameter: float, rounds: int, any_bounce: bool = False
+) -> list[Contact]:
+    """Contacts at extrema of the gap along both branches of the unstable manifold, smallest gap first."""
     at = saddle(orbit, map.over(FLOAT64), parameter)
     out, into = local(at, True), local(at, False)
     found: list[tuple[float, Contact]] = []
@@ -183,9 +186,9 @@ def candidates(orbit: Orbit, map: PlaneMap, parameter: float, rounds: int, any_b
 
 
 def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterator[tuple[Array, int, Array, Array]]:
-    """A fundamental domain of each branch of an unstable manifold, bounce by bounce.
+    """A fundamental domain of each branch of an unstable manifold, mapped bounce by bounce.
 
-    Parameters on the manifold, how many bounces were made, and where the points are then, with what follows there.
+    It yields the parameters on the manifold, the number of bounces made, and the points with their next bounces.
     """
     grid = elementary.exp(np.linspace(-math.log(abs(out.saddle.unstable)), 0, POINTS))
     for z in (grid, -grid):
@@ -195,8 +198,8 @@ def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterat
             yield z, count, here, following
 
 
-def gaps(into: Local, here: Array, following: Array) -> tuple[Array, Array]:
-    """The gap to a local stable manifold, `nan` where it is no graph, and the parameter on it."""
+def gaps(into: Local, here: Array, following: Array, small: float = SMALL) -> tuple[Array, Array]:
+    """The gap to a local stable manifold, NaN where it is no graph or not `small`, and the parameter on it."""
     at, ring = into.saddle, into.saddle.around()
     if at.map.turn:
         unit = 2 * np.pi / at.map.turn
@@ -210,11 +213,11 @@ def gaps(into: Local, here: Array, following: Array) -> tuple[Array, Array]:
         for _ in range(NEWTON):
             end = end - (first(end) - here) / slope(end)
         gap = following - into.points(end)[1]
-        good = (abs(end) < INSIDE / abs(at.stable)) & (abs(first(end) - here) < 1e-10) & (abs(gap) < SMALL)
+        good = (abs(end) < INSIDE / abs(at.stable)) & (abs(first(end) - here) < 1e-10) & (abs(gap) < small)
     return np.where(good, gap, np.nan), end
 
 
 def turning(gap: Array) -> Any:
-    """Where a gap has a strict local extremum, with both neighbours."""
+    """The indices of the strict local extrema of a sampled gap."""
     rise = np.diff(gap)
     return np.nonzero(rise[:-1] * rise[1:] < 0)[0] + 1

@@ -1,38 +1,37 @@
-"""Homoclinic tangencies as limits of folds of cycles, and the crises of the egg: which saddle, and where to start.
+"""The crises of the egg as homoclinic tangencies, computed from folds of long cycles, with their starts.
 
-A cycle that shadows a homoclinic tangency leaves its saddle along its unstable manifold and comes back along the
-stable one stays some rounds near the saddle in between. Each such family folds once, at a parameter that approaches
-the tangency like `unstable**-rounds`. A fold is a problem of the chord system, solved with as many digits as wanted,
-and provable; a long cycle gives the tangency itself.
+A cycle that shadows a homoclinic tangency stays some rounds near the saddle, leaves along the unstable manifold and
+returns along the stable one. Such cycles appear in a fold, at a parameter that approaches the tangency like
+`unstable**-rounds`. The fold is a problem of the chord system, solved to any number of digits, and provable; a long
+cycle gives the tangency itself.
 
-The saddle also says how long a particle stays near an attractor just above a homoclinic crisis, with one term for
-each passage of the saddle. [GrebogiOttRomeirasYorke1987] find the power that holds in the limit. Their argument, kept
-at a finite distance: the unstable manifold reaches beyond the stable one by `e`, the distance above the crisis, over
-a length `sqrt(e)`, and what lands there leaves. Followed back for `n` rounds along the saddle that region has become
-as high as the attractor is, `e*stable**-n = 1`, and as near to the stable manifold as `unstable**-n`. So a particle
-must first have come that near, where the manifolds touch, and then have hit a part `sqrt(e)` of it:
+The mean time that a particle stays near an attractor just above a homoclinic crisis follows from the multipliers of the
+saddle. [GrebogiOttRomeirasYorke1987] derive the power law in the limit. The same argument at a finite distance: at the
+distance `e` above the crisis, the unstable manifold reaches beyond the stable one by `e`, over a length `sqrt(e)`, and
+particles that land there leave. Its preimage after `n` rounds near the saddle is as high as the attractor,
+`e*stable**-n = 1`, and at the distance `unstable**-n` from the stable manifold. So a particle must first come that
+near, where the manifolds touch, and then hit a part `sqrt(e)` of it:
 
     leaves(e) = sqrt(e) * leaves(unstable**-n),    n = floor(ln(e)/ln(stable)),
 
-and `leaves(e) = sqrt(e)` when no round fits in. Were `n` no whole number, and large, this would be the power law
-`ln|stable| / (2*ln|stable*unstable|)`. As it is, the slope of the logarithms is 1/2 and every further passage is a
-step: the wave that measured stays show about a power. Which distance counts as one is all that is left to fit.
+and `leaves(e) = sqrt(e)` when `n = 0`. For large `n`, not rounded, this is the power law with the exponent `ln|stable|
+/ (2*ln|stable*unstable|)`. With `n` rounded, the logarithms have slope 1/2 with a step for each further passage, which
+explains the measured oscillation about the power law. The unit of distance is the only fitted number.
 
-Starts are given at `alpha = 0.08`. Two crises join what period doubling and symmetry breaking had split, each when
-the unstable manifold of the cycle that had split touches its own stable one: eight chaotic bands near one end of a
-diameter become four at the cycle of period 4, and the two mirror images become one attractor at the symmetric cycle
-of period 4 from which they had come.
+Starts are given at `alpha = 0.08`. Two crises undo a period doubling and a symmetry breaking, when the unstable
+manifold of the cycle that had bifurcated touches its own stable manifold: eight chaotic bands near one end of a
+diameter become four at the cycle of period 4, and two mirror images become one attractor at the symmetric cycle of
+period 4.
 
-Boundary crisis: the saddle is the triangle of the vertices, born at the fold of period 3. Its stable
-manifold bounds the basin of the attracting triangle; its unstable manifold runs to the chaotic
-attractor, whose outermost fold it is, and touches the stable one. Merging crisis: the saddle is a cycle
-of period 8 that its mirror image repeats after 4 bounces. It is the cycle of the fractal basin boundary
-that can be reached from the attractor near a diameter. Other shapes follow by continuation.
+Boundary crisis: the saddle is the triangle near the vertices, born at the fold of period 3. Its stable manifold bounds
+the basin of the attracting triangle; its unstable manifold runs to the chaotic attractor, forms its outermost fold, and
+touches the stable one. Merging crisis: the saddle is a cycle of period 8, which equals its mirror image after 4
+bounces. It is the cycle of the fractal basin boundary that is accessible from the attractor near a diameter. Other
+shapes follow by continuation.
 
-To many digits a crisis is found by two methods that share nothing but the chord. The value comes from the fold of a
-long cycle that shadows the tangency: its distance to the tangency falls like `unstable**-rounds`, and a
-cycle with four rounds more tells how far the shorter one was. The tangency of the manifolds themselves (`tangency`)
-has to agree.
+A crisis is computed to many digits by two methods that share only the chord equation. The value comes from the fold of
+a long cycle that shadows the tangency; a cycle with four rounds more gives the error. The tangency of the manifolds
+themselves (`tangency`) must agree.
 """
 
 import math
@@ -53,10 +52,10 @@ from verification.arithmetic.iteration import telling
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind, Closure
-from verification.proofs.manifolds.claim import TangencyClaim, TangencyProof, worked_through
+from verification.proofs.manifolds.certificate import Tangency
 from verification.proofs.manifolds.plane_map import Pinball, pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened
-from verification.proofs.manifolds.saddle import Orbit, horner
+from verification.proofs.manifolds.saddle import SaddleCycle, horner
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
 from verification.proofs.manifolds.touching import composed
 from verification.proofs.manifolds.windows import WINDOWS, homoclinic
@@ -71,7 +70,7 @@ class Shadow:
 
 
 def shadow(contact: Contact, map: Pinball, parameter: float, rounds: int) -> Shadow:
-    """The cycle that spends about `rounds` rounds of the saddle near it, a few more where symmetry asks for it."""
+    """The fold problem of a cycle with at least about `rounds` rounds near the saddle; `ValueError` if heteroclinic."""
     if contact.unstable != contact.stable:
         raise ValueError("shadow: the tangency is heteroclinic; a cycle shadows homoclinic ones only")
     floats = map.over(FLOAT64)
@@ -81,14 +80,14 @@ def shadow(contact: Contact, map: Pinball, parameter: float, rounds: int) -> Sha
         sign, turns = image
         if sign == -1 or turns % map.turn == 0:
             return closed(points, bent, image, map, parameter)
-    return closed(*period(gap, rounds), map, parameter)  # it turns at each passage, and closes after several
+    return closed(*period(gap, rounds), map, parameter)  # it is rotated at each passage, and closes after several
 
 
 def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball, parameter: float) -> Shadow:
-    """The problem of the fold of a cycle that repeats after its points, turned or as its mirror image."""
+    """The problem of the fold of a cycle that repeats after its points, rotated or reflected."""
     sign, turns = image
     unit = 2 * math.pi / map.turn
-    if sign == -1:  # a mirror: turned so that its axis is theta = 0
+    if sign == -1:  # a reflection: rotated so that its axis is theta = 0
         points, shift = [x + turns * unit for x in points], 0
     else:
         shift = turns % map.turn
@@ -99,7 +98,7 @@ def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball,
 
 
 def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
-    """One period of the cycle, the bounce that moves most with it, and the symmetry that continues it."""
+    """One period of the cycle, the index of its most sensitive bounce, and the symmetry by which it continues."""
     turn, orbit = gap.map.turn, gap.out.saddle.orbit
     unit = 2 * gap.map.words.pi / turn
     p, q = orbit.closure.shift
@@ -130,7 +129,7 @@ Array = NDArray[np.float64]
 
 
 def log_stay(distance: float, stable: float, unstable: float) -> float:
-    """`-ln(leaves)` up to a constant; `distance` in units of the one that counts as one, at most 1.
+    """The logarithm of the mean time near the attractor, up to a constant; `distance` is in fitted units, at most 1.
 
     >>> round(log_stay(math.exp(-1.0), 0.2, 3.0), 3), log_stay(1.0, 0.2, 3.0)
     (0.5, 0.0)
@@ -142,15 +141,16 @@ def log_stay(distance: float, stable: float, unstable: float) -> float:
 
 
 def exponent(distances: Array, unit: float, stable: float, unstable: float) -> float:
-    """The power that a straight line through the logarithms at these distances would show."""
+    """The slope of a straight line fitted to `log_stay` against the logarithms of these distances."""
     logs = [log_stay(float(d) / unit, stable, unstable) for d in distances]
     return -float(np.polyfit(elementary.log(distances), logs, 1)[0])
 
 
 def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) -> tuple[float, float]:
-    """The distance that counts as one, by least squares, and the root mean square of what is left of `ln(stay)`.
+    """The unit of distance by least squares, and the root mean square of the residuals of `ln(stay)`.
 
-    The steps lie at `unit*stable**n`; units are sought from the largest distance up to 1, all that a contraction has.
+    `points` are pairs of distance and mean stay. The steps lie at `unit*stable**n`; units are sought from the largest
+    distance up to 1.
     """
     distances, logs = np.array(points)[:, 0], elementary.log(np.array(points)[:, 1])
     tried = elementary.exp(np.linspace(float(elementary.log(distances.max())), 0.0, TRIED))
@@ -163,24 +163,24 @@ def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) 
 
 
 SHAPE = Rational(2, 25)
-STEP = Rational(1, 500)  # of the shape, in continuation
+STEP = Rational(1, 500)  # the largest step of the shape in continuation
 LEAST = Rational(1, 10_000)
-SHARE, LEAST_SHARE = Rational(1, 4), Rational(1, 1000)  # of another law, mixed with the paper's, in continuation
-TRIANGLE = Orbit("triangle of the vertices", (-0.165533,), Closure(1, (1, 3)))
-MIRRORED = Orbit("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), Closure(-1, (7, 3)))
-SYMMETRIC = Orbit("symmetric cycle of period 4", (-0.645971, 2.02441), Closure(-1, (2, 3)))
-FOUR = Orbit("cycle of period 4", (-0.022673, 2.875498, 6.392393, 9.889393), Closure(1, (6, 3)))
+SHARE, LEAST_SHARE = Rational(1, 4), Rational(1, 1000)  # steps towards another law in continuation
+TRIANGLE = SaddleCycle("triangle of the vertices", (-0.165533,), Closure(1, (1, 3)))
+MIRRORED = SaddleCycle("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), Closure(-1, (7, 3)))
+SYMMETRIC = SaddleCycle("symmetric cycle of period 4", (-0.645971, 2.02441), Closure(-1, (2, 3)))
+FOUR = SaddleCycle("cycle of period 4", (-0.022673, 2.875498, 6.392393, 9.889393), Closure(1, (6, 3)))
 CONTACTS = {
     "merging": Contact(MIRRORED, MIRRORED, 14, 1, -0.00396287, -0.00053713, 0.44343525),
     "boundary": Contact(TRIANGLE, TRIANGLE, 5, 1, 0.03431592, -0.02607124, 0.66214427),
     "band-merging": Contact(FOUR, FOUR, 20, 1, -0.01239661, 0.00116269, 0.39768737),
     "symmetry-restoring": Contact(SYMMETRIC, SYMMETRIC, 12, 1, -0.03158573, -0.00186500, 0.41026825),
 } | WINDOWS
-CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # as those of periods 8 and 16 are called
+CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # the name in the scheme of periods 8 and 16
 
-FLATTER = Orbit(TRIANGLE.name, (-0.053420925,), TRIANGLE.closure)
-SHARPER = Orbit(TRIANGLE.name, (-0.228435096,), TRIANGLE.closure)
-SHARPEST = Orbit(TRIANGLE.name, (-0.249454849,), TRIANGLE.closure)
+FLATTER = SaddleCycle(TRIANGLE.name, (-0.053420925,), TRIANGLE.closure)
+SHARPER = SaddleCycle(TRIANGLE.name, (-0.228435096,), TRIANGLE.closure)
+SHARPEST = SaddleCycle(TRIANGLE.name, (-0.249454849,), TRIANGLE.closure)
 BOUNDARY = {  # the boundary tangency at four shapes, and its contraction there
     SHAPE: (CONTACTS["boundary"], "0.66214427335822441948"),
     Rational(19, 200): (Contact(SHARPER, SHARPER, 5, 1, 0.03705487, -0.01623858, 0.51753491), "0.51753490920795741937"),
@@ -190,14 +190,15 @@ BOUNDARY = {  # the boundary tangency at four shapes, and its contraction there
 
 
 def table(alpha: Expr, law: Law = PAPERS_LAW) -> Pinball:
-    """The map of the three-pointed egg; its rotations are symmetries unless the law depends on the place."""
+    """The map of the egg with `K = 3`; its rotations are symmetries unless the law depends on the place."""
     return pinball(egg(3).at(alpha=alpha), law)
 
 
 def contact(kind: str, alpha: Expr, law: Law = PAPERS_LAW) -> Contact:
-    """A contact by its name at a shape, followed there from `alpha = 0.08`, and then to another law than the paper's.
+    """A contact by its name at a shape and under a law, followed there from `alpha = 0.08` and the paper's law.
 
-    On the way to a law `phi` it is that of `-lam*eta + share*(phi + lam*eta)`, a law as well.
+    The laws on the way are `-lam*eta + share*(phi + lam*eta)` with `share` from 0 to 1. `ValueError` where the contact
+    is lost.
     """
     if kind not in CONTACTS:
         raise ValueError(f"crisis: {kind!r} is not known; accepted: {', '.join(CONTACTS)}")
@@ -230,7 +231,10 @@ def followed(
     map: Callable[[Expr], Pinball],
     lost: Callable[[Expr, Exception], str],
 ) -> Contact:
-    """A contact followed from one end of a family of maps to the other, in steps between a least and a largest."""
+    """A contact followed from one end of a family of maps to the other; `steps` are the largest and the least step.
+
+    `lost` makes the message of the `ValueError` raised where no step succeeds.
+    """
     (place, goal), (step, least) = ends, steps
     whole, last, before = goal - place, step, here
     tick = telling(f"following the tangency to {goal}")
@@ -249,26 +253,29 @@ def followed(
 
 
 def extrapolated(before: Contact, here: Contact, share: float) -> Contact:
-    """The starts carried on, `share` times the last change."""
+    """A contact with its starts extrapolated by `share` times the last change."""
     names = ("parameter", "z", "end")
     moved = {name: getattr(here, name) + share * (getattr(here, name) - getattr(before, name)) for name in names}
     return replace(here, **moved)
 
 
 def settled(guess: Contact, map: Pinball) -> Contact:
-    """The contact found from a guess, with starts taken from it."""
+    """The contact that Newton's method finds from a guess, with starts taken from it."""
     parameter = tangency(guess, map, 8).parameter
     return Gap(guess, map.over(FLOAT64), parameter, 28, 1e-16).contact()
 
 
 MOST_DIGITS = 500
-MANIFOLD_DIGITS = 20  # asked of the second method at most
+MANIFOLD_DIGITS = 20  # the most digits that the second method computes
 SPARE = 4  # rounds by which the second cycle is longer
 
 
 @dataclass(frozen=True)
-class Crisis:
-    """`parameter +- error` and how it was found; `apart` is how far the two methods are from each other."""
+class KnownCrisis:
+    """A crisis at `parameter` with an error estimate, from a fold of `cycle` and from the tangency `touch`.
+
+    `apart` is the distance of the two values.
+    """
 
     kind: str
     parameter: Any
@@ -279,22 +286,22 @@ class Crisis:
 
     @property
     def period(self) -> int:
-        """Bounces of the cycle before it repeats, or repeats as its mirror image."""
+        """The number of bounces after which the cycle repeats, or repeats as its mirror image."""
         return self.cycle.problem.period
 
     @property
     def agrees(self) -> bool:
-        """Do the two methods agree within their errors?"""
+        """True if the two methods agree within their errors."""
         return self.apart <= 10 * self.touch.error + float(self.error)
 
     @property
     def exponent(self) -> float:
-        """Of the mean transient above a homoclinic crisis [GrebogiOttRomeirasYorke1987]."""
+        """The exponent of the mean transient time above a homoclinic crisis [GrebogiOttRomeirasYorke1987]."""
         return homoclinic_exponent(self.touch.multipliers[0], self.touch.multipliers[1])
 
 
 def homoclinic_exponent(stable: float, unstable: float) -> float:
-    """`ln|stable| / (2*ln|stable*unstable|)`, reached in the limit; at a finite distance see `local_exponent`.
+    """The limit exponent at a homoclinic crisis, `ln|stable| / (2*ln|stable*unstable|)`, from a saddle's multipliers.
 
     >>> homoclinic_exponent(1 / 16, 4)
     1.0
@@ -303,7 +310,7 @@ def homoclinic_exponent(stable: float, unstable: float) -> float:
 
 
 def heteroclinic_exponent(stable: float, unstable: float) -> float:
-    """`1/2 + ln|unstable|/|ln|stable||`, of the saddle inside the attractor.
+    """The limit exponent at a heteroclinic crisis, `1/2 + ln|unstable|/|ln|stable||`: of the saddle on the attractor.
 
     >>> heteroclinic_exponent(1 / 16, 4)
     1.0
@@ -311,8 +318,8 @@ def heteroclinic_exponent(stable: float, unstable: float) -> float:
     return 0.5 + math.log(abs(unstable)) / abs(math.log(abs(stable)))
 
 
-def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> Crisis:
-    """The `merging` or the `boundary` crisis of the three-pointed egg to `digits` digits, not proved.
+def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> KnownCrisis:
+    """The `merging` or the `boundary` crisis of the egg with `K = 3`, to `digits` digits, not proved.
 
     >>> from sympy import Rational
     >>> mpmath.nstr(crisis("boundary", Rational(2, 25), 10).parameter, 10)
@@ -333,64 +340,117 @@ def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> Crisis
     context.dps = digits + 10
     short, parameter = found
     error = abs(context.mpf(parameter) - context.mpf(short)) + context.mpf(10) ** -(digits + 2)
-    return Crisis(
+    return KnownCrisis(
         kind, context.mpf(parameter), error, touch, float(abs(context.mpf(touch.parameter) - parameter)), cycle
     )
 
 
-def proof(found: Crisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> TangencyProof:
-    """The proof in balls of a tangency near the value, within `10**-digits` or less.
+def proof(found: KnownCrisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> Tangency:
+    """The theorem that the manifolds have a tangency within `10**-digits` or less of the value.
 
-    It proves the contact of the manifolds, and not that the attractor ends there.
+    It concerns the contact of the manifolds, not the end of the attractor.
     """
     digits, map, touch = max(LEAST_DIGITS, digits), table(alpha, law), found.touch
     try:
         value = sharpened(touch.contact, map, str(touch.parameter), digits)
-    except (ValueError, ArithmeticError):  # then no proof succeeds either; which step fails the checks tell
+    except (ValueError, ArithmeticError):  # then the theorem fails too, and its checks say at which step
         value = str(touch.parameter)
-    return worked_through(TangencyClaim(touch.contact, map.table, value, digits, law))
+    return Tangency(touch.contact, map.table, value, digits, law)
 
 
-def boundary(alpha: Expr) -> TangencyProof:
-    """The proof of the boundary tangency at one of the shapes of `BOUNDARY`, within 1e-12 of its contraction.
+def boundary(alpha: Expr) -> Tangency:
+    """The theorem on the boundary tangency at a shape of `BOUNDARY`, within 1e-12 of its contraction.
 
-    >>> all(boundary(Rational(1, 20)).strange.values())
+    >>> boundary(Rational(1, 20)).strange.proved
     True
     """
-    return worked_through(TangencyClaim(BOUNDARY[alpha][0], egg(3).at(alpha=alpha), BOUNDARY[alpha][1], 12))
+    return Tangency(BOUNDARY[alpha][0], egg(3).at(alpha=alpha), BOUNDARY[alpha][1], 12)
 
 
-PROVED = {  # contractions of contacts at alpha = 0.08, and to how many digits the proof's balls serve best
+PROVED = {  # contractions of contacts at alpha = 0.08, and the number of digits with which each proof succeeds
     "band-merging": ("0.39768736899279139077682306799053", 20),
     "band-merging-16": ("0.393711849308008935479606", 20),
-    "interior-crisis-1": ("0.428419190754595226515935", 12),
+    "interior-crisis-1": ("0.42841918986809247875652342973309216", 12),
+    "interior-crisis-1-later": ("0.428419190754595226515935", 12),
     "merging": ("0.4434352460818512182485087598866334", 12),
     "window-merging-9": ("0.504527312767549985147168", 12),
 }
 
 
-def touching(kind: str) -> TangencyProof:
-    """The proof of one of these at `alpha = 0.08`.
+# The least contraction and the most bounces of a search by `earlier` that found no contact before these.
+SEARCHED: dict[str, tuple[str, int]] = {
+    "family-merging-12": ("0.374103", 48),
+    "family-end-12": ("0.3756876", 40),
+    "family-merging-8": ("0.3810743", 40),
+    "family-end-8": ("0.3826356", 40),
+    "window-end-8": ("0.39066904", 56),
+    "band-merging-16": ("0.3937117493", 128),
+    "band-merging-8": ("0.39441445", 64),
+    "band-merging": ("0.39768", 40),
+    "window-merging-12": ("0.4020801", 96),
+    "window-end-12": ("0.4023927", 96),
+    "symmetry-restoring": ("0.41026", 40),
+    "window-end-20": ("0.4204335", 70),
+    "window-end-6": ("0.4209303", 42),
+    "interior-crisis-1": ("0.42841914", 40),
+    "merging": ("0.443434", 34),
+    "window-merging-15": ("0.4477062", 40),
+    "window-end-15": ("0.44786875", 40),
+    "window-merging-9": ("0.504527", 40),
+    "window-end-9": ("0.5054006565", 59),
+    "window-merging-14": ("0.56502706", 56),
+    "window-end-14": ("0.565033136", 42),
+    "interior-crisis-2": ("0.62895", 23),
+    "window-merging-18": ("0.64102472", 72),
+    "window-end-18": ("0.641031328", 54),
+    "interior-crisis-3": ("0.6534", 24),
+    "boundary": ("0.66211", 15),
+}
+SEARCHED["band-merging-4"] = SEARCHED["band-merging"]
 
-    >>> all(touching("window-merging-9").strange.values())
+
+def touching(kind: str) -> Tangency:
+    """The theorem on a contact of `PROVED`, by its name, at `alpha = 0.08`.
+
+    >>> touching("window-merging-9").strange.proved
     True
     """
-    return worked_through(TangencyClaim(CONTACTS[kind], egg(3).at(alpha=SHAPE), *PROVED[kind]))
+    return Tangency(CONTACTS[kind], egg(3).at(alpha=SHAPE), *PROVED[kind])
 
 
-BANDS = homoclinic(  # followed from 0.08, where it is `window-merging-9`, to the end of the convex shapes
-    Orbit("cycle of period 9", (-2.8419283836, -0.2524353493, 2.2503788186), Closure(1, (4, 3))),
+BANDS = homoclinic(  # `window-merging-9`, followed from alpha = 0.08 to 1/10, the end of the convex shapes
+    SaddleCycle("cycle of period 9", (-2.8419283836, -0.2524353493, 2.2503788186), Closure(1, (4, 3))),
     12, 1, 0.0103226344, 0.0605500556, 0.29564321252129,
 )  # fmt: skip
 
 
-def bands() -> TangencyProof:
-    """The proof of this one at `alpha = 1/10`."""
-    return worked_through(
-        TangencyClaim(BANDS, egg(3).at(alpha=Rational(1, 10)), "0.295643212521289641615402176260", 12)
-    )
+def bands() -> Tangency:
+    """The theorem on the tangency `BANDS`, at `alpha = 1/10`."""
+    return Tangency(BANDS, egg(3).at(alpha=Rational(1, 10)), "0.295643212521289641615402176260", 12)
 
 
-def decimals(found: Crisis) -> tuple[str, str]:
-    """The value and its error as decimals, all digits of both."""
+EARLIEST = homoclinic(  # where 64 chaotic bands become 32, at 0.08
+    SaddleCycle(
+        "cycle of period 32",
+        (
+            0.1020704794, 3.6063235185, 6.2638811018, 9.1719550495, 12.674658381, 16.162628784,
+            18.816517391, 21.697106346, 25.241183783, 28.745233578, 31.401249976, 34.317508461,
+            37.805563934, 41.284794864, 43.93874905, 46.799777668, 50.36886988, 53.873914163,
+            56.531264728, 59.442875426, 62.939478785, 66.423987566, 69.077808645, 71.950528933,
+            75.505187794, 79.010780114, 81.667396562, 84.585177278, 88.070708614, 91.548395213,
+            94.202428717, 97.060154978,
+        ),
+        Closure(1, (48, 3)),
+    ),
+    128, 1, 0.00076818689, 0.00022923241, 0.3935614580718,
+)  # fmt: skip
+
+
+def earliest() -> Tangency:
+    """The theorem on `EARLIEST`, the tangency of the cascade at the smallest contraction that is proved."""
+    return Tangency(EARLIEST, egg(3).at(alpha=SHAPE), "0.3935614580718190283027611189356978401518", 30)
+
+
+def decimals(found: KnownCrisis) -> tuple[str, str]:
+    """The value and its error as decimals, with all digits of the value."""
     return str(found.parameter), mpmath.nstr(found.error, 3)

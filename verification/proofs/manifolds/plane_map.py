@@ -1,21 +1,22 @@
-"""Planar maps as one equation in three neighbours of an orbit, which is all that manifolds need to know of them.
+"""Planar maps as one equation in three successive points of an orbit, for the computation of invariant manifolds.
 
-`rule(previous, here, following, parameter) = 0` along every orbit; it can be solved for either end, so
-the map and its inverse are the same text read in two directions. The parameter is the one that
-varies: the contraction of the pinball map, `a` of the Henon map. A map is bound to the words of one
-kind of number: floats, arrays, mpmath or balls, or jets of these.
+Along every orbit `rule(previous, here, following, parameter) = 0`. Solved for either end it gives the map and its
+inverse. The parameter is the contraction of the pinball map, or `a` of the Henon map. A map works over one kind of
+number: floats, arrays, mpmath numbers or balls, or jets of these.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from sympy import Expr
 
 from numeric import PinballMap
+from numeric.dynamics.phase_points import advanced, phase_points
 from symbolic.expressions.text import load
 from symbolic.motion.chords import law_kernel
 from symbolic.tables.law import PAPERS_LAW, Law
@@ -28,60 +29,67 @@ from verification.cycles.recurrence import Recurrence, Rule, henon
 from verification.cycles.systems import rotations
 from verification.maps.first_hit import convex
 
-NEWTON = Stop(small=1e-13, steps=60)  # after a landing in float64, in other numbers and order by order in jets
-HALVINGS = 54  # of the incidence angles
+NEWTON = Stop(small=1e-13, steps=60)  # from a landing in float64 to other numbers, and order by order in jets
+HALVINGS = 54  # halvings of the incidence angles
+Array = NDArray[np.float64]
 
 
 class PlaneMap(Protocol):
-    """A map of the plane, by its rule, over one kind of number."""
+    """A map of the plane over one kind of number, given by its rule."""
 
     @property
     def words(self) -> Arithmetic:
-        """The kind of number."""
+        """The functions of the kind of number."""
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name of the map in messages."""
 
     @property
     def turn(self) -> int:
-        """The table goes into itself by `1/turn` of a turn; 0 where points are no angles."""
+        """The order of the rotation symmetry of the table; 0 where points are not angles."""
 
     def over(self, words: Arithmetic) -> Self:
         """The same map over another kind of number."""
 
     @property
     def lifted(self) -> Self:
-        """The same map over jets of its numbers."""
+        """The map over jets of its numbers."""
 
     def rule(self, near: Sequence[Any], parameter: Any) -> Any:
-        """0 at three neighbours of an orbit."""
+        """The rule at three successive points: 0 if they belong to an orbit."""
 
     def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         """The derivatives of the rule by its three points."""
 
     def linear(self, near: Sequence[Any], parameter: Any) -> tuple[Any, tuple[Any, Any, Any], Any]:
-        """The rule, its derivatives by the three points, and the one by the parameter."""
+        """The rule, its derivatives by the three points, and its derivative by the parameter."""
 
     def rule_along(self, near: Sequence[Jet], parameter: Any) -> Jet:
-        """The rule at jets of its numbers."""
+        """The rule with jets in place of the three successive points."""
 
     def linear_along(self, near: Sequence[Jet], parameter: Any) -> tuple[Jet, tuple[Jet, Jet, Jet], Jet]:
-        """The rule at jets of its numbers, its derivatives by the three points, and the one by the parameter."""
+        """The rule at jets, its derivatives by the three points, and its derivative by the parameter."""
 
     def following(self, previous: Any, here: Any, parameter: Any) -> Any:
-        """The map: what comes after `previous, here`."""
+        """The map: the point after `previous, here`."""
 
     def previous(self, here: Any, following: Any, parameter: Any) -> Any:
-        """Its inverse: what came before `here, following`."""
+        """The inverse map: the point before `here, following`."""
 
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
-        """The coordinates in which the map is usually drawn."""
+        """The coordinates in which the map is usually drawn: `(theta, phi)` of a pinball map."""
+
+    def advanced(self, x: Array, y: Array, parameter: float, bounces: int) -> tuple[Array, Array]:
+        """Points in the coordinates of `plane` after `bounces` bounces, in float64; angles modulo full turns."""
+
+    def neighbours(self, x: Array, y: Array, parameter: float) -> tuple[Any, Any]:
+        """Points in the coordinates of `plane` as pairs `here, following`, in float64."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Bound(ABC):
-    """The one rule of a recurrence of period 1, bound to a kind of number, at a value of its parameter."""
+    """A plane map from a recurrence with one rule, over one kind of number."""
 
     words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
     free: ClassVar = "lam"  # the name of the parameter in the recurrence
@@ -96,10 +104,10 @@ class _Bound(ABC):
     @property
     @abstractmethod
     def ring(self) -> Recurrence:
-        """The recurrence."""
+        """The recurrence that the map belongs to."""
 
     def at(self, parameter: Any) -> dict[str, Any]:
-        """All parameters of the recurrence."""
+        """All parameters of the recurrence, by name."""
         return {"lam": parameter}
 
     @cached_property
@@ -139,7 +147,7 @@ class _Bound(ABC):
 
 @dataclass(frozen=True, eq=False)
 class Henon(_Bound):
-    """`x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`; the parameter is `a`.
+    """The Henon map `x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`, with parameter `a`.
 
     >>> from sympy import Rational
     >>> Henon(Rational(3, 10)).following(0.5, 1.0, 1.5)
@@ -168,6 +176,15 @@ class Henon(_Bound):
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
         return following, self._b * here
 
+    def advanced(self, x: Array, y: Array, parameter: float, bounces: int) -> tuple[Array, Array]:
+        with np.errstate(all="ignore"):  # points that escape overflow
+            for _ in range(bounces):
+                x, y = 1 - parameter * x * x + y, float(self.b) * x
+        return x, y
+
+    def neighbours(self, x: Array, y: Array, parameter: float) -> tuple[Any, Any]:
+        return y / float(self.b), x
+
     @cached_property
     def _b(self) -> Any:
         return self.words.q(int(self.b.p), int(self.b.q))
@@ -175,12 +192,11 @@ class Henon(_Bound):
 
 @dataclass(frozen=True, eq=False)
 class Pinball(_Bound):
-    """The pinball map of a table of one component, with `lam` for its parameter, on angles that count turns.
+    """The pinball map of a table of one component, with parameter `lam`; its points are angles that count full turns.
 
-    Forwards a particle lands where the chord makes the angle `-lam*eta` with the normal, or what another law says; in a
-    table that is not convex there may be several such places, and it is the first, in float64. Backwards it came
-    from where the chord makes `-phi/lam`, which is no angle of a chord, and so `nan`, beyond `pi/2`, or the angle that
-    another law, one that falls, takes to `phi`; in float64.
+    Forwards, a particle lands where the chord makes the exit angle of the law with the normal; in a table that is not
+    convex it is the first such place, and float64 only. Backwards, the chord makes the angle `-phi/lam`, or the angle
+    that another, decreasing law maps to `phi` (float64 only); where this exceeds `pi/2`, the result is NaN.
 
     >>> from symbolic.tables import circle
     >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)
@@ -198,7 +214,7 @@ class Pinball(_Bound):
 
     @cached_property
     def exit(self) -> Callable[..., Any]:
-        """The exit angle of a law other than the paper's, in the angle of incidence, the parameter and the place."""
+        """The exit angle of a law other than the paper's, as a function of incidence angle, parameter and place."""
         made = load(law_kernel(self.law, 0), self.words)
         return lambda *at: made(*at)[0]
 
@@ -224,13 +240,22 @@ class Pinball(_Bound):
     def plane(self, here: Any, following: Any) -> tuple[Any, Any]:
         return here, self.angle(here, following)[0]
 
+    def advanced(self, x: Array, y: Array, parameter: float, bounces: int) -> tuple[Array, Array]:
+        made = advanced(_kernel(self.table, self.law, parameter), phase_points(x, y), bounces)
+        lost = made.code != 0
+        return np.where(lost, np.nan, made.points.theta), np.where(lost, np.nan, made.points.phi)
+
+    def neighbours(self, x: Array, y: Array, parameter: float) -> tuple[Any, Any]:
+        hit = _kernel(self.table, self.law, parameter).step(x, y)
+        return x, np.where(hit.code == 0, hit.theta, np.nan)
+
     @cached_property
     def angle(self) -> Callable[..., Any]:
         """The angle of a chord with the normal at its start, and its derivatives by both ends."""
         return chord_angles(self.table, self.words)(0, 0, 1)
 
     def _other_end(self, here: Any, phi: Any, turns: int) -> Any:
-        """The parameter, at most a turn after `here + 2*pi*turns`, to which the chord makes the angle `phi`."""
+        """The other end, at most a turn after `here + 2*pi*turns`, of the chord from `here` at the angle `phi`."""
         arrive = landing if convex(self.table) else first_landing
         start = arrive(self.table, floating(here), floating(phi), turns)
         if self.words is ARRAYS:
@@ -251,7 +276,7 @@ class Pinball(_Bound):
 
 
 def pinball(table: Table, law: Law = PAPERS_LAW) -> Pinball:
-    """The map of a table under a law, with the rotations that both have.
+    """The map of a table under a law, with the rotations that are symmetries of both.
 
     >>> from symbolic.tables import egg
     >>> pinball(egg(5).at(alpha="1/40")).turn
@@ -260,13 +285,18 @@ def pinball(table: Table, law: Law = PAPERS_LAW) -> Pinball:
     return Pinball(table, turn=1 if law.placed else rotations(table), law=law)
 
 
+@lru_cache(maxsize=4)
+def _kernel(table: Table, law: Law, lam: float) -> PinballMap:
+    return PinballMap(table, lam=lam, law=law)
+
+
 @cache
 def _elastic(table: Table) -> PinballMap:
     return PinballMap(table, lam=1)
 
 
 def first_landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
-    """As `landing`, in any table of one component: the first hit as the kernels have it; `nan` where there is none.
+    """As `landing`, for any table of one component: the first hit, by the float64 kernels; NaN where there is none.
 
     >>> from symbolic.tables import circle
     >>> round(first_landing(circle, 0.0, 0.5), 12)
@@ -282,9 +312,9 @@ def first_landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
 
 
 def share(step: Any, x: Any) -> Any:
-    """A correction in units of what it corrects, or of 1 where that is smaller.
+    """A Newton correction `step` relative to `1 + abs(x)`, for jets coefficient by coefficient.
 
-    Derivatives along an unstable manifold grow from bounce to bounce, and the rounding of their corrections with them.
+    Along an unstable manifold derivatives grow from bounce to bounce, and so does the rounding of their corrections.
     """
     if not isinstance(step, Jet):
         return step / (1 + abs(x))

@@ -1,27 +1,28 @@
-"""A proof in balls that a saddle's manifolds touch at one parameter of an interval, quadratically, at non-zero speed.
+"""The theorem that manifolds of saddles have a generic tangency at one parameter of an interval, proved in balls.
 
 An interval Newton step for the system of `touching` proves that it has one zero in a box: the manifolds touch at one
-parameter of it. Let `A` be the derivative of the orbit's equations there, `v` the vector that it takes to 0, and `u`
-the vector from the left that it takes to 0, with the last entry 1. The last equation, with the others solved for all
-unknowns but `z`, is the gap between the manifolds, a function `g` of `z` and the parameter. At the tangency `g_z = 0`,
+parameter of it. Let `A` be the derivative of the orbit's equations there, `v` its right null vector, and `u` its left
+null vector with last entry 1. The last equation, with the others solved for all unknowns but `z`, is the gap between
+the manifolds, a function `g` of `z` and the parameter. At the tangency `g_z = 0`,
 
     g_zz = u.(A'v)v,    g_parameter = u.(the equations' derivative by the parameter).
 
 The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the parameter varies.
 
-Under another law than the paper's a symmetry of the table is one of the map only where the law has it too: `objection`
-says what is missing. Nothing else asks which law it is, as the rule and its derivatives have it in them.
+Under a law other than the paper's a symmetry of the table need not be one of the map: `objection` says what is missing.
+Everything else holds for any law, which enters through the rule and its derivatives.
 
-`strange_attractors` checks what Mora and Viana ask for beside that. Then in every neighbourhood of the parameter there
-is a set of positive measure for whose parameters the map has a strange attractor: it attracts an open set, and holds a
-dense orbit along which vectors grow exponentially [MoraViana1993]. docs/global.md states the theorem, each hypothesis
-and why symmetries of the table and signs of multipliers do no harm.
+`StrangeAttractors` adds the hypotheses of Mora and Viana. Then every neighbourhood of the parameter contains a set of
+positive measure for whose parameters the map has a strange attractor: it attracts an open set, and holds a dense orbit
+along which vectors grow exponentially [MoraViana1993]. docs/global.md states the theorem and each hypothesis, and how
+symmetries of the table and negative multipliers are treated.
 """
 
-from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from typing import NamedTuple
 
 from flint import arb
 from sympy import Pow, Rational
@@ -37,108 +38,162 @@ from verification.maps.first_hit import closes_smoothly, convex
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.tangency import Contact, Precision, multipliers_at
-from verification.proofs.manifolds.touching import Point, Touching, Vector, generic
-from verification.proofs.periodic.interval_newton import Status, slope_bits, stepped
+from verification.proofs.manifolds.touching import OrbitPoint, Touching, Vector, generic
+from verification.proofs.periodic.interval_newton import ZeroStatus, slope_bits, stepped
+from verification.rigorous.theorem import Theorem, Verdict, hypothesis
 
 LEAST_DIGITS = 24
-NEWTON, LONG = 12, 60  # bounces beyond which a system is solved in halves first
-NEAR = Rational(1, 10**6)  # the law is proved to be one for parameters so near the contact's
-PIECES, PLACES = 2048, 64  # of incidence angles, and of the boundary under a law of the place
-SMALL = 1e-5  # beside the box, where Newton's method ends
-ITEMS = ("saddle", "remainder", "exists", "unique", "admissible", "quadratic", "transversal")  # in this order
-Checks = Mapping[str, bool | None]
+NEWTON, LONG = 12, 60  # steps; a flight of more than LONG bounces is solved in halves first
+NEAR = Rational(1, 10**6)  # the law is proved valid for parameters so near the contact's
+PIECES, PLACES = 2048, 64  # pieces of the incidence angles, and of the boundary for a law of the place
+SMALL = 1e-5  # relative to the box: the last correction of Newton's method
+STEPS = ("saddle", "remainder", "exists")  # the steps of an enclosure, in order
 
 
-@dataclass(frozen=True)
-class Proof:
-    """A tangency in `parameter`, when every check is True; `bend` and `speed` are `g_zz` and `g_parameter`.
+class EnclosedContact(NamedTuple):
+    """Enclosed data of a contact; the first `steps` of `STEPS` are proved.
 
-    `multipliers` are the stable and the unstable one of the saddle that the orbit leaves.
+    `bend` and `speed` are the derivatives `g_zz` and `g_parameter` of the gap, `multipliers` the stable and the
+    unstable one of the saddle that the orbit leaves.
     """
 
     parameter: arb
-    checks: Checks
-    bend: arb | None = field(default=None, repr=False)
-    speed: arb | None = field(default=None, repr=False)
-    multipliers: tuple[arb, ...] = field(default=(), repr=False)
-
-    @property
-    def holds(self) -> bool:
-        """Is every check proved?"""
-        return all(value is True for value in self.checks.values())
-
-    @property
-    def touches(self) -> bool:
-        """Is it proved that the manifolds touch at one parameter, in whatever manner?"""
-        return all(self.checks[item] is True for item in ITEMS[:5])
+    steps: int = 0
+    exists: Verdict = None
+    system: Touching | None = None
+    point: OrbitPoint | None = None
+    bend: arb = arb("nan")
+    speed: arb = arb("nan")
+    multipliers: tuple[arb, ...] = ()
 
 
-def tangency_proved(contact: Contact, map: PlaneMap, value: str, digits: int = LEAST_DIGITS) -> Proof:
-    """The proof that the manifolds touch at one parameter within `10**-digits` of `value`, which has more digits.
+@dataclass(frozen=True, repr=False)
+class ManifoldsTouch(Theorem):
+    """Manifolds touch at one parameter within `10**-digits` of `near`, quadratically, and pass through each other.
 
     >>> from verification.proofs.manifolds.known import SHAPE, contact, table
     >>> triangle = contact("boundary", SHAPE)
-    >>> tangency_proved(triangle, table(SHAPE), "0.66214427335822441948253455", 20).holds
+    >>> ManifoldsTouch(triangle, table(SHAPE), "0.66214427335822441948253455", 20).proved
     True
     """
-    precision = Precision(digits)
-    with working(precision.bits):
-        parameter = arb(value).mid()
-        try:
-            system = Touching(contact, map, parameter, precision)
-            if system.bounces > LONG:
-                system.halves = True
-                with suppress(ValueError, ArithmeticError):
-                    if (found := _proved(system, map, precision)).holds:
-                        return found
-                system.halves = False
-            return _proved(system, map, precision)
-        except (ValueError, ArithmeticError) as why:
-            known = ITEMS.index(why.item if isinstance(why, TooWideError) else "saddle")
-            checks = {item: True if k < known else None for k, item in enumerate(ITEMS)}
-            return Proof(arb(parameter, precision.step), checks)
 
+    contact: Contact
+    map: PlaneMap
+    near: str
+    digits: int = LEAST_DIGITS
 
-def _proved(system: Touching, map: PlaneMap, precision: Precision) -> Proof:
-    """The rest of the checklist, with both manifolds enclosed."""
-    near = settled(system, precision).unknowns[:-1]
-    centre, wide = Point.of([*near, system.parameter]), arb(10) ** -(precision.digits // 2)
-    box = Point.of([*(arb(x, wide) for x in near), arb(system.parameter, precision.step)])
-    at = system.linear(centre)
-    with working(slope_bits(len(box.unknowns))):
-        over = system.linear(box)
-        step = over.step([*at.values, *at.along], "precond")
-    proof = stepped(centre.unknowns, box.unknowns, lambda: step)
-    image, found = proof.zero, {Status.UNIQUE: True, Status.EMPTY: False, Status.UNKNOWN: None}[proof.status]
-    lawful = not objection(system.contact, map, float(system.parameter))
-    checks: dict[str, bool | None] = {
-        "saddle": True,
-        "remainder": True,
-        "exists": found,
-        "unique": found,
-        "admissible": admissible(map) if lawful else None,
-    }
-    if not found:
-        return Proof(box.parameter, checks | {"quadratic": None, "transversal": None})
-    if lawful:
-        checks["admissible"] = checks["admissible"] or system.clear(Point.of(image)) or None
-    bend, speed = generic(system.linear(Point.of(image)), Point.of(image).along)
-    checks |= {"quadratic": _nonzero(bend), "transversal": _nonzero(speed)}
-    left = system.pairs[0].saddle
-    return Proof(image[-1], checks, bend, speed, multipliers_at(image[-1], left, map, precision))
+    @cached_property
+    def precision(self) -> Precision:
+        """The bits, orders and radii for this number of digits."""
+        return Precision(self.digits)
+
+    @cached_property
+    def enclosed(self) -> EnclosedContact:
+        """The enclosed manifolds and their contact, by an interval Newton step; a long flight in halves first."""
+        with working(self.precision.bits):
+            parameter = arb(self.near).mid()
+            try:
+                system = Touching(self.contact, self.map, parameter, self.precision)
+                if system.bounces > LONG:
+                    system.halves = True
+                    with suppress(ValueError, ArithmeticError):
+                        found = self._solve(system)
+                        if found.exists and self._admissible(found) and _nonzero(found.bend) and _nonzero(found.speed):
+                            return found
+                    system.halves = False
+                return self._solve(system)
+            except (ValueError, ArithmeticError) as why:
+                step = STEPS.index(why.item if isinstance(why, TooWideError) else "saddle")
+                return EnclosedContact(arb(parameter, self.precision.step), step)
+
+    def _solve(self, system: Touching) -> EnclosedContact:
+        near = settled(system, self.precision).unknowns[:-1]
+        centre, wide = OrbitPoint.of([*near, system.parameter]), arb(10) ** -(self.digits // 2)
+        box = OrbitPoint.of([*(arb(x, wide) for x in near), arb(system.parameter, self.precision.step)])
+        at = system.linear(centre)
+        with working(slope_bits(len(box.unknowns))):
+            over = system.linear(box)
+            step = over.step([*at.values, *at.along], "precond")
+        proof = stepped(centre.unknowns, box.unknowns, lambda: step)
+        found = {ZeroStatus.UNIQUE: True, ZeroStatus.EMPTY: False, ZeroStatus.UNKNOWN: None}[proof.status]
+        if not found:
+            return EnclosedContact(box.parameter, len(STEPS), found)
+        image, left = proof.zero, system.pairs[0].saddle
+        at_zero = OrbitPoint.of(image)
+        bend, speed = generic(system.linear(at_zero), at_zero.along)
+        multipliers = multipliers_at(image[-1], left, self.map, self.precision)
+        return EnclosedContact(image[-1], len(STEPS), True, system, at_zero, bend, speed, multipliers)
+
+    def _admissible(self, found: EnclosedContact) -> Verdict:
+        with working(self.precision.bits):
+            if found.steps < len(STEPS) or objection(self.contact, self.map, float(arb(self.near).mid())):
+                return None
+            return admissible(self.map) or (found.point and found.system and found.system.clear(found.point)) or None
+
+    @property
+    def value(self) -> arb:
+        """The parameter at the tangency, as a ball."""
+        return self.enclosed.parameter
+
+    @property
+    def touches(self) -> bool:
+        """True if a contact of the manifolds at one parameter is proved, generic or not."""
+        return self.enclosed.exists is True and self.admissible is True
+
+    @hypothesis
+    def saddle(self) -> bool:
+        """The saddles exist for all parameters of the box."""
+        return self.enclosed.steps > 0
+
+    @hypothesis
+    def remainder(self) -> bool:
+        """The series of their manifolds have bounded remainders."""
+        return self.enclosed.steps > 1
+
+    @hypothesis(refutable=True)
+    def exists(self) -> Verdict:
+        """The manifolds touch at a parameter of the box."""
+        return self.enclosed.exists
+
+    @hypothesis(refutable=True)
+    def unique(self) -> Verdict:
+        """The manifolds touch at no other parameter of the box."""
+        return self.enclosed.exists
+
+    @hypothesis
+    def admissible(self) -> Verdict:
+        """Every chord of the orbit ends at its first hit, and table and law have the orbit's symmetries."""
+        return self._admissible(self.enclosed)
+
+    @hypothesis
+    def quadratic(self) -> Verdict:
+        """The second derivative of the gap between the manifolds is not 0."""
+        return _nonzero(self.enclosed.bend)
+
+    @hypothesis
+    def transversal(self) -> Verdict:
+        """The gap passes 0 as the parameter varies."""
+        return _nonzero(self.enclosed.speed)
+
+    @property
+    def strange(self) -> "StrangeAttractors":
+        """The theorem that strange attractors exist near the parameter."""
+        return StrangeAttractors(self.contact, self.map, self.proved, self.value, self.enclosed.multipliers)
 
 
 def admissible(map: PlaneMap) -> bool | None:
-    """True where any chord between two bounces meets the boundary nowhere on its way: in a convex table."""
+    """True if no chord between two bounces meets the boundary on its way, since the table is convex; else None."""
     if not isinstance(map, Pinball):
         return True
-    # bounces may run over the end of the parameter
+    # bounces may pass the end of the parameter range
     seamless = len(map.table.components) > 1 or closes_smoothly(map.table)
     return convex(map.table) if seamless else None
 
 
 def objection(contact: Contact, map: PlaneMap, parameter: float) -> str:
-    """Why a contact is none of its table or its law: what of its symmetry they lack, or where that is no law; else ''.
+    """The reason why a contact does not fit its table or law, or ''.
+
+    The table or the law may lack a symmetry of the contact, or the law may not be proved valid near the parameter.
 
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
     >>> objection(CONTACTS["merging"], table(SHAPE, Law("-lam*eta + eta**2/99")), 0.44)
@@ -170,22 +225,22 @@ def _nonzero(x: arb) -> bool | None:
     return True if x > 0 or x < 0 else None
 
 
-def settled(system: Touching, precision: Precision) -> Point:
-    """The zero by Newton's method, with the manifolds taken as affine in the parameter; not proved."""
+def settled(system: Touching, precision: Precision) -> OrbitPoint:
+    """The zero of the system by Newton's method, with manifolds affine in the parameter; not proved."""
 
     def correction(unknowns: Vector) -> Vector:
-        linear = system.linear(Point.of(unknowns))
+        linear = system.linear(OrbitPoint.of(unknowns))
         return linear.step([*linear.values, *linear.along], "approx")
 
     stop = Stop(enough=precision.step * SMALL, steps=NEWTON)
     found = iterated(correction, system.start.unknowns, stop, kept=arb.mid)
     if not found.settled:
         raise TooWideError("exists", "Newton's method finds no contact near the start")
-    return Point.of(found.x)
+    return OrbitPoint.of(found.x)
 
 
 def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:
-    """The parameter of a contact to a few digits more than `digits`, from a value near it; not proved."""
+    """The parameter of a contact to ten more than `digits` digits, from a value near it; not proved."""
     precision, before = Precision(digits), arb(1)
     with working(precision.bits):
         parameter = arb(value).mid()
@@ -197,36 +252,66 @@ def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:
             parameter, before = found, moved
 
 
-RESONANCES = 100  # up to this order they are excluded; linearising coordinates of any class need finitely many
-STRANGE = ("tangency", "homoclinic", "analytic", "dissipative", "nonresonant")
+RESONANCES = 100  # the order up to which resonances are excluded, for smooth linearising coordinates
 
 
-def strange_attractors(contact: Contact, map: PlaneMap, proof: Proof) -> Checks:
-    """The hypotheses of Mora and Viana, item by item; with all of them proved strange attractors are.
+@dataclass(frozen=True, repr=False)
+class StrangeAttractors(Theorem):
+    """Near the parameter, on a set of parameters of positive measure, the map has strange attractors (Mora and Viana).
 
-    `nonresonant` excludes `abs(stable)**i * abs(unstable)**j = 1` for all `j` and `1 <= i <= RESONANCES`.
+    `touches` is True where the tangency is proved; `multipliers` are the stable and the unstable one of its saddle.
 
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
-    >>> triangle, egg = CONTACTS["boundary"], table(SHAPE)
-    >>> set(strange_attractors(triangle, egg, tangency_proved(triangle, egg, "0.66214427335822441948", 10)).values())
-    {True}
+    >>> ManifoldsTouch(CONTACTS["boundary"], table(SHAPE), "0.66214427335822441948", 10).strange.proved
+    True
     """
-    found: dict[str, bool | None] = dict.fromkeys(STRANGE)
-    found["tangency"] = True if proof.holds else None
-    found["homoclinic"] = contact.kind == "homoclinic"  # the same start leads to the same cycle
-    found["analytic"] = smooth(map, proof.parameter)
-    if proof.multipliers:
+
+    contact: Contact
+    map: PlaneMap
+    touches: bool
+    parameter: arb
+    multipliers: tuple[arb, ...]
+
+    @property
+    def sizes(self) -> tuple[arb, ...]:
+        """Absolute values of the multipliers; `ArithmeticError` where they are not enclosed."""
+        if not self.multipliers:
+            raise ArithmeticError("no multipliers are enclosed")
+        return tuple(abs(x) for x in self.multipliers)
+
+    @hypothesis
+    def tangency(self) -> bool:
+        """The manifolds touch at the parameter, quadratically, and pass through each other."""
+        return self.touches
+
+    @hypothesis(refutable=True)
+    def homoclinic(self) -> bool:
+        """The two manifolds belong to one cycle."""
+        return self.contact.kind == "homoclinic"  # the same start leads to the same cycle
+
+    @hypothesis
+    def analytic(self) -> Verdict:
+        """The map and its inverse are analytic."""
+        return smooth(self.map, self.parameter)
+
+    @hypothesis(refutable=True)
+    def dissipative(self) -> Verdict:
+        """The product of the multipliers is below 1 in modulus."""
         with working(Precision(LEAST_DIGITS).bits):
-            stable, unstable = (abs(x) for x in proof.multipliers)
-            found["dissipative"] = True if stable * unstable < 1 else False if stable * unstable > 1 else None
-            found["nonresonant"] = nonresonant(stable, unstable)
-    return found
+            stable, unstable = self.sizes
+            return True if stable * unstable < 1 else False if stable * unstable > 1 else None
+
+    @hypothesis
+    def nonresonant(self) -> Verdict:
+        """`abs(stable)**i * abs(unstable)**j` is not 1 for `1 <= i <= RESONANCES` and any `j`."""
+        with working(Precision(LEAST_DIGITS).bits):
+            return nonresonant(*self.sizes)
 
 
 def smooth(map: PlaneMap, parameter: arb | None = None) -> bool | None:
-    """True when the map is analytic with an analytic inverse: in a convex table whose one curve closes smoothly.
+    """True if the map is proved analytic with an analytic inverse, on a convex table with one smooth curve; else None.
 
-    Of another law than the paper's it is asked besides that it has no roots, and falls as the incidence grows.
+    A law other than the paper's must have no roots, and must decrease in the incidence angle at `parameter`.
     """
     if not admissible(map):
         return None
@@ -236,7 +321,7 @@ def smooth(map: PlaneMap, parameter: arb | None = None) -> bool | None:
 
 
 def falling(law: Law, parameter: arb | None) -> bool:
-    """Is the law analytic with a negative derivative by `eta`, proved for all angles and places at a contraction?
+    """True if the law is proved analytic with a negative derivative by `eta`, for all angles and places at `parameter`.
 
     >>> falling(Law("-lam*eta + eta**3/40"), arb("0.6")), falling(Law("-lam*eta + eta**3/10"), arb("0.6"))
     (True, False)
@@ -255,7 +340,7 @@ def falling(law: Law, parameter: arb | None) -> bool:
 
 
 def nonresonant(stable: arb, unstable: arb) -> bool | None:
-    """Is no product of powers of two sizes of multipliers 1, up to the order of `RESONANCES`? None where not proved.
+    """True if `stable**i * unstable**j` is proved not 1 for `1 <= i <= RESONANCES` and any `j`; else None.
 
     >>> nonresonant(arb("0.3"), arb(2)), nonresonant(arb("0.25"), arb(2))
     (True, None)

@@ -1,15 +1,14 @@
 """Saddles, cycles modulo a symmetry of the table, and the Taylor series of their local invariant manifolds.
 
-After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = turn*x[i] + shift`: a
-triangle is one bounce and a turn by a third, a chord between two mirror images one bounce and a mirror.
-The multipliers are those of the map followed by that symmetry undone.
+After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = turn*x[i] + shift`: a triangle is one
+bounce and a turn by a third, a chord between two mirror images is one bounce and a reflection. The multipliers are
+those of the map followed by the inverse of that symmetry.
 
-The manifolds come from the parameterisation method, with the map acting as `z -> mu*z` on the series. Each bounce of
-a saddle has a series `P[i](z)` with `P[i](0) = x[i]` and, around the end, `P[i+p](z) = sign*P[i](mu*z) + shift`. The
-rule at three neighbours, as a power series in `z`, has to vanish: order `k` is the linearised rule on displacements
-with the factor `mu**k`, singular at `k = 1` only, where it gives the direction. Newton's method on whole series
-doubles the orders that hold. With `mu` the unstable multiplier this is the unstable manifold, with the stable one the
-stable.
+The manifolds come from the parameterisation method, with the map acting as `z -> mu*z` on the series. Each bounce of a
+saddle has a series `P[i](z)` with `P[i](0) = x[i]` and, after a round, `P[i+p](z) = sign*P[i](mu*z) + shift`. The rule
+at three neighbours, as a power series in `z`, has to vanish: order `k` is the linearised rule on displacements with the
+factor `mu**k`, singular at `k = 1` only, where it gives the direction. Newton's method on whole series doubles the
+orders that hold. With `mu` the unstable multiplier this is the unstable manifold, with the stable one the stable.
 """
 
 import math
@@ -25,11 +24,12 @@ from verification.cycles.recurrence import IDENTITY, Closure
 from verification.proofs.manifolds.plane_map import PlaneMap
 
 NEWTON = Stop(small=1e-10, steps=60)
+LARGEST_LOG = 640.0  # of the largest power of a multiplier: just below the largest double
 
 
 @dataclass(frozen=True)
-class Orbit:
-    """What identifies a cycle: starting values for its bounces, and how it repeats."""
+class SaddleCycle:
+    """A cycle modulo a symmetry: starts for its bounces, and the symmetry after which it repeats."""
 
     name: str
     start: tuple[float, ...]
@@ -40,7 +40,7 @@ class Orbit:
 class Saddle:
     """A cycle at one value of the parameter; `stable` and `unstable` are its multipliers."""
 
-    orbit: Orbit
+    orbit: SaddleCycle
     map: PlaneMap
     parameter: Any
     points: tuple[Any, ...]
@@ -48,23 +48,23 @@ class Saddle:
     unstable: Any
 
     def around(self) -> list[Any]:
-        """The points with a neighbour more on either side."""
+        """The points, with one more on either side."""
         return padded(self.orbit, self.map, self.points)
 
 
-def padded(orbit: Orbit, map: PlaneMap, points: Sequence[Any]) -> list[Any]:
-    """`x[-1], x[0], ..., x[p]`."""
+def padded(orbit: SaddleCycle, map: PlaneMap, points: Sequence[Any]) -> list[Any]:
+    """The points `x[-1], x[0], ..., x[p]`: a round with one more point on either side."""
     return orbit.closure.padded(points, orbit.closure.angle(map.words))
 
 
-def slopes(orbit: Orbit, map: PlaneMap, points: Sequence[Any], parameter: Any) -> list[tuple[Any, Any, Any]]:
-    """The derivatives of the rule at each point by the neighbour before, itself and the one after."""
+def slopes(orbit: SaddleCycle, map: PlaneMap, points: Sequence[Any], parameter: Any) -> list[tuple[Any, Any, Any]]:
+    """For each bounce, the derivatives of the rule by the point before, the point itself and the point after."""
     ring = padded(orbit, map, points)
     return [map.slopes(ring[i : i + 3], parameter) for i in range(len(points))]
 
 
-def matrix(orbit: Orbit, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) -> list[list[Any]]:
-    """The linearised rules on displacements that come back as `factor` times their image."""
+def matrix(orbit: SaddleCycle, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) -> list[list[Any]]:
+    """The matrix of the linearised rules, for displacements that a round multiplies by `factor` times the symmetry."""
     p = len(rows)
     entries: list[list[Any]] = [[0] * p for _ in range(p)]
     for i, (before, here, after) in enumerate(rows):
@@ -74,12 +74,12 @@ def matrix(orbit: Orbit, rows: Sequence[tuple[Any, Any, Any]], factor: Any = 1) 
     return entries
 
 
-def saddle(orbit: Orbit, map: PlaneMap, parameter: Any) -> Saddle:
-    """The cycle near its starting values, by Newton's method in the numbers of the map.
+def saddle(orbit: SaddleCycle, map: PlaneMap, parameter: Any) -> Saddle:
+    """The saddle near `orbit.start` at this value of the parameter, by Newton's method in the numbers of the map.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
-    >>> found = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
+    >>> found = saddle(SaddleCycle("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> print(f"{found.unstable:.6f} {found.stable:.6f}")
     -1.923739 0.155946
     """
@@ -98,8 +98,8 @@ def saddle(orbit: Orbit, map: PlaneMap, parameter: Any) -> Saddle:
     return Saddle(orbit, map, parameter, tuple(found.x), stable, unstable)
 
 
-def multipliers(orbit: Orbit, map: PlaneMap, points: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
-    """The smaller and the larger multiplier in absolute value, of a cycle with real ones."""
+def multipliers(orbit: SaddleCycle, map: PlaneMap, points: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
+    """The smaller and the larger multiplier in absolute value; `ValueError` where they are complex."""
     trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
     square = trace * trace - 4 * determinant
     if not square > 0:
@@ -115,9 +115,9 @@ Series = list[list[Any]]  # for each bounce the coefficients of 1, z, z**2, ...
 
 @dataclass(frozen=True)
 class Local:
-    """The local manifold over `-1 <= z <= 1`, where `z = 1` is `unit` along the eigenvector in the linear order.
+    """The series of a local manifold over `-1 <= z <= 1`; `z = 1` is `unit` along the eigenvector, to first order.
 
-    `residual` is the largest rule found there.
+    `residual` is the largest value of the rule found on that range.
     """
 
     saddle: Saddle
@@ -142,16 +142,18 @@ class Local:
 
 
 def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) -> Local:
-    """The manifold to `order`, scaled so that its last coefficient is about `tail`.
+    """The local manifold as a series to `order`, scaled so that the last coefficients are about `tail`.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
-    >>> from verification.proofs.manifolds.saddle import Orbit, saddle
-    >>> fixed = saddle(Orbit("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
+    >>> from verification.proofs.manifolds.saddle import SaddleCycle, saddle
+    >>> fixed = saddle(SaddleCycle("fixed point", (0.6,)), Henon(Rational(3, 10)), 1.4)
     >>> local(fixed, unstable=True).residual < 1e-14
     True
     """
     factor = saddle.unstable if unstable else saddle.stable
+    if isinstance(factor, float):
+        order = min(order, int(LARGEST_LOG / abs(math.log(abs(factor)))))  # powers of the factor must not overflow
     rows = slopes(saddle.orbit, saddle.map, saddle.points, saddle.parameter)
     series: Series = [[x, v] for x, v in zip(saddle.points, direction(saddle, rows, factor), strict=True)]
     while len(series[0]) <= order:
@@ -163,7 +165,7 @@ def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) 
 
 
 def direction(saddle: Saddle, rows: Sequence[tuple[Any, Any, Any]], factor: Any) -> list[Any]:
-    """The eigenvector, with the largest entry 1: the null vector of the linearised rules."""
+    """The eigenvector with largest entry 1: the null vector of the linearised rules."""
     entries = matrix(saddle.orbit, rows, factor)
     p = len(entries)
     if p == 1:
@@ -175,7 +177,7 @@ def direction(saddle: Saddle, rows: Sequence[tuple[Any, Any, Any]], factor: Any)
 
 
 def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
-    """One Newton step: `length` coefficients from series that hold to half as many."""
+    """The series to `length` coefficients by one Newton step, from series that are correct to half as many."""
     known, orbit = len(series[0]), saddle.orbit
     powers = _powers(factor, length)
     ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
@@ -201,7 +203,7 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
 
 
 def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Jet]:
-    """The series of the bounces with one more on either side, as jets."""
+    """The series of the bounces as jets, with one more on either side."""
     sign, shift = saddle.orbit.closure.turn, saddle.orbit.closure.angle(saddle.map.words)
     before = [sign * c / m for c, m in zip(series[-1], powers, strict=True)]
     after = [sign * c * m for c, m in zip(series[0], powers, strict=True)]
@@ -210,12 +212,12 @@ def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Je
 
 
 def around(orbit: Any, step: Sequence[Any], power: Any) -> list[Any]:
-    """One coefficient at each bounce, with one more on either side."""
+    """The coefficients `step` of the bounces, with one more on either side: a round later they grow by `power`."""
     return [orbit.closure.turn * step[-1] / power, *step, orbit.closure.turn * step[0] * power]
 
 
 def reach(series: Series, tail: float) -> float:
-    """How far along the eigenvector the last terms stay below about `tail`, and no term exceeds 1."""
+    """The length along the eigenvector up to which the last terms stay below about `tail`, and all terms below 1."""
     last = len(series[0]) - 1
     limits = [math.log(tail) if k > last - 2 else 0.0 for k in range(last + 1)]
     logs = [(limits[k] - log_of(c[k])) / k for c in series for k in range(1, last + 1) if c[k] != 0]
@@ -223,12 +225,12 @@ def reach(series: Series, tail: float) -> float:
 
 
 def log_of(x: Any) -> float:
-    """`log(abs(x))` of a number that may leave the range of floats."""
+    """The natural logarithm of `abs(x)`, for floats or mpmath numbers beyond their range."""
     return math.log(abs(x)) if isinstance(x, float) else float(x.context.log(abs(x)))
 
 
 def residual(made: Local) -> float:
-    """The largest rule at a few parameters across the domain: what the truncation leaves."""
+    """The largest value of the rule at a few points of the manifold: the truncation error."""
     saddle, worst = made.saddle, 0.0
     series = [list(c) for c in made.coefficients]
     for share in (-1, -0.75, -0.4, 0.3, 0.7, 1):

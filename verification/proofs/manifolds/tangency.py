@@ -1,16 +1,16 @@
-"""Where an unstable and a stable manifold touch: the contraction and the orbit, in mpmath and enclosed in balls.
+"""Tangencies of an unstable and a stable manifold in mpmath, and enclosures of bounces on local manifolds in balls.
 
-The balls are those of two neighbouring bounces on a local manifold, as functions of its own parameter and of the
-contraction. The polynomials are enclosed at one contraction, at another a `step` away, and over a complex disc of
-them. The derivative by the contraction is the difference quotient of the first two, give or take what Cauchy's bound
-of the second derivative on the disc allows. The remainder is bounded over that disc, and over the unit disc of
-parameters; so its derivatives are bounded by Cauchy as well, on parameters up to 1/2.
+*Balls.* Two neighbouring bounces on a local manifold are enclosed as functions of its parameter `z` and of the
+contraction. Their polynomials are enclosed at one contraction, at a second one beside it, and over a complex disc of
+contractions. The derivative by the contraction is the difference quotient, with an error from Cauchy's bound of the
+second derivative on the disc. The remainder is bounded over that disc and the unit disc of `z`; so Cauchy's bounds give
+its derivatives for `abs(z) <= 1/2`.
 
-From `z` on the local unstable manifold the map is followed for some bounces, into the neighbourhood
-where the local stable manifold is a graph `following = S(here)`; the gap `following - S(here)` is a
-function of `z`, run on jets. At a fixed contraction its extremum is found by Newton's method; the tangency
-is where the extremum is 0, by secants. Quadratic contact is the second derivative, and transversal
-unfolding the speed of the extremum, both away from 0.
+*mpmath.* An orbit from `z` on the local unstable manifold is followed for some bounces, into the neighbourhood where
+the local stable manifold is a graph `following = S(here)`. The gap `following - S(here)` is a function of `z`,
+evaluated on jets. At a fixed contraction Newton's method finds its extremum; the secant method finds the contraction
+where the extremum is 0. The contact is quadratic where the second derivative is not 0, and unfolds transversally where
+the derivative of the extremum by the contraction is not 0.
 """
 
 import math
@@ -34,49 +34,49 @@ from verification.proofs.manifolds.enclosed import (
     size,
 )
 from verification.proofs.manifolds.plane_map import PlaneMap, floating
-from verification.proofs.manifolds.saddle import Local, Orbit, Saddle, horner, local, saddle
+from verification.proofs.manifolds.saddle import Local, Saddle, SaddleCycle, horner, local, saddle
 
-REACH = 0.04  # how far the outer disc moves a bounce at most: little beside a chord, so that the rule stays finite
-SMALLER = 3  # units that are tried before the last one
-ROUGH = 28  # order of the series in float64 that sets the scale
+REACH = 0.04  # the largest displacement of a bounce over the outer disc: short beside a chord
+SMALLER = 3  # how often the unit is reduced at most
+ROUGH = 28  # the order of the float64 series that sets the scale
 Polynomials = list[list[arb]]
 
 
 @dataclass(frozen=True)
 class Precision:
-    """What a proof of a parameter within `10**-digits` computes with."""
+    """The precision of a proof that a parameter lies within `10**-digits`."""
 
     digits: int
 
     @property
     def bits(self) -> int:
-        """Of the balls: twice the digits, since a difference quotient loses half of them."""
+        """The precision of the balls: twice the digits, since a difference quotient loses half of them."""
         return bits_of(2 * self.digits, 150)
 
     @property
     def outer(self) -> int:
-        """The radius of the disc on which the rule is bounded, so that each order is worth three digits or more."""
+        """The radius of the disc on which the rule is bounded, so that each order gains three digits or more."""
         return int(10 ** (3 + self.digits // 100))
 
     @property
     def order(self) -> int:
-        """Of the series, so that `outer**-order` is small beside the box even after a long flight."""
+        """The order of the series, so that `outer**-order` is small beside the box even after a long flight."""
         return math.ceil((self.digits + 20) / math.log10(self.outer))
 
     @property
     def step(self) -> arb:
-        """How far parameters are from the middle of their box, at most."""
+        """The half width of the box of parameters."""
         return (arb(10) ** -self.digits).mid()
 
     @property
     def disc(self) -> arb:
-        """The radius of the complex disc of parameters on which Cauchy's bounds rest."""
+        """The radius of the complex disc of parameters for Cauchy's bounds."""
         return (arb(10) ** -math.ceil(0.6 * self.digits)).mid()
 
 
 @dataclass(frozen=True)
 class Near:
-    """A bounce: its place, its derivatives by `z`, by the parameter, and by both."""
+    """A bounce near a saddle: its place, and derivatives by `z` (first, second), by the parameter, and by both."""
 
     place: arb
     first: arb
@@ -87,9 +87,9 @@ class Near:
 
 @dataclass(frozen=True)
 class Scale:
-    """`unit` is the length of `z = 1` along the eigenvector whose entry `chief` is 1; `rough` the series in float64.
+    """The scale of a local manifold: `unit` is the length of `z = 1` along the eigenvector whose entry `chief` is 1.
 
-    The polynomials have so many orders `more` than the precision asks for.
+    `rough` is the series in float64; the polynomials have `more` orders than the precision requires.
     """
 
     unstable: bool
@@ -100,12 +100,13 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Coefficients of the two: `places` at the parameter itself, `slopes` by it up to two steps away.
+class Coefficients:
+    """Two neighbouring bounces on a local manifold, as enclosed polynomials in `z`.
 
-    The bounces are -1 and 0 of the unstable manifold, 0 and 1 of the stable one. `error` bounds the
-    remainder for all parameters at most `margin` from those; `saddle` is enclosed for the same parameters. `tube` are
-    the bounces of a round and their neighbours, for all `z` of at most 1/2.
+    They are bounces -1 and 0 of the unstable manifold, or 0 and 1 of the stable one. `places` are the coefficients at
+    the parameter itself, `slopes` their derivatives by it, up to two steps away. `error` bounds the remainder for all
+    parameters up to `margin` beyond; `saddle` is enclosed for the same parameters. `tube` encloses the bounces of a
+    round and their neighbours for `abs(z) <= 1/2`.
     """
 
     saddle: Saddle
@@ -117,7 +118,7 @@ class Pair:
     tube: list[arb]
 
     def at(self, i: int, z: arb, away: arb) -> Near:
-        """Bounce `i` of the two over a ball of parameters, for parameters `away` from the one of the places."""
+        """Bounce `i` (0 or 1) at `z` over a ball of parameters, `away` from the parameter of `places`."""
         if not abs(z) < 0.5:
             raise TooWideError("exists", "the parameter leaves the disc of radius 1/2")
         slopes, e = self.slopes[i], self.error
@@ -134,19 +135,19 @@ class Pair:
 
 
 def _within(x: arb, bound: arb) -> arb:
-    """All numbers no farther from `x` than a bound."""
+    """The ball of all numbers at most `bound` from `x`."""
     return x + arb(0, bound.abs_upper())
 
 
-def scale(orbit: Orbit, map: PlaneMap, parameter: float, unstable: bool, outer: int) -> Scale:
-    """The unit with which the disc of radius `outer` moves bounces by `REACH`, from the series in float64."""
+def scale(orbit: SaddleCycle, map: PlaneMap, parameter: float, unstable: bool, outer: int) -> Scale:
+    """The scale at which the disc of radius `outer` moves bounces by `REACH`, from the series in float64."""
     made = local(saddle(orbit, map.over(FLOAT64), parameter), unstable, ROUGH)
     first = [abs(c[1]) for c in made.coefficients]
     return Scale(unstable, _reach(made) / outer, first.index(max(first)), made)
 
 
 def _reach(made: Local) -> float:
-    """How far along the eigenvector the absolute terms of a bounce sum up to `REACH`, where they do first."""
+    """The least length along the eigenvector at which the absolute terms of a bounce sum up to `REACH`."""
     low, high = 0.0, 1.0
     while high - low > 1e-3 * high:
         middle = (low + high) / 2
@@ -155,11 +156,11 @@ def _reach(made: Local) -> float:
     return low
 
 
-def smaller(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Pair:
-    """The pair with the largest of a few units for which the remainder is bounded, each with more orders.
+def smaller(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Coefficients:
+    """`pair` with the largest unit, from that of `scale` down, for which the remainder is bounded.
 
-    Along long cycles the coefficients' balls grow with the order, in the largest unit by up to 100 for each; and
-    the slopes along a round multiply to a number that only many orders outweigh where the multiplier is near 1.
+    Smaller units have more orders. Along long cycles the radii of coefficients grow by up to 100 per order in the
+    largest unit. Where a multiplier is near 1, only many orders outweigh the product of the slopes along a round.
     """
     for k in range(SMALLER):
         try:
@@ -171,24 +172,24 @@ def smaller(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision
 
 
 def shrunk(scale: Scale, times: int) -> Scale:
-    """A tenth of the unit and ten orders more, so many times."""
+    """The scale with a tenth of the unit and ten orders more, `times` times."""
     return replace(scale, unit=scale.unit / 10**times, more=10 * times)
 
 
 def one_cycle(around: Saddle, here: Saddle) -> bool:
-    """Is the cycle at one parameter the one that is unique over a ball of them? It is where its balls lie in those."""
+    """True if the cycle at one parameter is the one that is unique over a ball of parameters: its balls lie within."""
     return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
 
 
 def multipliers_at(parameter: arb, around: Saddle, map: PlaneMap, precision: Precision) -> tuple[arb, arb]:
-    """Those of the saddle at one parameter: they are known better there than over all of the disc."""
+    """The stable and unstable multiplier at one parameter, closer than those over the whole disc."""
     at = enclosed_saddle(around.orbit, map.over(complex_balls(precision.bits)), acb(parameter))
     found = at if one_cycle(around, at) else around
     return found.stable.real, found.unstable.real
 
 
-def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Pair:
-    """The pair near an exact parameter, with the saddle and the remainder proved for every parameter of the disc."""
+def pair(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Coefficients:
+    """Bounces on a local manifold near an exact parameter; saddle and remainder are proved over the disc about it."""
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc
     if not disc > 2 * step:
@@ -212,25 +213,23 @@ def pair(orbit: Orbit, map: PlaneMap, parameter: arb, scale: Scale, precision: P
     places = [[c.real for c in first.c] for first, _, _ in bounces]
     slopes = [[slope(*three) for three in zip(*(jet.c for jet in jets), strict=True)] for jets in bounces]
     tube = [_within(around.over(i, arb(0.5)).real, error) for i in range(-1, len(orbit.start) + 1)]
-    return Pair(around.saddle, scale, places, slopes, error, disc - 2 * step, tube)
+    return Coefficients(around.saddle, scale, places, slopes, error, disc - 2 * step, tube)
 
 
 STEPS = 30
-NOISE = (
-    1e4  # times the goal: secants between values closer than that are rounding, and so are steps that shrink no more
-)
+NOISE = 1e4  # times the goal: below this distance secants and steps are rounding noise
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Which manifolds touch, and starts: `z` on the unstable manifold, `end` on the stable one, and the parameter.
+    """A contact of two manifolds: the saddles, and starts for `z`, for `end` on the stable manifold, and the parameter.
 
-    Both are displacements along the eigenvectors. After `bounces` the point is compared with the
-    stable manifold after its mirror image (`sign = -1`) and turns of the table.
+    `z` and `end` are displacements along the eigenvectors. After `bounces` bounces the point is reflected (`sign = -1`)
+    and rotated with the table, and then compared with the stable manifold.
     """
 
-    unstable: Orbit
-    stable: Orbit
+    unstable: SaddleCycle
+    stable: SaddleCycle
     bounces: int
     sign: int
     z: float
@@ -243,26 +242,26 @@ class Contact:
         return "homoclinic" if self.unstable == self.stable else "heteroclinic"
 
     def mirrored(self, early: int, late: int) -> int:
-        """The sign with so many rounds more at either end, each of which may mirror the rest."""
+        """The sign after `early` more rounds at the start and `late` at the end, each of which may reflect."""
         turns: int = self.unstable.closure.turn**early * self.stable.closure.turn**late
         return self.sign * turns
 
 
 @dataclass(frozen=True)
 class Touch:
-    """A tangency: the parameter with an error estimate, and what makes it a generic one."""
+    """A tangency: the parameter with an error estimate, and the numbers that make it generic."""
 
     contact: Contact
     parameter: Any
     error: float
     bend: float  # second derivative of the gap, in units of the local manifolds
     speed: float  # derivative of the smallest gap by the parameter
-    multipliers: tuple[float, float, float, float]  # of the unstable manifold's saddle, then of the other
+    multipliers: tuple[float, float, float, float]  # stable, unstable: of the saddle left, then of the saddle reached
     residual: float
 
 
 class Gap:
-    """The distance from the stable manifold, on orbits that start on the unstable one, at one parameter."""
+    """The gap to the stable manifold, along orbits that start on the unstable one, at one parameter."""
 
     def __init__(self, contact: Contact, map: PlaneMap, parameter: Any, order: int, tail: float) -> None:
         self.old, self.map, self.parameter = contact, map, parameter
@@ -313,7 +312,7 @@ class Gap:
         return end
 
     def extremum(self) -> tuple[Any, Jet, Jet]:
-        """`z` where the gap is least, the gap there, and where it is."""
+        """The `z` at which the gap is extremal, the gap there, and the parameter on the stable manifold."""
 
         def correction(z: Vector) -> Vector:
             gap, _ = self.at(*z)
@@ -321,11 +320,11 @@ class Gap:
 
         found = iterated(correction, [self.parameter * 0 + self.start], Stop(small=1e-5, steps=STEPS))
         if not found.settled:
-            raise ValueError(f"tangency: at {float(self.parameter)} the manifolds come nowhere closest near the start")
+            raise ValueError(f"tangency: at {float(self.parameter)} the gap has no minimum near the start")
         return (*found.x, *self.at(*found.x))
 
     def contact(self) -> Contact:
-        """The same contact with starts taken from here."""
+        """The same contact with the starts found here."""
         z, _, end = self.extremum()
         unstable, stable = (
             replace(made.saddle.orbit, start=tuple(float(x) for x in made.saddle.points))
@@ -336,12 +335,12 @@ class Gap:
 
 
 def rounds(z: float, factor: float) -> int:
-    """How often `z` has to be divided by the factor until it is at most 1."""
+    """The number of divisions of `z` by `factor` after which `abs(z) <= 1`."""
     return max(0, math.ceil(math.log(abs(z)) / math.log(abs(factor))))
 
 
 def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
-    """A point of the plane moved by the table's rotations next to the saddle."""
+    """A pair of neighbours, rotated with the table to the place nearest to the saddle."""
     map, ring = into.saddle.map, into.saddle.around()
     if not map.turn:
         return here, following
@@ -353,9 +352,9 @@ def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
 
 
 def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
-    """The parameter at which the manifolds touch, to about `digits` digits.
+    """The tangency of a contact, with its parameter to about `digits` digits.
 
-    The error is that of the last secant step, and what a longer series changes.
+    The error estimate is the last secant step plus the tolerance of the iteration.
     """
     rough = secant(contact, map.over(FLOAT64), 28, 1e-16, (contact.parameter, contact.parameter + 1e-7), 1e-14)
     if digits <= 11:
@@ -372,7 +371,7 @@ def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
 
 
 def secant(contact: Contact, map: PlaneMap, order: int, tail: float, parameters: tuple[Any, Any], goal: float) -> Touch:
-    """The parameter where the extremum of the gap is 0, between secants."""
+    """The tangency by the secant method: the parameter at which the extremum of the gap is 0."""
     a, b = parameters
     last = a, Gap(contact, map, a, order, tail).extremum()[1]
     steps: list[Touch] = []
@@ -392,8 +391,8 @@ def secant(contact: Contact, map: PlaneMap, order: int, tail: float, parameters:
         steps.append(Touch(contact, b - step, error, bend, float(speed), near, residual))
         return [step]
 
-    # many bounces leave the gap with noise
+    # after many bounces rounding noise dominates the gap
     found = iterated(correction, [b + 0 * a], Stop(small=NOISE * goal, enough=goal, steps=STEPS))
     if not found.settled:
         raise ValueError(f"tangency: secants from {contact.parameter} did not settle; the last was {float(found.x[0])}")
-    return steps[len(found.sizes) - 1]  # of the last step that was made; what follows it is noise
+    return steps[len(found.sizes) - 1]  # the last step above the noise

@@ -1,16 +1,15 @@
-"""A tangency as one zero of one system: an orbit from the unstable to the stable manifold, and a vector along it.
+"""A tangency as a zero of one system of equations: an orbit between the manifolds, and a tangent vector along it.
 
-Unknown are the parameter `z` where the orbit leaves the unstable manifold, its bounces `y[0] ... y[n+1]`, and the
-parameter `w` where it arrives on the stable one:
+The unknowns are the parameter `z` where the orbit leaves the unstable manifold, its bounces `y[0] ... y[n+1]`, and the
+parameter `w` where it arrives on the stable one. With the series `P` and `Q` of the manifolds,
 
     y[0] = P[-1](z),  y[1] = P[0](z),  rule(y[k-1], y[k], y[k+1]) = 0,  sign*y[n] = Q[0](w),  sign*y[n+1] = Q[1](w)
 
-up to turns of the table. At one parameter the zeros are the points where the manifolds meet. The linearised equations,
-along a vector with `1` at `z`, carry the tangent of the one manifold to the other, and vanish exactly where the two
-touch. Both together, with the parameter as the last unknown, are the system: as many equations as unknowns. Like the
-chord system of a cycle it has one equation for each bounce; no orbit is followed, and no ball grows along the way.
-The start is an orbit in float64, whose points come from the series near the saddles, which costs no digit, and from
-the map in between.
+up to rotations of the table. At a fixed parameter of the map the zeros are the points where the manifolds meet. The
+linearised equations, for a vector with `1` at `z`, hold exactly where the tangents agree. Both together, with the map's
+parameter as the last unknown, are as many equations as unknowns. Like the chord system of a cycle the system has one
+equation for each bounce, so balls do not grow along the orbit. Newton's method starts at a float64 orbit from the
+series near the saddles and the map in between.
 """
 
 import math
@@ -29,12 +28,12 @@ from verification.maps.first_hit import unobstructed
 from verification.proofs.manifolds.enclosed import TooWideError
 from verification.proofs.manifolds.plane_map import Pinball, PlaneMap
 from verification.proofs.manifolds.saddle import Local, direction, horner, saddle, slopes
-from verification.proofs.manifolds.tangency import Contact, Gap, Near, Pair, Precision, rounds, scale, smaller
+from verification.proofs.manifolds.tangency import Coefficients, Contact, Gap, Near, Precision, rounds, scale, smaller
 
 
 @dataclass(frozen=True)
 class Flight:
-    """Bounces with their derivatives by `z`, from bounce -1 on the one manifold to bounce 1 on the other.
+    """An orbit in float64 from bounce -1 on the unstable manifold to bounce 1 on the stable one, as jets in `z`.
 
     `z` and `w` are the parameters at its ends, displacements along the eigenvectors; `w` is a jet in `z`.
     """
@@ -47,7 +46,7 @@ class Flight:
 def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int, late: int) -> Flight:
     """The orbit from `early` rounds before the start of the contact to `late` rounds after its end.
 
-    Both are at least as many as take the ends of the contact into the domains of the series.
+    `out` is the unstable manifold's series, `into` the stable one's; the ends have to lie in their domains.
 
     >>> from verification.arithmetic.balls import FLOAT64
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
@@ -87,14 +86,14 @@ def bounce(local: Local, j: int, z: Jet) -> Jet:
     return moved
 
 
-LARGEST = 0.4  # parameters at the start, where the remainder's derivatives are bounded up to 1/2
+LARGEST = 0.4  # the largest parameters at the start; the remainder's derivatives are bounded up to 1/2
 MOST_BOUNCES = 2000
 Vector = list[arb]
 
 
 @dataclass(frozen=True)
-class Point:
-    """A place in the space of unknowns: `orbit` is `z, y[0], ..., y[n+1], w`, and `along` the vector."""
+class OrbitPoint:
+    """Values of the unknowns: `orbit` is `z, y[0], ..., y[n+1], w`, and `along` the tangent vector."""
 
     orbit: Vector
     along: Vector
@@ -102,22 +101,22 @@ class Point:
 
     @property
     def unknowns(self) -> Vector:
-        """All that is sought, in one row."""
+        """The unknowns in one list, without the entry of `along` that is 1."""
         return [*self.orbit, *self.along[1:], self.parameter]
 
     @staticmethod
-    def of(unknowns: Vector) -> "Point":
+    def of(unknowns: Vector) -> "OrbitPoint":
         """The point with these unknowns."""
         m = len(unknowns) // 2
-        return Point(unknowns[:m], [arb(1), *unknowns[m:-1]], unknowns[-1])
+        return OrbitPoint(unknowns[:m], [arb(1), *unknowns[m:-1]], unknowns[-1])
 
 
 @dataclass(frozen=True)
 class Linear:
     """The equations and their derivatives at a point, or over a box.
 
-    `values` are those of the orbit's equations, `along` those of the vector's. `rows` are the derivatives of the
-    former by the orbit, and so of the latter by the vector; `bent` those of the latter by the orbit.
+    `values` are those of the orbit's equations, `along` those of the vector's. `rows` are the derivatives of the former
+    by the orbit, which are also those of the latter by the vector; `bent` those of the latter by the orbit.
     """
 
     values: Vector
@@ -129,18 +128,18 @@ class Linear:
     halves: bool = False
 
     def matrix(self) -> arb_mat:
-        """The derivative of the whole system, by the unknowns in their order."""
+        """The derivative matrix of the whole system, by the unknowns in the order of `OrbitPoint`."""
         zero = [arb(0)] * (len(self.values) - 1)
         upper = [[*row, *zero, g] for row, g in zip(self.rows, self.by_parameter, strict=True)]
         lower = zip(self.bent, self.rows, self.bent_by_parameter, strict=True)
         return arb_mat(upper + [[*bent, *row[1:], h] for bent, row, h in lower])
 
     def step(self, values: Vector, algorithm: Literal["approx", "precond"]) -> Vector:
-        """What Newton's method takes off the unknowns where the system has these values.
+        """The Newton correction of the unknowns, where the system has these `values`.
 
-        The derivative of the orbit's equations alone is singular at a tangency. Without its first column, and with that
-        by the parameter, it is not: where `halves` asks for it two systems of half the size are solved, by way of their
-        inverses in floats: faster, and not as close.
+        The derivative of the orbit's equations by the orbit is singular at a tangency; with its first column replaced
+        by the derivative by the parameter it is not. With `halves` two systems of half the size are solved with
+        approximate inverses in floats, which is faster and less sharp.
         """
         if not self.halves:
             try:
@@ -153,7 +152,7 @@ class Linear:
         right = [[value, row[0]] for row, value in zip(self.rows, values[:n], strict=True)]
         try:
             solve = solved if algorithm == "precond" else approximated
-            fixed, free = zip(*solve(given, right), strict=True)  # with the first unknown 0, and along it
+            fixed, free = zip(*solve(given, right), strict=True)  # with first unknown 0, and null vector
             lower = [[*bent[1:], h] for bent, h in zip(self.bent, self.bent_by_parameter, strict=True)]
             column = [bent[0] - dot(row, free) for bent, row in zip(self.bent, lower, strict=True)]
             left = [[value - dot(row, fixed)] for row, value in zip(lower, values[n:], strict=True)]
@@ -167,7 +166,7 @@ class Linear:
 
 
 def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
-    """`g_zz` and `g_parameter`: how the contact bends, and how fast the manifolds move through each other."""
+    """The derivatives `g_zz` and `g_parameter` of the gap at the tangency."""
     columns = [list(column) for column in zip(*(row[1:] for row in linear.rows[:-1]), strict=True)]
     right = [[-x] for x in linear.rows[-1][1:]]
     if linear.halves:
@@ -181,36 +180,36 @@ def generic(linear: Linear, along: Vector) -> tuple[arb, arb]:
 
 
 class Touching:
-    """The system of a contact near one parameter, with both manifolds enclosed."""
+    """The system of equations of a contact near one parameter, with both manifolds enclosed."""
 
     def __init__(self, contact: Contact, map: PlaneMap, parameter: arb, precision: Precision) -> None:
         self.contact, self.halves = contact, False
         self.map, self.parameter = map.over(balls(precision.bits)), parameter
-        self.pairs: list[Pair] = []
+        self.pairs: list[Coefficients] = []
         for orbit, unstable in ((contact.unstable, True), (contact.stable, False)):
             found = scale(orbit, map, float(parameter), unstable, precision.outer)
             self.pairs.append(smaller(orbit, map, parameter, found, precision))
         out, into = (made.scale for made in self.pairs)
         early = rounds(contact.z / min(LARGEST * out.unit, out.rough.unit), float(out.rough.factor))
         late = rounds(contact.end / min(LARGEST * into.unit, into.rough.unit), 1 / float(into.rough.factor))
-        late = max(late, 1)  # the orbit ends on the series, and has their turns
+        late = max(late, 1)  # the orbit must end on the series, with its full turns
         self.bounces = 1 + contact.bounces + early * len(contact.unstable.start) + late * len(contact.stable.start)
         if self.bounces > MOST_BOUNCES:
             raise TooWideError("exists", f"an orbit of {self.bounces} bounces is too long")
         self.sign = contact.mirrored(early, late)
         self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 
-    def _from(self, flight: Flight) -> tuple[int, Point]:
-        """The turns of the table at the end of an orbit, and the point from which Newton's method starts."""
+    def _from(self, flight: Flight) -> tuple[int, OrbitPoint]:
+        """The rotation of the table at the end of an orbit, and the start of Newton's method."""
         map, units = self.map, [made.scale.unit for made in self.pairs]
         apart = self.sign * flight.bounces[-2] - bounce(self.pairs[1].scale.rough, 0, flight.w)
         turns = round(apart.c[0] * map.turn / (2 * math.pi))
         along = [1.0, *(units[0] * x.c[1] for x in flight.bounces), units[0] / units[1] * flight.w.c[1]]
         orbit = [flight.z / units[0], *(x.c[0] for x in flight.bounces), flight.w.c[0] / units[1]]
-        return turns, Point([arb(x) for x in orbit], [arb(x) for x in along], self.parameter)
+        return turns, OrbitPoint([arb(x) for x in orbit], [arb(x) for x in along], self.parameter)
 
-    def linear(self, at: Point) -> Linear:
-        """The equations at a point whose parameter is the middle one, or over a box around it."""
+    def linear(self, at: OrbitPoint) -> Linear:
+        """The equations at a point with the middle parameter, or over a box around it."""
         out, into = ([made.at(i, z, at.parameter - self.parameter) for i in (0, 1)] for made, z in self._ends(at))
         m = len(at.orbit)
         made = Linear([], [], [], [], [], [], self.halves)
@@ -223,17 +222,17 @@ class Touching:
             _ended(made, at, m - 3 + i, m - 1, self.sign, self.turns * unit, near)
         return made
 
-    def clear(self, at: Point) -> bool:
-        """Does every flight of the orbit, and of those from and to the saddles, provably meet nothing on its way?"""
+    def clear(self, at: OrbitPoint) -> bool:
+        """True if every chord of the orbit, and of those near both saddles, is proved to meet nothing on its way."""
         turn, runs = 2 * self.map.words.pi, [at.orbit[1:-1], *(made.tube for made in self.pairs)]
         placed = [[(0, x - turn * round(float(x.mid()) / (2 * math.pi))) for x in run] for run in runs]
         return isinstance(self.map, Pinball) and all(unobstructed(self.map.table, run) for run in placed)
 
-    def _ends(self, at: Point) -> list[tuple[Pair, arb]]:
+    def _ends(self, at: OrbitPoint) -> list[tuple[Coefficients, arb]]:
         return [(self.pairs[0], at.orbit[0]), (self.pairs[1], at.orbit[-1])]
 
-    def _bounced(self, made: Linear, at: Point, k: int) -> None:
-        """The rule at `y[k]`."""
+    def _bounced(self, made: Linear, at: OrbitPoint, k: int) -> None:
+        """Adds the rule at `y[k]` to the equations."""
         near = [Jet(at.orbit[j], at.along[j]) for j in range(k, k + 3)]
         value, slopes, moving = self.map.linear_along(near, at.parameter)
         m = len(at.orbit)
@@ -241,8 +240,8 @@ class Touching:
         _add(made, value.c, list(rows), moving.c)
 
 
-def _ended(made: Linear, at: Point, here: int, end: int, sign: int, shift: arb, near: Near) -> None:
-    """The equation `sign*orbit[here] - shift = near(orbit[end])`."""
+def _ended(made: Linear, at: OrbitPoint, here: int, end: int, sign: int, shift: arb, near: Near) -> None:
+    """Adds the equation `sign*orbit[here] - shift = near(orbit[end])`."""
     row, bent, share = [arb(0)] * len(at.orbit), [arb(0)] * len(at.orbit), at.along[end]
     row[here], row[end], bent[end] = arb(sign), -near.first, -near.second * share
     values = sign * at.orbit[here] - shift - near.place, sign * at.along[here] - near.first * share
@@ -250,7 +249,7 @@ def _ended(made: Linear, at: Point, here: int, end: int, sign: int, shift: arb, 
 
 
 def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_parameter: Sequence[arb]) -> None:
-    """One more equation, of the orbit and along the vector."""
+    """Adds one equation for the orbit, and its linearisation for the vector."""
     for column, x in zip((made.values, made.along), values, strict=True):
         column.append(x)
     for matrix, row in zip((made.rows, made.bent), rows, strict=True):
@@ -259,15 +258,15 @@ def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_parameter: 
         column.append(x)
 
 
-MIDDLE = 20  # digits beyond those asked for, with which a chain is computed
-LEAST = 0.125  # of a curvature
-LOST = 4  # bits with each bounce, for who follows the orbit
-SLACK = 4  # times what is seen at one place near a saddle: a bound of the local manifold
+MIDDLE = 20  # extra digits with which a chain is computed
+LEAST = 0.125  # the least curvature
+LOST = 4  # bits that a checker loses with each bounce
+SLACK = 4  # the factor from a value at one place near a saddle to a bound of the local manifold
 Image = tuple[int, int]  # the symmetry `x -> sign*x + turns*unit`
 
 
 def composed(first: Image, second: Image) -> Image:
-    """A symmetry after another.
+    """The symmetry `first` after `second`.
 
     >>> composed((-1, 2), (-1, 5))
     (1, -3)
@@ -276,18 +275,18 @@ def composed(first: Image, second: Image) -> Image:
 
 
 def exact_number(x: Any, bits: int) -> list[str]:
-    """`[m, e]`, with `m*2**e` the multiple of `2**-bits` next to an mpmath number."""
+    """The multiple `m*2**e` of `2**-bits` nearest to an mpmath number, as `[m, e]` in decimal text."""
     m = int(x.context.nint(x.context.ldexp(x, bits)))
     zeros = min(bits, (m & -m).bit_length() - 1) if m else bits
     return [str(m >> zeros), str(zeros - bits)]
 
 
 @dataclass(frozen=True)
-class Frame:
-    """A saddle's bounces in the order of the flight, the angle at which it leaves the first, and two slopes there.
+class SaddleFrame:
+    """The bounces of a saddle in the order of the flight, its exit angle at the first one, and two slopes there.
 
-    `along` is the angle by the place on the manifold, `across` the place by the angle on the other; a round makes
-    distances on the manifold `stretch` times as long.
+    `along` is the derivative of the angle by the place on the manifold of the flight, `across` that of the place by the
+    angle on the other manifold; a round stretches distances on the manifold by `stretch`.
     """
 
     saddle: list[Any]
@@ -297,11 +296,11 @@ class Frame:
     stretch: Any
 
 
-class Chain:
-    """A contact bounce by bounce, for a reader that knows no series: docs/certificate_format.md says what entries are.
+class ContactChain:
+    """A contact as a chain of bounces, for a checker without series; docs/certificate_format.md defines the entries.
 
-    The orbit begins and ends so near to the saddles that their manifolds are parabolas there, and the map does the
-    rest. Nothing of it is proved; whoever reads it proves it.
+    The orbit begins and ends so near to the saddles that the manifolds are close to parabolas there. Nothing is proved
+    here: the checker proves it.
     """
 
     def __init__(self, contact: Contact, map: Pinball, value: str, digits: int) -> None:
@@ -315,7 +314,7 @@ class Chain:
         self.end = end.c[0]
 
     def entries(self) -> dict[str, Any]:
-        """The entries of a document that say where the contact is."""
+        """The entries of a document that describe the contact."""
         bounces, meets, arrived = self._orbit()
         sides, centre = {}, []
         for name, image, chain in (("unstable", (1, 0), bounces), ("stable", arrived, bounces[::-1])):
@@ -328,12 +327,12 @@ class Chain:
         return said | {"radius": radius} | sides | {"orbit": orbit, "meets": meets}
 
     def _whole(self, x: Any) -> Any:
-        """An angle without its whole turns."""
+        """An angle modulo full turns."""
         turns = x / (2 * self.map.words.pi)
         return 2 * self.map.words.pi * (turns - turns.context.nint(turns))
 
     def _orbit(self) -> tuple[list[Any], int, Image]:
-        """The bounces from one saddle to the other, one of them that is far from both, and the image of the second."""
+        """The bounces from saddle to saddle, the index of one far from both, and the symmetry at the second saddle."""
         gap, out, into = self.gap, self.gap.out, self.gap.into
         image, found = (1, 0), list[Any]()
 
@@ -355,13 +354,13 @@ class Chain:
         return found, meets, image
 
     def _once(self, local: Local) -> Image:
-        """What a saddle's bounces are moved by after a round."""
+        """The symmetry by which a saddle's bounces repeat after a round."""
         closure = local.saddle.orbit.closure
         p, q = closure.shift
         return closure.turn, p * self.map.turn // q
 
-    def _frame(self, side: Local, lam: Any, image: Image, back: bool) -> Frame:
-        """The frame of a saddle; with `back` time runs back, and its stable direction is the one that stretches."""
+    def _frame(self, side: Local, lam: Any, image: Image, back: bool) -> SaddleFrame:
+        """The frame of a saddle; with `back` time is reversed, and the stable direction stretches."""
         made = saddle(side.saddle.orbit, self.map, lam)
         rows, points, here, count = slopes(made.orbit, self.map, made.points, lam), list[Any](), image, 0
         while not count or here[0] != image[0] or (here[1] - image[1]) % self.map.turn:
@@ -377,10 +376,10 @@ class Chain:
         along, other = tilts[::-1] if back else tilts
         stretch = 1 / made.stable**count if back else made.unstable**count
         order = [points[0], *points[:0:-1]] if back else points
-        return Frame([self._whole(x) for x in order], angle, along, 1 / other, stretch)
+        return SaddleFrame([self._whole(x) for x in order], angle, along, 1 / other, stretch)
 
     def _side(self, back: bool, image: Image, chain: Sequence[Any]) -> tuple[dict[str, Any], Any]:
-        """What is said of one manifold, and where on it the orbit begins that runs along `chain`."""
+        """The entries of one manifold, and the place on it where the orbit along `chain` begins."""
         side, step = self.gap.into if back else self.gap.out, self.lam.context.mpf(10) ** -(self.digits // 2)
         frame, after, before = (self._frame(side, self.lam + move, image, back) for move in (0, step, -step))
         a, b = self._whole(chain[0] - frame.saddle[0]), self.map.angle(chain[0], chain[1])[0] - frame.angle

@@ -1,4 +1,4 @@
-"""Proofs on periodic orbits: interval Newton, checklists of bifurcations, statements over a parameter interval."""
+"""Theorems on periodic orbits: interval Newton boxes, bifurcations, completeness, and stability over an interval."""
 
 import lazy_loader
 

@@ -1,14 +1,14 @@
-"""Torus bifurcations, of Neimark and Sacker: the multipliers of a cycle leave the unit circle off the real axis.
+"""Torus (Neimark-Sacker) bifurcations: complex multipliers of a cycle cross the unit circle.
 
-With `v` and `w` the right and left vectors of the linearised rules on vectors that come back multiplied by
-`mu = exp(i*omega)`, the bounces of orbits near the cycle are
+Let `v` and `w` be the right and left null vectors of the linearised rules, for vectors that a round multiplies by `mu =
+exp(i*omega)`. The bounces of orbits near the cycle are
 
     x[i](z) = x[i] + 2*Re(v[i]*z + h20[i]*z**2 + h21[i]*z**2*conj(z) + ...) + h11[i]*abs(z)**2 + ...,
 
-and one round carries `z` to `mu*z + cubic*z**2*conj(z)`, up to `abs(z)**4`, unless `mu**k = 1` for a `k` up to 4. Put
-into the rules, each power of `z` gives a linear system, closed by that power of `mu`; that of `z**2*conj(z)` is
-singular, and has a solution for one value of `cubic` alone. Three real curves, with `z` at 0, 120 and 240 degrees,
-tell the powers apart.
+and one round carries `z` to `mu*z + cubic*z**2*conj(z)`, up to `abs(z)**4`, unless `mu**k = 1` for a `k` up to 4.
+Inserted into the rules, each power of `z` gives a linear system, closed by that power of `mu`; the system of
+`z**2*conj(z)` is singular, and solvable for one value of `cubic` only. Three real curves, with `z` at 0, 120 and 240
+degrees, separate the powers.
 
 **Theorem** ([RuelleTakens1971]; [Kuznetsov2004], section 4.7). Let a smooth map of the plane have, at one value of a
 parameter, a fixed point with the multipliers `mu` and `conj(mu)` on the unit circle. If
@@ -17,17 +17,17 @@ parameter, a fixed point with the multipliers `mu` and `conj(mu)` on the unit ci
 - `growth`, the derivative of the multiplier's size by the parameter, is not 0,
 - `lyapunov = Re(conj(mu)*cubic)` is not 0,
 
-then for each parameter near that value, on the side of `-lyapunov/growth`, one closed invariant curve surrounds the
-fixed point nearby, and shrinks to it. It attracts if `lyapunov < 0` and repels if it is positive. It is as smooth as
-one likes, if the parameter is near enough. In the angle of `z` the map on it tends to the turn by `omega`.
+then for each parameter near that value, on the side with the sign of `-lyapunov/growth`, one closed invariant curve
+surrounds the fixed point nearby, and shrinks to it. It attracts if `lyapunov < 0` and repels if `lyapunov > 0`. It is
+of any finite smoothness near enough to the value. In the angle of `z` the map on it tends to the rotation by `omega`.
 
-**Irrational rotation.** The curves are graphs over that angle with a common Lipschitz bound, and there is one for
-each parameter; so they depend on it continuously, and so does the rotation number. It tends to `omega/(2*pi)`. Where
-that is irrational, the rotation number is constant, or takes all values of an interval: either way it is irrational
-for some parameters as near as one likes. There the map on the curve, which is twice differentiable, is conjugate to
-that rotation [Denjoy1932]. And `omega/(2*pi)` is irrational whenever `2*cos(omega)` is rational and no integer: were
-it rational, `exp(i*omega)` would be a root of unity and its double real part an algebraic integer. So the trace is
-prescribed, and two parameters are solved for.
+**Irrational rotation.** The curves are graphs over that angle with a common Lipschitz bound, and there is one for each
+parameter; so they depend on it continuously, and so does the rotation number. It tends to `omega/(2*pi)`. Where that is
+irrational, the rotation number is constant, or takes all values of an interval: in both cases it is irrational for
+parameters arbitrarily near. There the map on the curve, which is twice differentiable, is conjugate to that rotation
+[Denjoy1932]. And `omega/(2*pi)` is irrational whenever `2*cos(omega)` is rational and not an integer: otherwise
+`exp(i*omega)` would be a root of unity and twice its real part an algebraic integer. So the trace is prescribed, and
+two parameters are the unknowns.
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,19 +47,19 @@ from verification.cycles.newton import refined
 from verification.cycles.problem import bordering_slopes
 from verification.cycles.recurrence import IDENTITY, Recurrence, Terms
 from verification.maps.first_hit import closes_smoothly, convex, inside, minimal
-from verification.proofs.periodic.interval_newton import Enclosure, Status, interval_newton
+from verification.proofs.periodic.interval_newton import Enclosure, ZeroStatus, interval_newton
 
 TRACE = "trace"
-GUARD = 128  # bits beyond those of the digits
-MARGIN = 6  # digits of the start beyond the radius of the box
+GUARD = 128  # extra bits
+MARGIN = 6  # extra digits of the start
 
 
 @dataclass(frozen=True)
 class Rotating:
-    """A cycle with multipliers `exp(+-i*omega)`: unknowns are its bounces and two numbers that are `free`.
+    """The system for a cycle with multipliers `exp(+-i*omega)`: the unknowns are its bounces and two `free` numbers.
 
-    Those are parameters, or `trace`, which is `2*cos(omega)`; what is not free is `fixed`. The two equations more than
-    there are bounces are one complex one: the linearised rules are singular on vectors that come back times `mu`.
+    Each is a parameter, or `trace`, which is `2*cos(omega)`; the others are `fixed`. Besides the rules there is one
+    complex equation: the linearised rules are singular for vectors that a round multiplies by `mu`.
 
     >>> from verification.cycles.newton import floats
     >>> from verification.cycles.recurrence import delayed
@@ -73,43 +73,43 @@ class Rotating:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name of the system in messages."""
         return f"torus bifurcation of {self.ring.label}"
 
     @property
     def irrational(self) -> bool:
-        """Is the trace given, rational and no integer? Then `omega/(2*pi)` is irrational."""
+        """True if the trace is fixed, rational and not an integer; then `omega/(2*pi)` is irrational."""
         trace = self.fixed.get(TRACE)
         return isinstance(trace, Rational) and not trace.is_integer
 
     def at(self, arithmetic: Arithmetic, z: Vector) -> dict[str, Any]:
-        """The parameters and the trace, given or unknown."""
+        """The values of the parameters and of the trace, by name, fixed or unknown."""
         given = {name: load(constant(value), arithmetic)()[0] for name, value in self.fixed.items()}
         return given | dict(zip(self.free, z[self.ring.period :], strict=True))
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F(z)`."""
+        """The residuals `F(z)`."""
         return Rotation(self, arithmetic, z, 1).value
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """`F'(z)^-1 r`."""
+        """The solution `F'(z)^-1 r` of the linearised system."""
         return Rotation(self, arithmetic, z).solve(r)
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """`F'(z)^-1 F(z)`, Newton's correction."""
+        """Newton's correction `F'(z)^-1 F(z)`."""
         here = Rotation(self, arithmetic, z)
         return here.solve(here.value)
 
 
 class Rotation:
-    """The equations of a cycle that rotates, their first derivatives, and its normal form; at a point or over a box."""
+    """The equations of a cycle with rotating multipliers, at a point or over a box; derivatives and normal form."""
 
     def __init__(self, problem: Rotating, arithmetic: Arithmetic, z: Vector, order: int = 2) -> None:
         self.problem, self.arithmetic = problem, arithmetic
         self.ring, n = problem.ring, problem.ring.period
         self.closure, self.angle = self.ring.closure, self.ring.closure.angle(arithmetic)
         self.x, self.at = z[:n], problem.at(arithmetic, z)
-        half = (self.at[TRACE] + 0 * self.x[0]) / 2  # a number of their kind, also where an integer is given
+        half = (self.at[TRACE] + 0 * self.x[0]) / 2  # converts an integer to their kind of number
         self.mu = complex_number(half, arithmetic.sqrt(1 - half * half))
         padded, rule = self.closure.padded(self.x, self.angle), self.ring.over(arithmetic)
         self.terms = Terms.along([rule(i, padded[i : i + 3], self.at, order) for i in range(n)])
@@ -117,18 +117,18 @@ class Rotation:
         self.value: Vector = [*self.terms.value, self.critical.bordering.real, self.critical.bordering.imag]
 
     def closed(self, sign: Any) -> Elimination:
-        """The linearised rules on vectors that come back times `sign`."""
+        """The factorised linear rules, for vectors that a round multiplies by `sign`."""
         return Elimination(Chain(*self.terms.slope, self.closure.turn * sign))
 
     @property
     def turn(self) -> Any:
-        """The bordering function's derivative by the multiplier: not 0 exactly when that is simple."""
+        """The bordering function's derivative by the multiplier, which is not 0 if and only if that is simple."""
         lower, _, upper = self.terms.slope
         v, w, back = self.critical.right, self.critical.left, self.mu.conjugate()
         return self.closure.turn * (w[-1] * upper[-1] * v[0] - back * back * w[0] * lower[0] * v[-1])
 
     def speeds(self, names: Sequence[str]) -> tuple[Vector, list[tuple[Vector, Any]]]:
-        """The bordering function's derivatives by the bounces; with each parameter, how cycle and function move."""
+        """The bordering function's derivatives by the bounces, and by each parameter with the cycle's motion."""
         by_bounce, by = bordering_slopes(self.terms, self.closure, self.critical.right, self.critical.left, self.mu)
         found = []
         for name in names:
@@ -142,7 +142,7 @@ class Rotation:
         return by_bounce, found
 
     def solve(self, r: Vector) -> Vector:
-        """The matrix of first derivatives, inverted on `r`."""
+        """The solution of the linearised system for the right side `r`."""
         by_bounce, ((first, a), (second, b)) = self.speeds(self.problem.free)
         n = len(self.x)
         own = self.plain.solve(r[:n])
@@ -152,7 +152,7 @@ class Rotation:
         return [*(x + p * u + q * v for x, u, v in zip(own, first, second, strict=True)), p, q]
 
     def drift(self, parameter: str) -> Any:
-        """`conj(mu)` times the derivative of the multiplier by a parameter, along the cycle, all others held.
+        """`conj(mu)` times the derivative of the multiplier by a parameter, along the cycle, with all others fixed.
 
         Its real part is the derivative of the multiplier's size, its imaginary part that of its angle.
         """
@@ -171,7 +171,7 @@ class Rotation:
         return -mu.conjugate() * dot(self.critical.left, harmonic(phases, third, 1)) / self.turn
 
     def expanded(self, phase: Any, bent: Sequence[tuple[Any, Any]]) -> Vector:
-        """The rules' coefficients of `e**2` at `z = e*phase`; of `e**3` with `h20` and `h11` for each bounce."""
+        """The rules' coefficients of `e**2` along `z = e*phase`; or of `e**3`, given `h20` and `h11` of each bounce."""
         rule, order = self.ring.over(jets(self.arithmetic)), 3 if bent else 2
 
         def at(i: int, phase: Any) -> Jet:
@@ -198,7 +198,7 @@ def complex_number(real: Any, imaginary: Any) -> Any:
 
 
 def harmonic(phases: Sequence[Any], rows: Sequence[Vector], k: int) -> Vector:
-    """The coefficients of `phase**k`, from the values at phases that divide the circle into as many equal parts."""
+    """The Fourier coefficients of `phase**k`, from values at equally spaced phases on the circle."""
     turned = [phase.conjugate() ** k for phase in phases]
     return [dot(turned, column) / len(phases) for column in zip(*rows, strict=True)]
 
@@ -209,10 +209,10 @@ def _area(a: Any, b: Any) -> Any:
 
 @dataclass(frozen=True)
 class Torus:
-    """What is proved of a torus bifurcation: the checklist of the theorem, and the numbers that it speaks of.
+    """A torus bifurcation: the checklist of the theorem, and the enclosed numbers in it.
 
-    `growth` is the derivative of the multiplier's size by the parameter that varies, `lyapunov` the coefficient whose
-    sign tells attracting curves from repelling ones.
+    `growth` is the derivative of the multiplier's modulus by the varied parameter; the sign of `lyapunov` decides
+    whether the closed curves attract or repel.
     """
 
     problem: Rotating
@@ -228,18 +228,18 @@ class Torus:
 
     @property
     def attracting(self) -> bool | None:
-        """True where the closed curve attracts, False where it repels."""
+        """True where the closed curve attracts, False where it repels, None when undecided."""
         return True if self.lyapunov < 0 else False if self.lyapunov > 0 else None
 
     @property
     def side(self) -> int:
-        """1 where the curve is there for larger values of the parameter, -1 for smaller ones; 0 when undecided."""
+        """1 where the curve exists for larger values of the parameter, -1 for smaller ones, 0 when undecided."""
         way = -self.lyapunov * self.growth
         return 1 if way > 0 else -1 if way < 0 else 0
 
 
 def torus(problem: Rotating, start: Sequence[Any], parameter: str, digits: int = 20) -> Torus:
-    """The checklist of the theorem at the bifurcation near `start`, as `parameter` varies.
+    """The torus bifurcation near `start` as `parameter` varies, with its checklist.
 
     >>> from verification.cycles.recurrence import delayed
     >>> found = torus(Rotating(delayed(1), ("r", "trace")), [0.45, 2.05, 1.0], "r")  # six rounds make a turn
@@ -250,7 +250,7 @@ def torus(problem: Rotating, start: Sequence[Any], parameter: str, digits: int =
     bits = bits_of(digits, GUARD)
     with working(bits):
         found = interval_newton(problem, exact_balls(solution.z), (arb(10) ** -digits).mid(), bits)
-        if found.status is not Status.UNIQUE:
+        if found.status is not ZeroStatus.UNIQUE:
             return Torus(problem, found, {"exists": None}, arb("nan"), arb("nan"))
         at = Rotation(problem, balls(bits), found.zero)
         growth, lyapunov, trace = at.drift(parameter).real, at.cubic().real, 2 * at.mu.real
@@ -268,9 +268,9 @@ def torus(problem: Rotating, start: Sequence[Any], parameter: str, digits: int =
 
 
 def on_the_table(ring: Chords, at: Rotation) -> dict[str, bool | None]:
-    """Is it an orbit of the billiard, in a convex table of one smooth curve, that closes after no fewer bounces?
+    """Further items: the cycle is an orbit of a convex table of one smooth curve, with this minimal period.
 
-    And is the contraction between 0 and 1, so that the map has a smooth inverse?
+    The contraction must lie between 0 and 1, so that the map has a smooth inverse.
     """
     shape = tuple(at.at[name] for name in ring.shapes)
     smooth = closes_smoothly(ring.table) and ring.law.uniform and ring.closure == IDENTITY
@@ -283,5 +283,5 @@ def on_the_table(ring: Chords, at: Rotation) -> dict[str, bool | None]:
 
 
 def nonzero(*values: arb) -> bool | None:
-    """Is none of them 0?"""
+    """True if all values are proved not 0; else None."""
     return True if all(x.is_finite() and not x.contains(0) for x in values) else None

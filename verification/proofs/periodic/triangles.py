@@ -1,27 +1,26 @@
-"""The egg's cycles of period 3: where they attract, and for which contractions there are none. Paper: section 6.4.
+"""Theorems on the egg's cycles of period 3: contractions where they attract, and where none exist. Paper: section 6.4.
 
 The triangles at the flat points attract for every contraction between the fold and 1. On the branch
 (`symbolic.cycles.polygons`) the determinant of one bounce is `f(gamma - delta)/f(gamma + delta)` with `f(x) =
-x*cos(x)`, which is below 1 while `f` grows; `1 - trace + det` has the sign of `-(cos(3*theta) + alpha)` and is
-positive up to the fold. What is left, `1 + trace + det > 0`, balls decide on a cover of the closed branch.
+x*cos(x)`, which is below 1 while `f` grows; `1 - trace + det` has the sign of `-(cos(3*theta) + alpha)` and is positive
+up to the fold. The remaining condition, `1 + trace + det > 0`, is proved in balls on a cover of the closed branch.
 
-The paper argues against period 3 at small contractions. Its argument follows the positions of three bounces from
-every position with *any* initial angle, and says that the third never is the first one again up to `lambda_c`. A
-witness refutes it: two collision rules, at the second and third bounce, with the first position given and returned
-to. The exit angle of the witness is free when any angle may be taken, and at most `lam*pi/2` when it must be one that
-a collision can produce (in a convex table every such angle is produced).
+The paper argues against period 3 at small contractions. Its argument takes three bounces from every position with *any*
+initial angle, and says that up to `lambda_c` the orbit never returns to that position after three bounces. A
+counterexample refutes it: an orbit that obeys the collision rules at the second and third bounce and returns to the
+given first position. A second one has an initial angle of at most `lam*pi/2`, which a collision can produce (in a
+convex table every such angle is produced).
 
-That there is no cycle of period 3 in a set of contractions is proved by excluding every triangle. For a period-3
-cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior angles `phi_i - eta_i`, which add up
-to `pi`, give (counterclockwise, the mirror image being the same)
+The theorem that a range of contractions has no cycle of period 3 is proved by excluding every triangle. For a period-3
+cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior angles `phi_i - eta_i`, which add up to
+`pi`, give (counterclockwise, the mirror image being the same)
 
     0 <= phi_i,    sum phi_i = lam*pi/(1 + lam),    phi_i*eta_j = phi_j*eta_i.
 
-So `phi_i <= lam*pi/(1 + lam)`, and since `phi` falls as the landing point moves on, two bounces are at
-least a gap apart, which is found first. Triangles with their gaps at least that are covered by boxes;
-a box is excluded when one of the equations, by enclosure or by the mean value theorem around its
-centre, cannot hold in it, and halved otherwise. The angles are enclosed from the gaps, by what the egg is in polar
-coordinates: most of a box's width is a turn of the whole triangle, in which the chords turn with their normals.
+So `phi_i <= lam*pi/(1 + lam)`. Since `phi` falls as the landing point moves on, this gives a least gap between bounces.
+Triangles with at least these gaps are covered by boxes. A box is excluded when one of the equations is proved false in
+it, by enclosure or by the mean value theorem, and halved otherwise. The angles are enclosed from the gaps and the polar
+equation of the egg: most of a box's width is a rotation of the whole triangle, which changes them little.
 """
 
 import math
@@ -44,13 +43,13 @@ from verification.arithmetic.iteration import Tick, Vector, silent
 from verification.cycles.critical import Small
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex
-from verification.proofs.periodic.interval_newton import Status, interval_newton
+from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
 
 BITS = 80
 
 
 def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
-    """Is `1 + trace + det > 0` on the whole branch, ends included? None when the budget ends first.
+    """True if `1 + trace + det > 0` is proved on the whole branch, ends included; None when the budget ends.
 
     >>> from sympy import Rational
     >>> flips_nowhere(Rational(2, 25))
@@ -72,12 +71,12 @@ def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
 
 
 def acos_of(alpha: Expr) -> Expr:
-    """`acos(alpha)` in the vocabulary of the kernels."""
+    """The formula `acos(alpha)` in functions that the generated kernels have."""
     return pi / 2 - atan(alpha / sqrt(1 - alpha**2))
 
 
 def contracts(alpha: Expr) -> bool:
-    """Does `x*cos(x)` grow up to the largest incidence angle of the branch? Then `det < 1` for `lam < 1`.
+    """True if `x*cos(x)` is proved to grow up to the branch's largest incidence angle; then `det < 1` for `lam < 1`.
 
     >>> from sympy import Rational
     >>> contracts(Rational(2, 25))
@@ -96,9 +95,10 @@ PRODUCED = Rational(2, 5), (4.8086, 8.9349)  # at alpha = 2/25, lam = 3/10
 
 @dataclass(frozen=True)
 class Witness:
-    """`angle` starts at `theta0` an orbit whose third bounce is `theta0` again; proved when `exists`.
+    """An orbit of the egg that starts at `theta0` with exit angle `angle`, and whose third bounce is at `theta0` again.
 
-    `produced`: the angle is one that a collision can produce, `|angle| <= lam*pi/2`.
+    `exists` is True when it is proved; `produced` is True when a collision can produce the angle: `|angle| <=
+    lam*pi/2`.
     """
 
     exists: bool | None
@@ -107,7 +107,7 @@ class Witness:
 
 
 def returning(alpha: Expr, lam: Expr, theta0: Rational) -> Small:
-    """Unknown second and third bounce of an orbit of the egg that starts at `theta0` and returns to it."""
+    """The equations for the second and third bounce of an orbit of the egg that returns to `theta0`."""
     table = egg(3).at(alpha=alpha)
 
     def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
@@ -124,9 +124,9 @@ def returning(alpha: Expr, lam: Expr, theta0: Rational) -> Small:
 
 
 def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float]) -> Witness:
-    """The orbit near the bounces `near`, proved.
+    """The proved orbit that returns to `theta0` with second and third bounce near `near`.
 
-    At `lam = 0` already, with any angle; at `lam = 3/10` with an angle that a collision can produce.
+    There is one at `lam = 0`, and at `lam = 3/10` one with an angle that a collision can produce.
 
     >>> one = witness(Rational(2, 25), Rational(0), *SLAP)
     >>> one.exists, one.produced
@@ -146,17 +146,20 @@ def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float])
         start, contracted = load(kernel("given", [], {"start": theta0, "lam": lam}), balls(bits))()
         phi = angle(start + arb(0), found.zero[0])[0]
         spare = contracted * arb.pi() / 2 - abs(phi)
-        exists = True if found.status is Status.UNIQUE else None
+        exists = True if found.status is ZeroStatus.UNIQUE else None
         return Witness(exists, True if spare > 0 else False if spare < 0 else None, phi)
 
 
 BITS_OF_COVER = 64
-SMALLEST = 2.0**-36  # ends of boxes must stay exact in floats
+SMALLEST = 2.0**-36  # above it ends of boxes are exact in floats
 
 
 @dataclass(frozen=True)
 class Exclusion:
-    """`excluded`: every box was; None when the budget ended first. `share` is the volume excluded."""
+    """The search: `excluded` is True when every box was excluded, None when the budget ended.
+
+    `share` is the excluded part of the volume, `smallest` the size of the smallest box.
+    """
 
     excluded: bool | None
     boxes: int
@@ -165,7 +168,7 @@ class Exclusion:
 
 
 def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick: Tick = silent) -> Exclusion:
-    """Has the K-pointed egg no period-3 cycle for any `0 <= lam <= most`?
+    """The proof that the egg with `K` vertices has no cycle of period 3 for any `0 <= lam <= most`.
 
     >>> from sympy import Rational
     >>> no_triangles(Rational(2, 25), Rational(1, 4)).excluded
@@ -181,7 +184,7 @@ def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick:
         ratio = load(kernel("most", [], {"most": most}), arithmetic)()[0] + arb(0)
         largest = ratio * arb.pi() / (1 + ratio)
         gap = _gap(angle, largest)
-        turn = math.ceil(201.07 / K) / 64  # a little over pi/K, and like all ends of boxes exact in binary
+        turn = math.ceil(201.07 / K) / 64  # just above pi/K, and exact in binary
         reach = 201.25 / 64 - gap
         start: Box = ((turn, turn), (gap + reach, reach), (gap + reach, reach))
         closer = load(polar_polygon_kernel(table, 3), arithmetic)
@@ -190,7 +193,7 @@ def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick:
 
 
 def _gap(angle: Any, largest: arb) -> float:
-    """A gap between parameters at and below which every exit angle exceeds `largest`."""
+    """A gap between parameters up to which every exit angle exceeds `largest`."""
     gap, pieces = 1.5, 400
     while gap > 0:
         step = 2 * arb.pi() / pieces
@@ -225,14 +228,13 @@ def _volume(box: Box) -> float:
 def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, box: Box, closer: Any = None) -> bool:
     """True when it is proved that no triangle of the box obeys the equations.
 
-    `angles` has the exit and incidence angles at three bounces, and `slopes` each with its derivatives, which takes
-    twice as long. `closer` encloses the angles from the gaps (`polar_polygon_kernel`), so that one box does where
-    `angles` needs twenty.
+    `angles` returns exit and incidence angles at three bounces, and `slopes` also their derivatives in twice the time.
+    `closer` encloses the angles from the gaps (`polar_polygon_kernel`), which needs a twentieth of the boxes.
     """
     (first, _), (one, _), (two, _) = box
     wide = [arb(m, r) for m, r in box]
     rest = 2 * arb.pi() - wide[1] - wide[2]
-    if rest < gap or wide[1] < wide[2] or wide[1] < rest:  # the first gap may be taken for the largest
+    if rest < gap or wide[1] < wide[2] or wide[1] < rest:  # the first gap may be assumed the largest
         return True
     theta = [wide[0], wide[0] + wide[1], wide[0] + wide[1] + wide[2]]
     ends = [(0, 1), (1, 2), (2, 0)]
@@ -264,7 +266,7 @@ def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, 
 
 
 def _from_gaps(angles: Any, closer: Any, theta: Vector, gaps: Vector) -> Vector:
-    """The six angles of a triangle from its gaps, or from its parameters when that does not hold or is infinite."""
+    """The six angles of a triangle from its gaps, or from its parameters where the gaps give no finite enclosure."""
     values = closer(*theta, *gaps)
     found, ahead = values[:6], values[6:]
     if all(a > 0 for a in ahead) and all(x.is_finite() for x in found):
@@ -283,7 +285,7 @@ def _slope(values: Any, here: int, there: int) -> Vector:
 
 
 def _by_gaps(slope: Vector) -> Vector:
-    """Derivatives by the three parameters as derivatives by the first one and the two gaps."""
+    """Derivatives by the first parameter and the two gaps, from derivatives by the three parameters."""
     return [slope[0] + slope[1] + slope[2], slope[1] + slope[2], slope[2]]
 
 

@@ -1,4 +1,4 @@
-"""The slap maps: periodic points, critical points, and the exponent of the natural measure."""
+"""Theorems on slap maps: periodic points, critical points, and the Lyapunov exponent of the natural measure."""
 
 import lazy_loader
 

@@ -1,16 +1,16 @@
-"""A function near the invariant density of the cardioid's slap map: polynomials between the images of `pi/4`.
+"""An approximate invariant density of the cardioid's slap map, piecewise polynomial, and rigorous bounds for its error.
 
-The second branch of the transfer operator ends at `pi/4`, with a density that vanishes quadratically there; so the
-density bends at `pi/4` and, ever more weakly, at its images. Between them it is analytic. Collocation at
-Chebyshev's points is solved in floats and refined in balls whose radii are dropped: nothing here is proved, and
-nothing needs to be: what the transfer operator changes in the result, and its mean of `log F'`, are bounded in balls.
+`L`, `F`, `g` and launching points are defined in `transfer`. The second summand of the transfer operator `L` ends at
+`pi/4`, where it vanishes quadratically; so a derivative of the density jumps at `pi/4` and, ever more weakly, at its
+images. Between them the density is analytic. The approximation is found by collocation at Chebyshev points, in floats
+refined in multiprecision. It is not proved; the residual `L f - f` and the mean of `log F'` are then bounded in balls.
 
-For this the half table is cut at the ends of pieces, at their images and at `pi/4`, each image between two exact
-points `2*margin` apart. A stretch whose launching points lie within one piece (that is tested in balls, so that a
-misplaced cut costs precision and no truth) has an analytic residual `r = L f - f`, bounded by Taylor's series at the
-middle with the last coefficient enclosed over the whole stretch; the same for `r'`. On any other stretch, all of them
-tiny, the parts of all pieces that it meets are bounded one by one. Where `f` jumps, `r` jumps by that, and by the
-rate times that at the image; at `pi/4` nothing jumps, since `f(pi/2) = 0`.
+For this the half table is cut into *stretches* at the ends of pieces, at their images and at `pi/4`, each image between
+two exact points `2*margin` apart. Where balls prove that the launching points of a stretch lie within one piece, the
+residual `r = L f - f` is analytic on it, and `r` and `r'` are bounded by Taylor series at the middle, with the last
+coefficient enclosed over the whole stretch. On the other stretches, which are tiny, the contributions of all pieces
+that they meet are bounded separately. A jump of `f` contributes itself and its image under `L` to the variation of `r`;
+at `pi/4` there is no jump, since `f(pi/2) = 0`.
 """
 
 from bisect import bisect_right
@@ -29,19 +29,19 @@ from verification.arithmetic.balls import bits_of, working
 from verification.arithmetic.series import Function, expanded
 from verification.proofs.slap_map.transfer import Branches, variation
 
-WIDTH = 0.12  # of the widest piece
-SPARE = 2  # digits that are asked for beyond those of the residual
+WIDTH = 0.12  # the largest width of a piece
+SPARE = 2  # extra digits of the approximation
 
 
 @dataclass(frozen=True)
-class Pieces:
-    """A function on `[0, pi/2]`: polynomials in `(y - middle)/half` between exact ends, the last end above `pi/2`."""
+class PiecewisePolynomial:
+    """A piecewise polynomial on `[0, pi/2]`, in `(y - middle)/half` between exact `ends`, the last above `pi/2`."""
 
     ends: list[arb]
     polynomials: list[list[arb]]
 
     def local(self, piece: int, y: Any) -> Any:
-        """The variable of a piece, from -1 to 1 on it."""
+        """The local variable of a piece, from -1 to 1."""
         low, high = self.ends[piece], self.ends[piece + 1]
         return (y - (low + high) / 2) * (2 / (high - low))
 
@@ -54,19 +54,19 @@ class Pieces:
         return total
 
     def met(self, low: arb, high: arb) -> range:
-        """The pieces whose closed ranges a stretch meets, given balls of its ends."""
+        """The indices of the pieces whose closed intervals meet the one from `low` to `high`, two balls."""
         last = len(self.polynomials)
         first = next((k for k in range(last) if not self.ends[k + 1] < low), last - 1)
         beyond = next((k for k in range(first, last) if self.ends[k] > high), last)
         return range(first, max(beyond, first + 1))
 
     def jumps(self) -> arb:
-        """The sum of what the function jumps by at the ends between pieces."""
+        """The sum of the absolute jumps at the ends between pieces."""
         inner = list(enumerate(self.ends))[1:-1]
         return sum((abs(self.value(k, end) - self.value(k - 1, end)) for k, end in inner), arb(0))
 
     def integral(self) -> arb:
-        """From 0 to `pi/2`."""
+        """The integral from 0 to `pi/2`."""
         total = arb(0)
         for k, coefficients in enumerate(self.polynomials):
             anti = arb_poly(coefficients).integral()
@@ -74,15 +74,15 @@ class Pieces:
             total += (anti(high) - anti(arb(-1))) * (self.ends[k + 1] - self.ends[k]) / 2
         return total
 
-    def grounded(self) -> "Pieces":
-        """The same with a constant added to the last piece, so that it is 0 at `pi/2`."""
+    def grounded(self) -> "PiecewisePolynomial":
+        """The function with a constant added to the last piece, so that it is 0 at `pi/2`."""
         last = list(self.polynomials[-1])
         last[0] -= self.value(len(self.polynomials) - 1, arb.pi() / 2)
-        return Pieces(self.ends, [*self.polynomials[:-1], last])
+        return PiecewisePolynomial(self.ends, [*self.polynomials[:-1], last])
 
 
 def breaks(digits: int, bits: int) -> list[arb]:
-    """The ends of pieces: `pi/4` and its images for as long as the bend matters, and some between."""
+    """The ends of pieces: `pi/4`, those of its images at which the density is not smooth enough, and points between."""
     at = Branches(bits)
     point, weight = (arb.pi() / 4).mid(), 1.0
     found = [point]
@@ -101,11 +101,11 @@ def breaks(digits: int, bits: int) -> list[arb]:
 
 
 def precision(digits: int) -> int:
-    """The bits that balls are rounded to for a density of so many digits."""
+    """The bits of the arithmetic for a density of so many digits."""
     return bits_of(digits, 64) + 2 * digits
 
 
-def candidate(digits: int) -> Pieces:
+def candidate(digits: int) -> PiecewisePolynomial:
     """The approximate density, to about `digits` digits; its integral is near 1, and it is 0 at `pi/2`.
 
     >>> with working(128):
@@ -145,11 +145,11 @@ def candidate(digits: int) -> Pieces:
             step = lu_solve(factors, np.array([float(gap / most) for gap in gaps]))
             unknown = [(old + arb(float(new)) * most).mid() for old, new in zip(unknown, step, strict=True)]
         pieces = [powers(unknown[k * size : (k + 1) * size]) for k in range(panels)]
-        return Pieces(ends, pieces).grounded()
+        return PiecewisePolynomial(ends, pieces).grounded()
 
 
 def _carried(ends: list[arb], points: list[arb], size: int, bits: int) -> list[list[tuple[int, list[arb]]]]:
-    """For each point of collocation the parts of `L`: where the coefficients start, and what they are multiplied by."""
+    """For each collocation point the terms of `L`: the index of the first coefficient, and the factors of all."""
     at, quarter = Branches(bits), arb.pi() / 4
     floats = [float(end) for end in ends]
     rows = []
@@ -167,7 +167,7 @@ def _carried(ends: list[arb], points: list[arb], size: int, bits: int) -> list[l
 
 
 def chebyshev(x: arb, count: int) -> list[arb]:
-    """`T_0(x)`, `T_1(x)`, ... by their recursion.
+    """The values `T_0(x)`, `T_1(x)`, ... of the Chebyshev polynomials, by recursion.
 
     >>> [int(t.unique_fmpz()) for t in chebyshev(arb(2), 4)]
     [1, 2, 7, 26]
@@ -179,7 +179,7 @@ def chebyshev(x: arb, count: int) -> list[arb]:
 
 
 def powers(coefficients: list[arb]) -> list[arb]:
-    """A sum of Chebyshev's polynomials in powers, exactly as far as the ambient precision goes.
+    """The coefficients in powers of `x` of a sum of Chebyshev polynomials, rounded to the ambient precision.
 
     >>> [int(c.unique_fmpz()) for c in powers([arb(1), arb(0), arb(3)])]
     [-2, 0, 6]
@@ -196,15 +196,15 @@ def _dot(one: list[arb], other: list[arb]) -> arb:
     return sum((a * b for a, b in zip(one, other, strict=False)), arb(0)).mid()
 
 
-LONGEST = 0.03  # of the stretches that get a series of their own
-NEARNESS = 0.1  # their length over the distance from the cusp, at most, where the rate is 0 and its logarithm is not
-SHARE = 0.35  # of a piece that a stretch or its launching points take up, at most
-OWN, BELOW, ABOVE = 0, -1, 1  # the function itself, and the two summands of the operator: signs of the landing
+LONGEST = 0.03  # the longest stretch with a Taylor series
+NEARNESS = 0.1  # the largest ratio of a stretch to its distance from the cusp, where the rate is 0
+SHARE = 0.35  # the largest part of a piece that a stretch or its launching points may cover
+OWN, BELOW, ABOVE = 0, -1, 1  # the function itself; the summands of L with landings -x and x
 
 
 @dataclass(frozen=True)
 class Residual:
-    """Upper bounds of the `L1` norm and of the variation of `L f - f`."""
+    """Upper bounds of the `L1` norm and of the variation of `L f - f`; 0 for an invariant density `f`."""
 
     norm: arb
     variation: arb
@@ -212,25 +212,25 @@ class Residual:
 
 @dataclass(frozen=True)
 class Judge:
-    """Bounds for a function in pieces that is 0 at `pi/2`, about `digits` sharp, at the ambient `bits`."""
+    """Rigorous bounds for a piecewise polynomial that is 0 at `pi/2`, sharp to about `digits` digits."""
 
-    pieces: Pieces
+    pieces: PiecewisePolynomial
     digits: int
     bits: int
 
     @property
     def order(self) -> int:
-        """The terms of series."""
+        """The order of the Taylor series."""
         return max(8, 17 * self.digits // 10)
 
     @cached_property
     def branches(self) -> Branches:
-        """`g` and its derivative."""
+        """The function `g` and its derivative."""
         return Branches(self.bits)
 
     @cached_property
     def stretches(self) -> list[tuple[arb, arb]]:
-        """Neighbouring exact points, from 0 to beyond `pi/2`, in order; the last stretch is the tail at the cusp."""
+        """The stretches, from 0 to beyond `pi/2`; their ends are exact, and the last one is the tail at the cusp."""
         ends, half_pi = self.pieces.ends, arb.pi() / 2
         if not ends[0] == 0 or not ends[-2] < half_pi < ends[-1]:
             raise ValueError(f"density: pieces from {ends[0]} to {ends[-1]}; they must reach from 0 to beyond pi/2")
@@ -244,7 +244,7 @@ class Judge:
         return [*found, (tail, ends[-1])]
 
     def residual(self) -> Residual:
-        """Bounds of `L f - f`."""
+        """Bounds of `L f - f`, with `f` the piecewise polynomial and `L` the transfer operator."""
         norm, change = arb(0), (1 + variation().shrinks) * self.pieces.jumps()
         for low, high in self.stretches:
             size, slope = self._bounds(low, high)
@@ -253,9 +253,9 @@ class Judge:
         return Residual(arb(norm.abs_upper()), arb(change.abs_upper()))
 
     def mean(self) -> arb:
-        """The integral of `log F'` times the function."""
+        """The integral of `log F'` times the piecewise polynomial; `F` is the slap map in half angles."""
         *inner, (low, high) = self.stretches
-        rate = self.branches(-low)[1]  # grows off the cusp, and so does -rate*log(rate) below 1/e
+        rate = self.branches(-low)[1]  # it grows away from the cusp, as does -rate*log(rate) below 1/e
         if not rate * 3 < 1:
             raise ArithmeticError(f"density: the tail from {low} on is too wide to be bounded")
         launches = self.branches(-low)[0].union(self.branches(-high)[0])
@@ -264,7 +264,7 @@ class Judge:
         return sum((self._integral(*ends) for ends in inner), rest)
 
     def _longest(self, low: arb) -> float:
-        """How long a stretch from `low` on should be, for its series to converge fast: a matter of precision only."""
+        """The longest stretch from `low` on whose series converges fast; it affects the precision only."""
         ends = self.pieces.ends
         limits = [LONGEST, NEARNESS * float(arb.pi() / 2 - low)]
         launched = [self.branches(low * side) for side in (BELOW, ABOVE) if side == BELOW or low * 4 < arb.pi()]
@@ -274,7 +274,7 @@ class Judge:
         return min(limits)
 
     def _met(self, side: int, low: arb, high: arb) -> range:
-        """The pieces that the launching points of a stretch meet."""
+        """The pieces that the launching points of a stretch meet, in the summand `side` of `L`."""
         one, other = sorted((side * low, side * high), key=lambda end: end.fmpq())
         return self.pieces.met(self.branches(one)[0], self.branches(other)[0])
 
@@ -283,7 +283,7 @@ class Judge:
         return inside
 
     def _sides(self, low: arb, high: arb) -> tuple[dict[int, range], bool]:
-        """The summands of the operator that are there, with the pieces that they meet; is it one piece for each?"""
+        """The pieces met by each summand of `L` on a stretch; and True if each is one piece."""
         quarter = arb.pi() / 4
         beyond = low > quarter
         met = {side: self._met(side, low, high) for side in ((BELOW,) if beyond else (BELOW, ABOVE))}
@@ -291,7 +291,7 @@ class Judge:
         return met, single and bool(beyond or high < quarter)
 
     def _part(self, side: int, piece: int) -> Function:
-        """A summand of the operator with the polynomial of a piece, or the polynomial itself."""
+        """A function: summand `side` of `L` for the polynomial of one piece, or with `OWN` that polynomial itself."""
 
         def terms(x: arb_series) -> arb_series:
             launch, rate = (x, 1) if side == OWN else self.branches(side * x)
@@ -309,7 +309,7 @@ class Judge:
         return terms
 
     def _bounds(self, low: arb, high: arb) -> tuple[arb, arb]:
-        """Upper bounds of `abs(r)` and of `abs(r')` on a stretch."""
+        """Upper bounds, on a stretch, of the residual `r = L f - f` and of its derivative, in absolute value."""
         met, single = self._sides(low, high)
         itself = self._part(OWN, self._own(low, high))
         if single:
@@ -321,7 +321,7 @@ class Judge:
         return sum((each.size() for each in found), arb(0)), sum((each.slope() for each in found), arb(0))
 
     def _integral(self, low: arb, high: arb) -> arb:
-        """The integral of `log F'` times the function over the launches to a stretch, from either side."""
+        """The integral of `log F'` times the function over the launching points of a stretch, from both summands."""
         met, single = self._sides(low, high)
         total = arb(0)
         for side, pieces in met.items():
@@ -334,8 +334,8 @@ class Judge:
 
 
 def _parted(low: arb, high: arb, longest: Callable[[arb], float]) -> Iterator[tuple[arb, arb]]:
-    """A stretch in parts no longer than is said of their lower ends."""
+    """A stretch cut into parts, each at most `longest(start)` long."""
     while low < high:
-        end = min(high, (low + longest(low)).mid())  # all of `high`, unless what comes before is surely less
+        end = min(high, (low + longest(low)).mid())  # equals `high` unless the other is surely less
         yield low, end
         low = end

@@ -1,12 +1,12 @@
-"""Chaos of slap maps, proved: the exponent of the cardioid at `lam = 0`, critical points, all cycles up to a period.
+"""Theorems on slap maps: the Lyapunov exponent of the cardioid at `lam = 0`, critical points, and periodic points.
 
-Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `slap_map.transfer`, for functions on
-`[0, pi/2]` of bounded variation that end in 0; norms are in `L1`.
+Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `slap_map.transfer`, for functions on `[0, pi/2]` of
+bounded variation that end in 0; norms are in `L1`.
 
 **There is one invariant density.** The means of `L^n f`, for any such density `f`, are bounded in variation, so by
-Helly's theorem some of them converge, to a density `h = L h`; it ends in 0, because the rate is 0 at the cusp. Let
-`e` be another fixed point up to `r`: `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P
-e) + P r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
+Helly's theorem a subsequence converges, to a density `h = L h`; it ends in 0, because the rate is 0 at the cusp. Let
+`e` be a function with `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P e) + P r`, and
+`||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
 
     ||e|| <= (c/2)*(K + 1)*Var e + K*||r||,     Var e <= (adds*||e|| + Var r)/(1 - shrinks),
 
@@ -14,41 +14,41 @@ so that `Var e <= (adds*K*||r|| + Var r)/((1 - shrinks)*gap)` where
 
     gap = 1 - adds*(c/2)*(K + 1)/(1 - shrinks)  must be positive.
 
-For the difference of two invariant densities `r = 0`, and they are the same. Then the means of `L^n f` converge to
-`h` for these `f`, and, `L` being a contraction of `L1`, for every density: the invariant measure that is absolutely
-continuous is unique, and a set of starts that is invariant has measure 0 or carries `h`. With Birkhoff's theorem,
-time averages are those of `h` for almost every start: `h` is the natural measure.
+For the difference of two invariant densities `r = 0`, so they are equal. Then the means of `L^n f` converge to `h` for
+these `f`, and, `L` being a contraction of `L1`, for every density: the absolutely continuous invariant measure is
+unique, and an invariant set of starts has measure 0 or full measure for `h`. By Birkhoff's theorem time averages are
+those of `h` for almost every start: `h` is the natural measure.
 
-**On the whole boundary** a density is half a mirror-symmetric one, which is the above, and half one that the mirror
-image negates. The operator acts on these with its first summand negated, since such a flight changes halves; the
-inequality for variations is the same, and so is the argument, with a `K` for all vectors: a fixed one is 0. So the
-slap map itself has one invariant density, and it is its own mirror image.
+**On the whole boundary** a density is the sum of an even and an odd function of `theta`. The even part is treated
+above. On odd functions the first summand of the operator is negated, since such a flight changes halves; the inequality
+for variations and the argument are the same, with a `K` for all vectors, so a fixed function is 0. So the slap map
+itself has one invariant density, which is even.
 
 **The density is near `f`.** For any `f` with integral 1, here polynomials, `e = h - f` has `r = L f - f`, which
 `verification.proofs.slap_map.candidate` bounds.
 
 **The exponent.** `T0'(s)` and the slope `F'` in half angles differ by the factor `cos(theta/2)` at either end of a
-flight, whose logarithm is integrable; so the exponent of almost every start is the integral of `log F'` times `h`.
-That of `f` is enclosed, `abs(e) <= Var e`, and the integral of `log F' = -log(rate)` over all launches is that of
-`-rate*log(rate) <= 1/e` over all landings, at most `3*pi/(4*e)`. The other exponent is minus infinity: every particle
-leaves along the normal.
+flight, whose logarithm is integrable; so the exponent of almost every start is the integral of `log F'` times `h`. The
+integral for `f` is enclosed, `abs(e) <= Var e`, and the integral of `log F' = -log(rate)` over all launches is that of
+`-rate*log(rate) <= 1/e` over all landings, at most `3*pi/(4*e)`. The other exponent is minus infinity, since every
+particle leaves along the normal.
 
-Assumed: that python-flint's balls, doubles and the machine do what they say. Not proved: that the measure mixes,
-and anything for `lam > 0`. Not in the paper.
+Assumed: python-flint, float64 arithmetic and the machine are correct. Not proved: mixing, and anything for `lam > 0`.
+Not in the paper.
 
-**Critical points and cycles.** The egg's slap map has no critical point, three or six, for every shape (paper:
-section 6.2). `T0' = 0` where the centre of curvature `e` lies on the boundary. With `C = cos(3*theta)` let `k` be its
-distance from the centre less that of the boundary in its direction: `T0'` has the sign of `-k`. Balls show on a cover
-of `-1 <= C <= 1`, `0 <= alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` `k` has at most
-one zero, through which it falls: one where `k > 0` at the flat points (`C = -1`), none where `k < 0` there. A zero
-inside stands for six points, one at `C = -1` for the three flat points.
+**Critical points.** The egg's slap map `T0` has no critical point, three or six, for every shape (paper: section 6.2).
+`T0' = 0` where the centre of curvature lies on the boundary. With `C = cos(3*theta)` let `k` be its distance from the
+centre of the table minus that of the boundary in the same direction: `T0'` has the sign of `-k`. It is proved in balls
+that cover `-1 <= C <= 1`, `0 <= alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` there is
+one zero of `k` if `k > 0` at the flat points (`C = -1`), and none if `k < 0` there. A zero with `-1 < C < 1` stands for
+six points, one at `C = -1` for the three flat points.
 
-The slap map of the cuspless cardioid has no cycle of period 4. A slap map is one-dimensional, so subdivision settles
-it: a piece of the boundary is followed in balls. A piece that does not meet its image holds no periodic point; where
-`(T0**n)' - 1` keeps its sign it holds at most one; and pieces that touch are joined where that sign is the same, so
-that what is left are as many periodic points as are known already. Where it changes from one piece to the next, as it
-may at a kink of the map, each piece can hold one. Paper: section 5.4 (`the graph of the 4th iterate confirms that
-there are no period-4 orbits`).
+**Periodic points.** The slap map of the cuspless cardioid has no cycle of period 4. This is proved by bisection of the
+boundary into intervals whose images are enclosed. An interval that does not meet its image holds no periodic point;
+where `(T0**n)' - 1` keeps its sign it holds at most one, and adjacent intervals with the same sign are joined. The
+remaining intervals are as many as the known periodic points. Where the sign changes between adjacent intervals, as it
+may at a kink of the map, each can hold one. Paper: section 5.4 (`the graph of the 4th iterate confirms that there are
+no period-4 orbits`).
 """
 
 from dataclasses import dataclass, replace
@@ -61,21 +61,21 @@ from symbolic.tables.table import alpha
 from verification.arithmetic.balls import Box, balls, between, bisected, working
 from verification.arithmetic.iteration import Tick, silent
 from verification.proofs.corner.corner import ARC, BITS, WALL
-from verification.proofs.corner.return_map import Flights, Piece
+from verification.proofs.corner.return_map import CusplessMap, Departures
 from verification.proofs.periodic.bifurcation import Checks
-from verification.proofs.slap_map.candidate import Judge, Pieces, candidate, precision
+from verification.proofs.slap_map.candidate import Judge, PiecewisePolynomial, candidate, precision
 from verification.proofs.slap_map.transfer import Inverted, Variation, inverted, variation
 
 CELLS = 2048
-MIRRORED = 1024  # cells for densities that the mirror image negates
+MIRRORED = 1024  # cells for odd functions
 DIGITS = 14
 
 
 @dataclass(frozen=True)
 class ChaoticProof:
-    """What was proved of the exponent; `value` is a ball that contains it if it is `certified`, else anything.
+    """The proved exponent: `value` is a ball that contains it if `certified`, else it means nothing.
 
-    `distance` bounds the variation, and so the largest value, of the density less the candidate.
+    `distance` bounds the variation, and so the maximum, of the density minus its approximation.
     """
 
     value: arb
@@ -91,7 +91,7 @@ class ChaoticProof:
 
 
 def slap_exponent(digits: int = DIGITS, cells: int = CELLS) -> ChaoticProof:
-    """The exponent per bounce of the cardioid at `lam = 0`, with a density of about `digits` digits.
+    """The exponent per bounce of the cardioid at `lam = 0`, from a density of about `digits` digits.
 
     >>> proof = slap_exponent(6)
     >>> proof.certified, bool(abs(proof.value - arb("0.36834079947576")) < 1e-4)
@@ -102,7 +102,7 @@ def slap_exponent(digits: int = DIGITS, cells: int = CELLS) -> ChaoticProof:
 
 
 def symmetric(inverse: Inverted, known: Variation) -> bool | None:
-    """Is every invariant density of the slap map on the whole boundary its own mirror image?"""
+    """True if every invariant density of the slap map on the whole boundary is proved to be even; else None."""
     if not known.proved or inverse.sign != -1 or inverse.bound is None:
         return None
     with working(64):
@@ -110,15 +110,15 @@ def symmetric(inverse: Inverted, known: Variation) -> bool | None:
 
 
 def gap(inverse: Inverted, known: Variation) -> arb:
-    """What must be positive, in the ambient precision."""
+    """The number `gap` of the module docstring, which must be positive, in the ambient precision."""
     return 1 - known.adds * arb.pi() / (4 * inverse.cells) * (arb(inverse.bound or 0) + 1) / (1 - known.shrinks)
 
 
-def judged(near: Pieces, digits: int, inverse: Inverted, known: Variation | None = None) -> ChaoticProof:
-    """The proof from any candidate for the density: a bad one makes it imprecise, and never wrong.
+def judged(near: PiecewisePolynomial, digits: int, inverse: Inverted, known: Variation | None = None) -> ChaoticProof:
+    """The exponent from any approximation of the density: a bad one makes it imprecise, but never wrong.
 
-    The items: the inequality for variations holds; the averaged operator is inverted; the gap is positive, so that
-    the natural measure exists and is unique; the candidate has a positive mass; two digits were lost at most.
+    The items: the inequality for variations holds; the averaged operator is inverted; the gap is positive, so that the
+    natural measure exists and is unique; the approximation has a positive mass; at most two digits were lost.
     """
     known = known or variation()
     bits = precision(digits)
@@ -143,20 +143,20 @@ def judged(near: Pieces, digits: int, inverse: Inverted, known: Variation | None
         return ChaoticProof(value, checks, float(room.lower()), inverse.bound, arb(distance.abs_upper()))
 
 
-SMALLEST = 2.0**-30  # halves of halves must stay exact in floats
-WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # of C and of alpha: shapes up to 1/10 and some more, cut off there
+SMALLEST = 2.0**-30  # above it halves are exact in floats
+WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # C and alpha; boxes of shapes above 1/10 are skipped
 
 
 @dataclass(frozen=True)
 class OneZero:
-    """`proved`: `k` has at most one zero for each shape, and falls there; None when the budget ended."""
+    """`proved` is True when `k` has at most one zero for each shape and falls there, None when the budget ended."""
 
     proved: bool | None
     boxes: int
 
 
 def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
-    """Does the centre of curvature cross the boundary at most once between a flat point and a vertex?
+    """The proof that the centre of curvature crosses the boundary at most once between a flat point and a vertex.
 
     >>> one_zero().proved, one_zero(budget=10).proved
     (True, None)
@@ -183,29 +183,29 @@ def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
 
 
 def halves(box: Box) -> list[Box]:
-    """The two halves of a box, cut across its longer side; shapes are a tenth as long as cosines."""
+    """The two halves of a box, cut across its longer side, with `alpha` scaled by 10."""
     (_, wide), (_, high) = box
     return bisected(box, 0 if wide > 10 * high else 1)
 
 
 @dataclass(frozen=True)
 class PeriodicPoints:
-    """Stretches that hold at most one solution of `T0**n(x) = x` each, and all of them; None when open."""
+    """Intervals with at most one solution of `T0**n(x) = x` each, `T0` the slap map, which hold all; None when open."""
 
     stretches: list[tuple[int, float, float]] | None
     boxes: int
 
 
 def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> PeriodicPoints:
-    """Where `T0**n(x) = x` on the cuspless cardioid, in stretches of the arc and of the wall.
+    """Intervals of the arc and the wall that hold the solutions of `T0**n(x) = x` on the cuspless cardioid.
 
-    The mirror `y -> -y` takes `theta` to `-theta` and commutes with `T0`: solutions are sought on the upper half alone.
+    Each is `(component, low, high)`. Since `T0` is odd in `theta`, solutions are sought on the upper half only.
 
     >>> [(c, round(a, 2), round(b, 2)) for c, a, b in periodic_points(2).stretches or []]
     [(0, -1.07, -1.02), (0, -0.02, 0.02), (0, 1.02, 1.07), (1, -0.01, 0.01)]
     """
     with working(BITS):
-        slap = Flights()
+        slap = CusplessMap()
         found: list[tuple[int, float, float, int]] = []
         ends = {component: _end(slap.ends[component]) for component in (ARC, WALL)}
         queue = [(part, 0.0 if slap.odd else -end, end) for part, end in ends.items()]
@@ -216,7 +216,7 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
             if boxes > budget or high - low < 2 * SMALLEST:
                 return PeriodicPoints(None, boxes)
             box = between(low, high)
-            images = slap.iterated([Piece(component, box, arb(1), arb(0))], n)
+            images = slap.iterated([Departures(component, box, arb(1), arb(0))], n)
             apart = images is not None and not any(p.component == component and p.theta.overlaps(box) for p in images)
             sign = _sign(images[0].slope - 1) if images is not None and len(images) == 1 and high - low < 2e-2 else 0
             if sign and not apart:
@@ -224,7 +224,7 @@ def periodic_points(n: int, budget: int = 200_000, tick: Tick = silent) -> Perio
             if apart or sign:
                 tick((high - low) / whole)
                 continue
-            middle = (low + high) / 2  # rounded, but the same of either half: nothing is left out between them
+            middle = (low + high) / 2  # rounded alike for both halves, so that no gap is left
             queue += [(component, low, middle), (component, middle, high)]
         found += [(part, -high, -low, sign) for part, low, high, sign in found if slap.odd]
         return PeriodicPoints(_joined(sorted(found)), boxes)
@@ -235,12 +235,12 @@ def _end(end: arb) -> float:
 
 
 def _sign(x: arb) -> int:
-    """1 or -1 when it is proved, else 0."""
+    """1 or -1 when the sign is proved, else 0."""
     return 0 if not x.is_finite() else 1 if x > 0 else -1 if x < 0 else 0
 
 
 def _joined(stretches: list[tuple[int, float, float, int]]) -> list[tuple[int, float, float]]:
-    """Touching stretches as one, where `(T0**n)' - 1` has one sign on both."""
+    """Adjacent intervals joined where the slope of `T0**n`, less 1, has the same sign on both."""
     made: list[tuple[int, float, float, int]] = []
     for component, low, high, sign in stretches:
         if made and (made[-1][0], made[-1][3]) == (component, sign) and low <= made[-1][2]:

@@ -1,39 +1,36 @@
-"""The cardioid's slap map on half the table, its transfer operator, and what the operator does to variation.
+"""The transfer operator of the cardioid's slap map on half the table: bounds for variation, and a bound of an inverse.
 
-The mirror image carries orbits to orbits, so the slap map acts on the half angle `y = abs(theta)/2` in
-`[0, pi/2]`; call that map `F`. A particle that lands at the half angle `b`, `-pi/2 < b < pi/4`, left at `g(b)`, which
-grows from 0 to `pi/2`, with `rate = g'`: one over the slope of `F`. So `F(g(b)) = abs(b)`, and densities go to
+The slap map commutes with `theta -> -theta`, so it acts on the half angle `y = abs(theta)/2` in `[0, pi/2]`, by a map
+`F`. A particle that lands at the half angle `b`, `-pi/2 < b < pi/4`, was launched at `g(b)`, which grows from 0 to
+`pi/2`. With `rate = g'`, the inverse of the slope of `F`, and `F(g(b)) = abs(b)`, densities are mapped to
 
     (L f)(x) = rate(-x)*f(g(-x)) + rate(x)*f(g(x)),       the second summand for x < pi/4 only.
 
-Let `f` have bounded variation and end in 0 at `pi/2`. Then so does `L f`: the rate is 0 at the cusp, and the
-second summand ends at `x = pi/4` with `f(pi/2) = 0`, so that nothing jumps. Its variation is at most
+Let `f` have bounded variation and end in 0 at `pi/2`. Then so does `L f`: the rate is 0 at the cusp, and the second
+summand ends at `x = pi/4` with `f(pi/2) = 0`, so there is no jump. Its variation is at most
 
     integral of rate*d|f(g)|  +  integral of abs(rate')*abs(f(g)).
 
-With `symbolic.cycles.cardioid_slap`: off the cusp `abs(rate') < STEEP*rate`, which adds `STEEP*||f||_1`. Near it,
-for launches
-below `y0`, the rate grows from 0 to `eta < SHRINKS/2`, which adds at most `eta*sup|f|`, and there
-`sup|f| <= Var f + (1/y0)*integral of |f|`. Launches near `y0` are so multiplied by `2*eta < SHRINKS`, others by
-`SHRINKS`, and altogether (the inequality of [LasotaYorke1973], norms in `L1`)
+`symbolic.cycles.cardioid_slap` proves: away from the cusp `abs(rate') < STEEP*rate`, which adds `STEEP*||f||_1`. Near
+it, for launching points below `y0`, the rate grows from 0 to `eta < SHRINKS/2`, which adds at most `eta*sup|f|`, and
+there `sup|f| <= Var f + (1/y0)*integral of |f|`. So variation at launching points below `y0` is multiplied by at most
+`2*eta < SHRINKS`, elsewhere by `SHRINKS`, and together (the inequality of [LasotaYorke1973], norms in `L1`)
 
     Var(L f) <= SHRINKS*Var f + B*||f||,      B = max(STEEP, eta/y0).
 
-How well `1 - L`, averaged over cells, can be inverted is proved with Ulam's matrix [Ulam1960]: `N` equal cells, `P`
-the average over each, `Q = P L P`: a matrix of the shares of a cell that are carried to another. On vectors of sum 0,
-in `L1`, `||u|| <= K*||(I - Q) u||`. Any matrix `X` proves such a `K`: from `u = X(I - Q)u + (I - X(I - Q))u`,
+The inverse of `1 - L`, averaged over cells, is bounded with Ulam's matrix [Ulam1960]: with `N` equal cells and `P` the
+average over each, `Q = P L P` is the matrix of the shares of each cell that are mapped to the others. For vectors of
+sum 0, `||u|| <= K*||(I - Q) u||` in `L1`. Any matrix `X` proves such a `K`: from `u = X(I - Q)u + (I - X(I - Q))u`,
 
     K = |X| / (1 - |I - X(I - Q)|),        |A| = max over columns of ||column - w||, for any vector w,
 
-because `A u` is the sum of `u_j*(column_j - w)` when the `u_j` sum to 0. `X` is an inverse in floats, and what
-rounding may have done to the products is bounded and added.
+because `A u` is the sum of `u_j*(column_j - w)` when the `u_j` sum to 0. `X` is an inverse in floats, and the rounding
+errors of the products are bounded and added.
 
-For densities that the mirror image negates, the first summand of `L` is negated; then `w = 0`, and any vector is
-meant.
+For odd functions of `theta` the first summand of `L` is negated; then `w = 0`, and the bound holds for all vectors.
 
-The entries of `Q` are differences of launching points in units of a cell. Each is rounded to a multiple of
-`2**-40`, so that entries and sums of columns are exact in doubles, and a displaced point moves at most twice its
-displacement of mass in a column.
+The entries of `Q` are differences of launching points in units of a cell. Each is rounded to a multiple of `2**-40`, so
+that entries and column sums are exact in doubles. A rounded point changes a column by at most twice its displacement.
 """
 
 from dataclasses import dataclass
@@ -67,12 +64,12 @@ from symbolic.expressions.text import load
 from verification.arithmetic.balls import FLOAT64, balls, real_ball, working
 from verification.arithmetic.series import in_series
 
-TURN = -0.1  # the landing where the form of the launching point changes
+TURN = -0.1  # the landing at which the formula of the launching point changes
 
 
 @dataclass(frozen=True)
 class Variation:
-    """`Var(L f) <= shrinks*Var f + adds*||f||`, and whether every fact that it needs is proved."""
+    """`Var(L f) <= shrinks*Var f + adds*||f||` for the transfer operator `L`; `proved` when all its lemmas are."""
 
     shrinks: arb
     adds: arb
@@ -81,7 +78,7 @@ class Variation:
 
 @cache
 def variation() -> Variation:
-    """The inequality with its constants, from the exact proofs.
+    """The inequality for variations with its constants, from the exact proofs.
 
     >>> found = variation()
     >>> found.proved, found.shrinks.str(3, radius=False), found.adds.str(3, radius=False)
@@ -104,7 +101,7 @@ def variation() -> Variation:
 
 
 class Branches:
-    """`g` and `rate` of balls and of series, at a stated precision.
+    """The launching point `g` and its derivative `rate`, for balls and series of balls at a given precision.
 
     >>> at = Branches(64)
     >>> launch, rate = at(arb(0))
@@ -117,14 +114,14 @@ class Branches:
         self.of_series = [load(branch(above), in_series(balls(bits), arb_series)) for above in (False, True)]
 
     def __call__(self, landing: Any) -> tuple[Any, Any]:
-        """The launching half angle and the rate of a landing half angle."""
+        """The launching half angle and the rate, from a landing half angle."""
         series = isinstance(landing, arb_series)
         above = not (landing[0] if series else landing) < TURN
         launch, rate = (self.of_series if series else self.of_balls)[above](landing)
         return launch, rate
 
     def landing(self, launch: arb, bits: int) -> arb:
-        """About where a particle lands that left at an exact half angle: Newton's method, not enclosed."""
+        """The landing half angle of a particle launched at an exact half angle, by Newton's method; not enclosed."""
         point = arb(landed(float(launch)))
         for _ in range(2 + bits.bit_length()):
             found, rate = self(point)
@@ -133,7 +130,7 @@ class Branches:
 
 
 def landed(launch: float) -> float:
-    """The same in floats, by halving.
+    """The same as `Branches.landing` in floats, by bisection.
 
     >>> round(abs(landed(0.9553166181245093)), 9)  # atan(sqrt(2)) lands on the axis
     0.0
@@ -156,9 +153,9 @@ BLANKET = 1 + 1e-9  # over the rounding of a sum of at most 1e5 positive doubles
 
 @dataclass(frozen=True)
 class Inverted:
-    """`||u|| <= K*||(I - Q)u||`, `bound` above `K`; None where `X` was no good inverse.
+    """A bound `||u|| <= bound*||(I - Q)u||` for Ulam's matrix `Q`; None where the approximate inverse is bad.
 
-    For vectors of sum 0 when the `sign` of the first summand is 1, for all when it is -1.
+    It holds for vectors of sum 0 when the `sign` of the first summand is 1, and for all vectors when it is -1.
     """
 
     cells: int
@@ -168,14 +165,14 @@ class Inverted:
 
 
 def launching_points(cells: int) -> tuple[Matrix, Matrix]:
-    """`g(-x)` and `g(x)` at the ends of cells, in cells, exact multiples of `1/GRAIN` and within that of the truth."""
+    """`g(-x)` and `g(x)` at the ends of cells, in units of a cell, rounded down to multiples of `1/GRAIN`."""
     if cells not in range(2, 4097, 2):
         raise ValueError(f"ulam: cells = {cells}; an even number of at most 4096 is needed")
     at = Branches(BITS)
     with working(BITS):
         quarter = arb.pi() / 4
 
-        def point(k: int) -> float:  # landing at b = k cells
+        def point(k: int) -> float:  # for the landing b = k cells
             launch = at(arb(k) * 2 * quarter / cells)[0]
             units = (launch * cells / (2 * quarter) * GRAIN).floor().unique_fmpz() if launch.is_finite() else None
             if units is None:
@@ -188,7 +185,7 @@ def launching_points(cells: int) -> tuple[Matrix, Matrix]:
 
 
 def ulam(cells: int, sign: int = 1) -> csc_matrix:
-    """`Q`, with column sums of exactly 1; or with the first summand of the operator times a `sign` of -1.
+    """The matrix `Q`, with column sums of exactly 1; with `sign = -1` the first summand of the operator is negated.
 
     >>> float(abs(ulam(16).sum(axis=0) - 1).max())
     0.0
@@ -205,9 +202,9 @@ def ulam(cells: int, sign: int = 1) -> csc_matrix:
 
 
 def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Inverted:
-    """The bound `K`, from an `inverse` of `I - Q` on vectors of sum 0 (if left out, one made in floats).
+    """The bound `K` of the module docstring, from an approximate `inverse` of `I - Q`, made in floats if not given.
 
-    With a `sign` of -1, `K` is for all vectors.
+    It holds for vectors of sum 0; with a `sign` of -1 for all vectors.
 
     >>> found = inverted(64)
     >>> found.defect < 1e-6, 10 < found.bound < 30
@@ -222,7 +219,7 @@ def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Invert
     left = (matrix.T @ inverse.T).T
     left -= inverse
     left[np.diag_indices(cells)] += 1
-    if sign == 1:  # less any one vector, and this one costs less than a median
+    if sign == 1:  # any vector w may be subtracted; the mean is cheaper than a median
         left -= left.mean(axis=1)[:, None]
     defect = largest(left) + rounding * BLANKET + size * displaced
     bound = size / (1 - defect) * BLANKET if sign in (1, -1) and defect < 0.5 else None
@@ -230,14 +227,14 @@ def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Invert
 
 
 def _in_floats(matrix: csc_matrix, sign: int) -> Matrix:
-    """About an inverse of `I - Q` on vectors of sum 0, or on all.
+    """An approximate inverse of `I - Q`, with Ulam's `Q = matrix`, on vectors of sum 0 (`sign = 1`) or on all vectors.
 
-    The upper half of the cells is carried to the lower half `B`, so its unknowns are put into the equations of `B`, and
-    what is inverted is half as large: with `r` for what `(I - Q)u` is, the equations of `B` are
+    The upper half `A` of the cells is mapped to the lower half `B`, so its unknowns are eliminated, and the matrix to
+    invert is half as large: with `r = (I - Q)u` the equations of `B` are
 
         (I - Q_BB - Q_BA*Q_AB) u_B = r_B + Q_BA*r_A,     u_A = r_A + Q_AB*u_B,
 
-    and that all `u` sum to 0 is one more, which is added to each, times the mass of its cell.
+    and the condition that `u` has sum 0 is added to each of them, times the mass of its cell.
     """
     cells = matrix.shape[0]
     half = cells // 2
@@ -246,7 +243,7 @@ def _in_floats(matrix: csc_matrix, sign: int) -> Matrix:
     mass = np.full(half, 1.0 / cells)
     for _ in range(60 if sign == 1 else 0):
         mass = ahead @ mass + into @ (out @ mass)
-    total = 1 + np.asarray(out.sum(axis=0)).ravel()  # what each of `u_B` adds to the sum of all
+    total = 1 + np.asarray(out.sum(axis=0)).ravel()  # the contribution of each entry of u_B to the sum
     reduced = np.eye(half) - (ahead + into @ out).toarray() + (np.outer(mass, total) if sign == 1 else 0)
     inverse = np.linalg.inv(reduced)
     found = np.empty((cells, cells))
@@ -260,12 +257,12 @@ def _in_floats(matrix: csc_matrix, sign: int) -> Matrix:
 
 
 def largest(matrix: Matrix) -> float:
-    """The largest `L1` norm of a column: the norm of the matrix, from above."""
+    """An upper bound of the matrix norm in `L1`: the largest norm of a column."""
     return float(abs(matrix).sum(axis=0).max()) * BLANKET
 
 
 def spread(matrix: Matrix) -> float:
-    """The largest distance, in `L1`, of a column from one vector: what the matrix does to vectors of sum 0, at most.
+    """The largest `L1` distance of a column from their median: a bound of the matrix on vectors of sum 0.
 
     >>> spread(np.array([[1.0, 1.0], [2.0, 2.0]]))
     0.0

@@ -1,4 +1,4 @@
-"""Random starts: how many are proved to end on a cycle, and the mean of their exponents."""
+"""Theorems on random starts of the cuspless table: the measure that converges to a cycle, and mean exponents."""
 
 import lazy_loader
 

@@ -2,25 +2,39 @@
 
 from .alternating import Alternating
 from .basin_edge import BasinEdge
-from .below_star import ANGLE, NEXT, BelowStar
-from .core import Core
+from .below_star import (
+    ANGLE,
+    HORIZONTAL,
+    NEXT,
+    TOP,
+    AlmostEveryOrbitBelowLambdaStar,
+    AlmostEveryOrbitBesideLambdaStar,
+    ConvergenceBelowLambdaStar,
+)
+from .core import AbsorbingTube
 from .curves import PinballCurves
-from .division import Division, Ring
+from .division import Division, ExpandingAnnulus
 from .mean import HIGH, LOW, MULTIPLIER, RATE, average
+from .typical import TypicalExponent
 
 __all__ = [
     "ANGLE",
     "HIGH",
+    "HORIZONTAL",
     "LOW",
     "MULTIPLIER",
     "NEXT",
     "RATE",
+    "TOP",
+    "AbsorbingTube",
+    "AlmostEveryOrbitBelowLambdaStar",
+    "AlmostEveryOrbitBesideLambdaStar",
     "Alternating",
     "BasinEdge",
-    "BelowStar",
-    "Core",
+    "ConvergenceBelowLambdaStar",
     "Division",
+    "ExpandingAnnulus",
     "PinballCurves",
-    "Ring",
+    "TypicalExponent",
     "average",
 ]

@@ -1,37 +1,37 @@
-"""Flights of parallelograms: also along the formulas of a component beyond its end; and where their midpoints land.
+"""Flights from parallelograms: landings of midpoints, and landings on a component continued beyond its end.
 
-A kernel's landing in float64 is a double in the arc of landings; about it derivative and landing are enclosed.
+The landing of the float64 kernel is the centre at which landing and derivative are enclosed.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics.flights import End, Flights, Piece, incidence, turn_between
+from verification.proofs.global_dynamics.flights import End, Flights, LandingArcs, incidence, turn_between
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
-NEARLY = 1 - 2.0**-40  # covers the roundings of a comparison
-DOUBLINGS = 4  # of what is added to an arc beyond a join
-REACH = 3.0  # about the length of a flight
+NEARLY = 1 - 2.0**-40  # below 1 by more than the rounding of a comparison
+DOUBLINGS = 4  # how often the continuation of an arc is doubled
+REACH = 3.0  # the approximate length of a flight
 
 
-class Chords(Flights):
-    """The flights that leave a block of boxes."""
+class ChordFlights(Flights):
+    """The flights from a block of boxes, with the landings of midpoints."""
 
-    kept: tuple[BallArray, BallArray, list[BallArray]] | None = None  # an arc, and what is near it
+    kept: tuple[BallArray, BallArray, list[BallArray]] | None = None  # an arc with its centre and the boundary there
 
-    def split(self, low: End, high: End) -> list[Piece]:
-        """The arcs that lie on one component, and all parts of the others; without those of which there are none."""
+    def split(self, low: End, high: End) -> list[LandingArcs]:
+        """The arcs that lie on one component, then all parts of the others; empty ones are omitted."""
         smooth, *parts = self.pieces(low, high)
         if parts:
             on, chart, first, last = (np.concatenate(column) for column in list(zip(*parts, strict=True))[:4])
-            parts = [Piece(on, chart, first, last, False)]
+            parts = [LandingArcs(on, chart, first, last, False)]
         return [piece for piece in (smooth, *parts) if piece.on.size]
 
     def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
-        """A double in each arc, the landing of the box's midpoint but for rounding, and the boundary there."""
+        """For each arc a double near the landing of the box's midpoint, as centre, and the boundary there."""
         if self.kept is None or self.kept[0] is not arc:
             self.kept = arc, *self._near(on, chart, arc)
         return self.kept[1:]
@@ -47,22 +47,22 @@ class Chords(Flights):
         return BallArray(at), self.map.place(chart, BallArray(at))
 
     def _polished(self, on: Indices, chart: Indices, near: Array) -> Array:
-        """About where the midpoints of boxes land, from a place nearby, in float64."""
+        """The landings of the midpoints of boxes in float64, by Newton's method from nearby places."""
         at, (x0, y0, v, w) = near, (self.centre[name].m[on] for name in ("x", "y", "v", "w"))
-        for _ in range(2):  # of Newton's method
+        for _ in range(2):  # Newton steps
             x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(at)))
             at = at - (v * (y - y0) - w * (x - x0)) / (v * dy - w * dx)
         return np.asarray(at)
 
     def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
-        """Ends of the exit angles at landings in an arc, within phase space, and where they are known."""
+        """A mask of the boxes whose exit angles are enclosed, and the ends of these angles, cut off at the strip."""
         exit, top = self.map.exit(self.over(on, chart, arc)[1], arc), self.map.top
         return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
 
     def midpoints(self, on: Indices, chart: Indices, arc: BallArray, bend: BallArray) -> tuple[BallArray, BallArray]:
-        """Where the midpoints of boxes land, by a step of interval Newton within the arc, and how they leave.
+        """Landing and exit angle of the midpoints of boxes, by an interval Newton step within the arc.
 
-        `bend` is how fast the tangent turns over the arc.
+        `bend` is the rate at which the tangent turns over the arc.
         """
         (at, place), (there, _) = self.near(on, chart, arc), self.over(on, chart, arc)
         x, y, v, w = (self.centre[name][on] for name in ("x", "y", "v", "w"))
@@ -72,11 +72,11 @@ class Chords(Flights):
         return landing, self.map.exit(eta, landing)
 
     def beyond(self, on: Indices, chart: Indices, low: Array, high: Array) -> tuple[BallArray, Mask]:
-        """Arcs that go on past the join at which a component ends, along the same formulas; and which are known.
+        """Arcs continued past the end of a component, by the same formulas; and a mask of those that are enclosed.
 
-        They are so long that every flight of the box crosses the longer component within them; and once, since the
-        derivative is known only where flights cross all of the arc from one side to the other. Where a landing lies on
-        the component it is that crossing; and the crossing is a smooth function on all of the box.
+        They are so long that every flight of the box crosses the continued component within them, exactly once, since
+        all flights cross the arc from the same side. If a landing lies on the component, it is this crossing, which is
+        a smooth function on the whole box.
         """
         first, last = self.map.outer[:, chart]
         up, down = high >= last, low <= first

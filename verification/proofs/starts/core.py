@@ -1,17 +1,18 @@
-"""The core of an attracting cycle: a set about one of its phase points, all of which is proved to converge to it.
+"""The core of an attracting cycle: a tube around one of its phase points, in which all orbits converge to the cycle.
 
 The core is the set `|theta| <= outer`, `|phi - p(theta)| <= width` on one component, with an odd cubic `p` close to the
-curve along which orbits approach; the cycle has two bounces, one of them at `theta = phi = 0`. Of it is proved:
+curve along which orbits approach; the cycle has two bounces, one of them at `theta = phi = 0`. The proof has three
+steps:
 
-- it is cut into cells by `theta`; the second image of each cell beyond `inner` lies in the core, and nearer to 0 than
-  the inner edge of the cell, as do those of all cells within; so after one round for each cell an orbit is within
+- the core is cut into cells by `theta`; the second images of each cell beyond `inner`, and of the cells closer to 0,
+  lie in the core and closer to 0 than the inner edge of the cell; so after one round for each cell an orbit is within
   `inner`;
-- over the rectangle about what is within `inner` the derivative of two bounces is at most `M`, entry by entry, and
-  `M*v <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the one that is fixed, at 0;
-- a gate is a wider and shorter set of the same kind, whose second image lies in the core.
+- over a rectangle around the part within `inner` the derivative of two bounces is at most `M`, entry by entry, and
+  `M*v <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the fixed one, at 0;
+- an entry tube is a wider and shorter set of the same kind, whose second image lies in the core.
 
-Table and law are their own mirror images in the axis through the cycle, so that the half `theta >= 0` is enough.
-An orbit that converges to a cycle has the exponents of the cycle, or less. Paper: section 5.3.
+Table and law are symmetric in the axis through the cycle, so the half `theta >= 0` suffices. An orbit that converges to
+the cycle has at most its exponents. Paper: section 5.3.
 """
 
 from dataclasses import dataclass, replace
@@ -20,25 +21,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.flights import Matrix, matrix, times
+from verification.proofs.global_dynamics.flights import Matrix, matrix
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.parallelograms import Parallelograms, carried
+from verification.proofs.starts.parallelograms import Parallelograms, push_forward
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.norms import shrinkage, times
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 ROUND = 2  # bounces of the cycle
-NEARLY = 1 - 2.0**-40  # covers the roundings of a comparison
-CUT = 64, 4  # parts of a rectangle over which the derivative is enclosed
-THICK, COARSER = 1e-3, 205  # of a slab of a gate; and its cells
+NEARLY = 1 - 2.0**-40  # below 1 by more than the rounding of a comparison
+CUT = 64, 4  # a rectangle is cut into so many parts to enclose the derivative
+THICK, COARSER = 1e-3, 205  # the height of a slab of an entry tube, and its number of cells
 UNMOVED = np.zeros(1)
 
 
 @dataclass(frozen=True)
-class Core:
+class AbsorbingTube:
     """The set `|theta| <= outer`, `|phi - p(theta)| <= width` of one component, `p = slope*theta + cubic*theta**3`.
 
-    `gates` are pairs of an `outer` and a `width` of sets that are taken into it.
+    `inner` and `cells` are those of the module docstring; `entry_tubes` are pairs `(outer, width)` of entry tubes.
     """
 
     chart: int
@@ -48,36 +50,36 @@ class Core:
     inner: float
     outer: float
     cells: int
-    gates: tuple[tuple[float, float], ...] = ()
+    entry_tubes: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        sizes = self.inner, *(size for pair in (self.bounds, *self.gates) for size in pair)
+        sizes = self.inner, *(size for pair in (self.bounds, *self.entry_tubes) for size in pair)
         if not (self.cells >= 1 and all(0 < size < np.inf for size in sizes)):
             raise ValueError(f"{self}: accepted: at least one cell, and bounds above 0")
 
-    def holds(self, sets: Parallelograms, *gates: tuple[float, float]) -> Mask:
-        """Which sets lie within the core, or within a set of its kind with one of other pairs of bounds."""
+    def holds(self, sets: Parallelograms, *sizes: tuple[float, float]) -> Mask:
+        """A mask: which sets lie within a tube with one of the given bounds `(outer, width)`, by default its own."""
         theta, phi = sets.middle
         with np.errstate(invalid="ignore"):
             far = sets.reach()
             tilt = self.slope + 3 * self.cubic * theta**2
-            bend = 3 * abs(self.cubic) * (np.abs(theta) + far) * far**2  # of p, beside its tangent
+            bend = 3 * abs(self.cubic) * (np.abs(theta) + far) * far**2  # the distance of p from its tangent
             aside = np.abs(phi - (self.slope + self.cubic * theta**2) * theta) + sets.reach(-tilt, 1.0) + bend
             far += np.abs(theta)
-            found = [(far <= outer * NEARLY) & (aside <= width * NEARLY) for outer, width in gates or (self.bounds,)]
+            found = [(far <= outer * NEARLY) & (aside <= width * NEARLY) for outer, width in sizes or (self.bounds,)]
         return np.asarray((sets.chart == self.chart) & np.logical_or.reduce(found))
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Of the core itself."""
+        """The bounds `(outer, width)` of the tube itself."""
         return self.outer, self.width
 
     def enters(self, sets: Parallelograms) -> Mask:
-        """Which sets lie within the core or one of its gates."""
-        return self.holds(sets, self.bounds, *self.gates)
+        """A mask: which sets lie within the tube or one of its entry tubes."""
+        return self.holds(sets, self.bounds, *self.entry_tubes)
 
     def parts(self, aside: Array = UNMOVED) -> Parallelograms:
-        """Parallelograms that cover the half `theta >= 0`, from 0 outwards, moved by each `aside` in `phi` in turn."""
+        """Parallelograms that cover the half `theta >= 0`, from 0 outwards, shifted in `phi` by each of `aside`."""
         edges = np.linspace(0, self.outer, self.cells + 1)
         middle, half = (edges[1:] + edges[:-1]) / 2, (edges[1:] - edges[:-1]) / 2 * (1 + 1e-9)
         aside, middle, half = (x.ravel() for x in np.broadcast_arrays(aside[:, None], middle, half))
@@ -89,10 +91,10 @@ class Core:
         return Parallelograms(np.full(middle.size, self.chart), np.stack([middle, phi]), sides, rest)
 
 
-def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
-    """Their images after one round, in their order; None where one lands on both sides of a join, or is lost."""
+def after_one_round(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
+    """The images of sets after two bounces, in order; None where one lands on both sides of a join or is not known."""
     for _ in range(ROUND):
-        source, images = carried(map, sets)
+        source, images = push_forward(map, sets)
         order = np.argsort(source, kind="stable")
         if not np.array_equal(source[order], np.arange(sets.chart.size)) or not images.known.all():
             return None
@@ -100,32 +102,32 @@ def twice(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
     return sets
 
 
-def attracts(map: PinballImages, core: Core) -> dict[str, bool]:
-    """Is all of the core taken to the cycle, step by step? The items are those of the module's docstring."""
-    images = twice(map, core.parts())
+def attracts(map: PinballImages, core: AbsorbingTube) -> dict[str, bool]:
+    """The three steps of the module docstring's proof: for each, True if it is proved."""
+    images = after_one_round(map, core.parts())
     if images is None or not map.mirrored:
         return {"orbits come to the middle": False, "they converge there": False, "gates lead in": False}
     far = np.abs(images.middle[0]) + images.reach()
     edges = np.linspace(0, core.outer, core.cells + 1)
     beyond = edges[1:] > core.inner
     nearer = np.maximum.accumulate(far)[beyond] < edges[:-1][beyond] * NEARLY
-    return {  # what begins within the middle stays there, by the first cell beyond; or by the core, if none is beyond
+    return {  # the part within `inner` is invariant by the first cell beyond it, or by the core
         "orbits come to the middle": bool(np.all(nearer) and np.all(core.holds(images))),
         "they converge there": _converges(map, core),
-        "gates lead in": all(_leads(map, core, *gate) for gate in core.gates),
+        "gates lead in": all(_leads(map, core, *each) for each in core.entry_tubes),
     }
 
 
-def _leads(map: PinballImages, core: Core, outer: float, width: float) -> bool:
-    """Is the second image of a gate within the core?"""
+def _leads(map: PinballImages, core: AbsorbingTube, outer: float, width: float) -> bool:
+    """True if the second image of an entry tube is proved to lie within the core."""
     slabs = int(np.ceil(width / THICK))
     one = replace(core, outer=outer, width=width / slabs, cells=COARSER)
-    images = twice(map, one.parts(np.arange(1 - slabs, slabs, 2) * np.float64(width / slabs)))
+    images = after_one_round(map, one.parts(np.arange(1 - slabs, slabs, 2) * np.float64(width / slabs)))
     return images is not None and bool(core.holds(images).all())
 
 
-def _converges(map: PinballImages, core: Core) -> bool:
-    """Do all orbits of the core within `inner` converge to one?"""
+def _converges(map: PinballImages, core: AbsorbingTube) -> bool:
+    """True if all orbits of the core within `inner` are proved to converge to one orbit."""
     end = core.inner
     top = (abs(core.slope) * end + abs(core.cubic) * end**3 + core.width) * (1 + 1e-9)
     whole = Boxes(np.array([core.chart]), (np.array([-end]), np.array([end])), (np.array([-top]), np.array([top])))
@@ -133,25 +135,16 @@ def _converges(map: PinballImages, core: Core) -> bool:
     if entries is None:
         return False
     most = np.array([[float(np.max(entry.magnitude())) for entry in row] for row in entries])
-    vector = _longest(most)
-    return bool(np.all(most @ vector < vector * NEARLY))
-
-
-def _longest(matrix: Array) -> Array:
-    """A vector that a matrix shrinks least, of positive entries, by iteration in float64; of any it is asked."""
-    vector = np.array([1.0, 1.0])
-    for _ in range(50 if np.isfinite(matrix).all() else 0):
-        vector = matrix @ vector / np.max(matrix @ vector)
-    return vector
+    return shrinkage(most[..., None], np.zeros(1, dtype=np.int64)) < 1
 
 
 def derivative(map: PinballImages, boxes: Boxes) -> Matrix | None:
-    """The derivative of two bounces over boxes; None where one lands on both sides of a join."""
+    """The derivative matrix of two bounces over boxes; None where one lands on both sides of a join."""
     total = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
     sets = Parallelograms.about(boxes)
     for _ in range(ROUND):
         found = [(piece, slopes) for piece, slopes in map.derivatives(sets.boxes()) if piece.on.size]
-        source, images = carried(map, sets)
+        source, images = push_forward(map, sets)
         every = np.arange(sets.chart.size)
         if len(found) != 1 or not all(np.array_equal(on, every) for on in (found[0][0].on, source)):
             return None

@@ -1,13 +1,14 @@
-"""What the map does to unstable curves: how it stretches them, and where slope, bend and density go.
+"""The images of unstable curves: their stretching, slope, second derivative and density.
 
-A curve is a graph `phi = g(theta)` on one component, with slope `m = g'`, bend `w = g''` and a density `rho` for each
-unit of `theta`, of which `d = (log rho)'` is known. With `p = bend0 - m` and `N = l*p - cos(phi0)*speed0`, the landing
-moves by `r = N/(speed1*cos(eta1))` for each unit of `theta`. Along the curve the length of the flight changes by
-`l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`, so that the stretching `r` has the logarithmic derivative ::
+A curve is a graph `phi = g(theta)` on one component, with slope `m = g'`, bend `w = g''` and a density `rho` by `theta`
+with `d = (log rho)'`. On the boundary `speed` is the length of the velocity, and `bend0` and `bend1` the rates at which
+the tangent turns at start and landing; `l` is the length of the flight. With `p = bend0 - m` and `N = l*p -
+cos(phi0)*speed0` the stretching (the landing's derivative along the curve) is `r = N/(speed1*cos(eta1))`. The length of
+the flight has the derivative `l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`, so that `log r` has the derivative ::
 
     k = (l'*p - l*w + sin(phi0)*m*speed0 - cos(phi0)*speed0')/N - r*speed1'/speed1 + tan(eta1)*(bend1*r - p)
 
-on components whose bend is constant; others are refused. The image has the slope `-lam*(bend1 - p/r)`, the bend
+on components whose bend is constant; others raise `ValueError`. The image has the slope `-lam*(bend1 - p/r)`, the bend
 `-lam*p*k0/r^2 + lam*cos(phi0)*speed0*w/(r^2*N)`, where `k = k0 + k1*w`, and `d` becomes `(d - k)/r`.
 """
 
@@ -18,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray, common_part, hull, paired, spread, turned, unpaired
-from verification.proofs.global_dynamics.boxes import Boxes, Chart
 from verification.proofs.global_dynamics.flights import OPS, constant_bends, norm
 from verification.proofs.global_dynamics.images import PinballImages
+from verification.rigorous.boxes import Boxes, Chart
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -28,10 +29,10 @@ Mask = NDArray[np.bool_]
 
 
 class Landed(NamedTuple):
-    """Rows, one for each box and each component on which it may land; `smooth` if that is all of the box.
+    """Images of curves in boxes, one row for each box and each component on which it may land.
 
-    Landing and exit, by how much curves are stretched, the slope of their images; the rest is `k0`, `k1`, and the
-    image's bend at a bend 0 and for each unit of it.
+    `smooth` is True if the whole box lands there. `theta` and `phi` enclose landing and exit angle, `stretch` and
+    `slope` those of the images; `k0` and `k1` are coefficients of `k`, and the image's bend is `bend + by_bend*w`.
     """
 
     source: Indices
@@ -48,7 +49,7 @@ class Landed(NamedTuple):
 
 
 class CurveMap(Protocol):
-    """A map of charts that stand side by side, which breaks where curves land on their ends, the joins."""
+    """A map of adjacent charts, which breaks curves where they land on the ends of charts, the joins."""
 
     @property
     def charts(self) -> tuple[Chart, ...]:
@@ -56,15 +57,15 @@ class CurveMap(Protocol):
 
     @property
     def closed(self) -> bool:
-        """Is it one chart that closes, without a join?"""
+        """True if there is one chart, which closes without a join."""
 
     def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
-        """What becomes of curves in boxes, by the ranges of their slopes; infinite radii where it is not known."""
+        """The images of curves in boxes with given ranges of slopes; radii are infinite where not proved."""
 
 
 @dataclass(frozen=True)
 class PinballCurves:
-    """Unstable curves of a scene with the paper's law, on components whose tangents turn evenly."""
+    """Unstable curves of a scene with the paper's law, on components whose tangents turn at a constant rate."""
 
     map: PinballImages
 

@@ -1,48 +1,46 @@
-"""Almost every orbit goes to one of two: a cycle of two bounces, or a trapping region in which no orbit is stable.
+"""Almost every orbit ends in one of two sets: a cycle of two bounces, or a trapping region without stable orbits.
 
-Boxes show where orbits may return. Those within the core of the cycle, or that a bounce takes there, are settled: the
-core is proved to converge to it. So are those of the trapping region. Between them lie unstable cycles, and rings in
-which boxes are too coarse to see orbits drift. What stays in the rest for ever has no area:
+Orbits return only in certain boxes. Some lie in the tube around the cycle, or are mapped there by a bounce, or belong
+to the trapping region. The others surround unstable cycles, or fill annuli in which the boxes are too coarse to prove
+that orbits drift. The points that stay in these for ever have measure 0:
 
 - *Saddles* are clusters of boxes, as in `fates`.
-- A *ring* is the set `low <= |theta| <= high`, `|phi - slope*theta -+ offset| <= width` on the core's component, with
-  the sign of `theta`: two convex parts, mirror images. Over it the derivative `D` of two bounces takes vectors whose
-  slopes `dphi/dtheta` are within `cone` of `slope` to such vectors, with `|dtheta|` larger by `growth > 1` at least.
-  Two points on a line of that slope that stay in the parts, the same at each round, part by this factor; the segment
-  between them lies in the part, which is convex. So a line holds no more than two such points for each sequence of
-  parts. A box of the ring is one of its right or its left part, and the round from either leads to one part only:
-  there is one sequence, and what stays meets each line in one point. It has no area (Fubini).
+- An *annulus* is the set `low <= |theta| <= high`, `|phi - slope*theta -+ offset| <= width` on the tube's component,
+  with the sign of `theta`: two convex parts, mirror images. Over it the derivative of two bounces maps vectors
+  whose slopes `dphi/dtheta` are within `cone` of `slope` to such vectors, and stretches `|dtheta|` by `growth > 1` or
+  more. The distance of two points on a line of that slope, whose orbits visit the same parts, grows by this factor in
+  each round, since the segment between them lies in the convex part. Each box belongs to the right or the left part,
+  and a round from either leads to one part only. So there is one sequence of parts, and the points that stay meet
+  each such line in at most one point. They have measure 0 (Fubini).
 
-For `lam > 0` the map is a diffeomorphism wherever it is smooth, so what comes to a set of no area, or to a join, has
-none. All this is proved for every contraction of a range. Paper: section 5.2.
+For `lam > 0` the map is a diffeomorphism wherever it is smooth, so the points that reach a set of measure 0, or a join,
+have measure 0. The theorem holds for every contraction of a range. Paper: section 5.2.
 """
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.fates import NEAR, clusters
-from verification.proofs.global_dynamics.graph import Grid, Mask, MorseGraph, morse_graph, refined, walked
-from verification.proofs.global_dynamics.images import PinballImages, invertible
+from verification.proofs.global_dynamics.images import PinballImages, RangeTheorem, invertible
 from verification.proofs.global_dynamics.regions import expansion
-from verification.proofs.starts.core import NEARLY, Core, attracts, derivative
-from verification.proofs.starts.parallelograms import Parallelograms, carried
+from verification.proofs.starts.core import NEARLY, AbsorbingTube, attracts, derivative
+from verification.proofs.starts.parallelograms import Parallelograms, push_forward
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.graph import Grid, Mask, MorseGraph, morse_graph, refined, walked
+from verification.rigorous.theorem import hypothesis
 
-CHECKS = ("core", "region", "unstable", "ring", "saddles")
-LONG = 200  # bounces of the walks whose least mean bounds the exponent
-PARTS = 1500  # of a part of the ring, along theta
+LONG = 200  # the length of walks whose least mean bounds the exponent
+PARTS = 1500  # boxes along theta that cover a part of the annulus
 
 
 @dataclass(frozen=True)
-class Ring:
-    """Two convex parts of a component on either side of the cycle, as in the module's docstring."""
+class ExpandingAnnulus:
+    """An annulus as in the module docstring: two convex parts on either side of the cycle."""
 
     low: float
     high: float
@@ -57,19 +55,19 @@ class Ring:
             raise ValueError(f"{self}: accepted: 0 <= low < high, width > 0 and cone > 0")
 
     def part(self, chart: int, side: int) -> Boxes:
-        """Boxes that cover one part."""
+        """Boxes that cover the part on one side (1 or -1)."""
         edges = np.linspace(self.low, self.high, PARTS + 1)
         middle = self.slope * edges + self.offset
         low = np.minimum(middle[:-1], middle[1:]) - self.width
         high = np.maximum(middle[:-1], middle[1:]) + self.width
         x = (edges[:-1], edges[1:]) if side > 0 else (-edges[1:], -edges[:-1])
         y = (low, high) if side > 0 else (-high, -low)
-        slack = 1e-12  # more than the rounding of an edge
+        slack = 1e-12  # above the rounding of an edge
         wide = [(a - slack, b + slack) for a, b in (x, y)]
         return Boxes(np.full(PARTS, chart), *wide)
 
     def sides(self, boxes: Boxes, chart: int) -> NDArray[np.int64]:
-        """In which part each box lies: 1, -1, or 0 for neither."""
+        """The part in which each box lies: 1, -1, or 0 for neither."""
         found = np.zeros(boxes.chart.size, dtype=np.int64)
         for side in (1, -1):
             (left, right), (low, high) = (boxes.x, boxes.y) if side > 0 else (boxes.mirrored().x, boxes.mirrored().y)
@@ -81,7 +79,7 @@ class Ring:
         return found
 
     def stretches(self, map: PinballImages, chart: int) -> bool:
-        """Does the derivative of two bounces keep the cone and stretch its vectors, over both parts?"""
+        """True if the derivative of two bounces is proved to keep the cone and stretch its vectors, over both parts."""
         slopes = hull(self.slope - self.cone, self.slope + self.cone)
         for side in (1, -1):
             entries = derivative(map, self.part(chart, side))
@@ -99,50 +97,43 @@ class Ring:
 
 
 @dataclass(frozen=True)
-class Division:
-    """Almost every orbit converges to the cycle of `core`, or ends in a trapping region, for each `lam` of a range.
+class Division(RangeTheorem):
+    """Almost every orbit converges to the cycle of `tube`, or ends in a trapping region, for each `lam` of a range.
 
-    The cycle has two bounces and is its own mirror image; the grid has `columns` by `rows` cells, in blocks of
-    `coarsest` where orbits do not return. `rate` is a bound for the exponent of every orbit in the region.
+    The cycle has two bounces and is its own mirror image; `grid` is columns and rows, and the graph starts with blocks
+    of `coarsest` cells. `rate` is a lower bound for the exponent of every orbit in the region.
     """
 
-    scene: Scene
-    lam: tuple[Fraction, Fraction]
     grid: tuple[int, int]
     coarsest: int
-    core: Core
-    ring: Ring
+    tube: AbsorbingTube
+    annulus: ExpandingAnnulus
     rate: float
 
     @cached_property
-    def map(self) -> PinballImages:
-        """The map, over all of the range at once; `ValueError` unless the table is convex."""
-        return PinballImages(self.scene, self.lam)
-
-    @cached_property
     def graph(self) -> MorseGraph:
-        """Boxes of all of phase space."""
+        """The Morse graph of boxes that cover phase space."""
         return morse_graph(refined(self.map, Grid(self.map.charts, *self.grid), self.coarsest))
 
     @cached_property
-    def settled(self) -> Mask:
-        """The leaves where orbits may return that lie within the core or its gates, or that a bounce takes there."""
+    def entering(self) -> Mask:
+        """The recurrent leaves that lie in the tube or an entry tube, or are mapped there by one bounce."""
         graph = self.graph.transitions
         some = np.flatnonzero(graph.recurrent[:-1] & graph.leaf)
         boxes = graph.grid.boxes(graph.cells).chosen(some)
         sets = Parallelograms.about(boxes)
-        source, images = carried(self.map, sets)
+        source, images = push_forward(self.map, sets)
         home = np.bincount(source, minlength=some.size) > 0
-        home[source[~self.core.enters(images)]] = False
+        home[source[~self.tube.enters(images)]] = False
         found = np.zeros(graph.count + 1, dtype=bool)
-        found[some] = home | self.core.enters(sets)
+        found[some] = home | self.tube.enters(sets)
         return found
 
     @cached_property
     def region(self) -> Mask | None:
-        """The leaves reached from the attracting Morse sets beside the core; None where they are no trapping region."""
+        """The leaves reached from attracting Morse sets away from the core; None if they are no trapping region."""
         graph = self.graph.transitions
-        beside = [i for i in self.graph.attracting if not np.all(self.settled[self.graph.sets[i]])]
+        beside = [i for i in self.graph.attracting if not np.all(self.entering[self.graph.sets[i]])]
         if not beside:
             return None
         found = np.logical_or.reduce([self.graph.trapping(i) for i in beside])
@@ -150,39 +141,51 @@ class Division:
         at_cycle = [(low <= 0) & (high >= 0) for low, high in (boxes.x, boxes.y)]
         return None if found[-1] or np.any(at_cycle[0] & at_cycle[1]) else found
 
-    @cached_property
-    def checks(self) -> dict[str, bool | None]:
-        """What is proved, item by item; None where nothing is."""
-        found: dict[str, bool | None] = dict.fromkeys(CHECKS)
-        if not (invertible(self.map) and self.lam[0] > 0):
-            return found
-        found["core"] = all(attracts(self.map, self.core).values()) or None
+    @hypothesis
+    def core(self) -> bool:
+        """All orbits in the tube converge to the cycle."""
+        return all(attracts(self.map, self.tube).values())
+
+    @hypothesis(name="region")
+    def region_traps(self) -> bool:
+        """The region is trapping, and does not contain the cycle."""
+        return self.region is not None
+
+    @hypothesis
+    def unstable(self) -> bool:
+        """Every orbit in the region has an exponent of at least `rate`, above 0."""
+        graph = self.graph.transitions
         if self.region is None:
-            return found
-        found["region"] = True
-        graph, returning = self.graph.transitions, self.graph.transitions.recurrent
-        low = expansion(self.map, graph, self.region & returning, LONG, 1).low
-        found["unstable"] = low >= self.rate > 0 or None
-        rest = returning & ~self.region & ~self.settled
-        around = self._around(rest)
-        found["ring"] = self.ring.stretches(self.map, self.core.chart) or None
-        others = clusters(self.map, graph, NEAR, rest & ~around)
-        few = others is not None and all(not p.sink and p.factor is not None and p.factor < 1 for p in others)
-        found["saddles"] = few or None
-        return found
+            return False
+        return expansion(self.map, graph, self.region & graph.recurrent, LONG, 1).low >= self.rate > 0
+
+    @hypothesis
+    def ring(self) -> bool:
+        """Two bounces keep the cone of the annulus, and stretch its vectors."""
+        return self.annulus.stretches(self.map, self.tube.chart)
+
+    @hypothesis
+    def saddles(self) -> bool:
+        """The other recurrent boxes belong to saddles; the map is a diffeomorphism where it is smooth."""
+        if self.region is None or not (invertible(self.map) and self.lam[0] > 0):
+            return False
+        graph = self.graph.transitions
+        rest = graph.recurrent & ~self.region & ~self.entering
+        others = clusters(self.map, graph, NEAR, rest & ~self._around(rest))
+        return others is not None and all(not p.sink and p.factor is not None and p.factor < 1 for p in others)
 
     def _around(self, rest: Mask) -> Mask:
-        """The leaves of the rest whose orbits, while they stay, are at every other bounce in the ring.
+        """The leaves of `rest` whose orbits, while they stay, are in the annulus at every other bounce.
 
-        They are strongly connected parts of the rest in which each walk goes from one component to the other, with
-        all boxes on the core's component in a part of the ring. A box leads, in two steps, to one part only.
+        They form strongly connected parts of `rest` in which walks alternate between the components, with all boxes on
+        the core's component in one part of the annulus, from which two steps lead to one part only.
         """
         graph = self.graph.transitions
         some = np.flatnonzero(rest[:-1])
         inner = walked(graph.edges[:-1, :-1][some][:, some].tocsr())
         count, labels = connected_components(inner, directed=True, connection="strong")
         boxes = graph.grid.boxes(graph.cells).chosen(some)
-        sides, own = self.ring.sides(boxes, self.core.chart), boxes.chart == self.core.chart
+        sides, own = self.annulus.sides(boxes, self.tube.chart), boxes.chart == self.tube.chart
         good = np.ones(count, dtype=bool)
         good[labels[own & (sides == 0)]] = False
         source, target = np.repeat(np.arange(some.size), np.diff(inner.indptr)), inner.indices
@@ -194,8 +197,3 @@ class Division:
         found = np.zeros(graph.count + 1, dtype=bool)
         found[some] = good[labels]
         return found
-
-    @property
-    def proved(self) -> bool:
-        """Is all of it proved?"""
-        return all(value is True for value in self.checks.values())

@@ -1,15 +1,15 @@
-"""Labels of the pieces of unstable curves, column by column, and which labels their images have.
+"""Pieces of unstable curves, labelled by cells of a grid, and the labels of their images.
 
-Each chart is cut into columns, and each column into rows. A piece of a curve is the part of it over one column, and
-its label the row in which it crosses the middle of the column; a piece that ends before is continued along its
-tangent. Each label has a range of slopes, its cone, which holds all slopes of its pieces: so they lie in a sheared
-cell. The map takes the middle of the cell to a known place, stretches by known factors and gives slopes in a known
-range, so that it is known which columns the image meets, and where it crosses their middles: an image is continued
-into the middle by slopes of its own cone or of those of the column. A cell from which curves may land on a join is
-`broken`: of its images the landings are known, on all components. So is one whose middle is lost.
+Each chart is cut into columns, and each column into rows. A piece of a curve is the part of it over one column, and its
+label the row in which it crosses the middle of the column; a piece that ends before is continued along its tangent.
+Each label has a range of slopes, its cone, which holds all slopes of its pieces, so these lie in a sheared cell.
+Enclosures of the image of the middle, of the stretching and of the slopes of images say which columns an image meets,
+and where it crosses their middles; an image is continued to the middle by slopes of its own cone or of those of the
+column. A label is `broken` if its curves may land on a join, or if the image of the middle is not enclosed; then only
+the landings of its images are known.
 
-`standard_pairs.pairs` finds cones and labels together, from what segments of a trapping region become: the images of
-all slopes of a label lie in the cones of all labels that they may have. The ranges of bends and densities come next.
+`standard_pairs.pairs` finds labels and cones, starting with images of segments: the slopes of images of a label lie in
+the cones of all labels that the images may have. Then it finds the ranges of bends and densities.
 """
 
 from typing import NamedTuple
@@ -18,20 +18,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.graph import BLOCK, ranges
 from verification.proofs.starts.curves import CurveMap, Landed
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.graph import BLOCK, ranges
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Range = tuple[Array, Array]
-PAD, SLOP = 1e-7, 1e-12  # of a cell; of a landing: more than the roundings in float64
-MOST = 1 << 19  # labels
+PAD, SLOP = 1e-7, 1e-12  # in cells; in landings: both above the rounding of float64
+MOST = 1 << 19  # the most labels
 
 
 class Targets(NamedTuple):
-    """Ranges of rows, one for each source and each column that its images may meet."""
+    """Ranges of rows, one for each source and each column that images of the source may meet."""
 
     source: Indices
     chart: Indices
@@ -41,7 +41,7 @@ class Targets(NamedTuple):
 
 
 class Cast(NamedTuple):
-    """What is known of the images of all labels: rows of `landed`, with the label and the part of the column."""
+    """The images of all labels: rows of `landed`, each with its label and the part of the column that is mapped."""
 
     landed: Landed
     label: Indices
@@ -55,8 +55,11 @@ class Cast(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """Columns met by images of unbroken labels, in order; where in the source, between 0 and 1 along the image, the
-    image leaves each of them, at the earliest and at the latest; `last` of its label."""
+    """The columns that images of unbroken labels meet, in order along each image.
+
+    `leaves` is where, from 0 to 1 along the source, the image leaves each column, at the earliest and at the latest;
+    `last` marks the last column of a label.
+    """
 
     targets: Targets
     leaves: Range
@@ -64,14 +67,14 @@ class Spread(NamedTuple):
 
 
 def reduced(how: np.ufunc, size: int, at: Indices, values: Array) -> Array:
-    """The least or greatest of the values at each place."""
+    """For each index below `size`, the least (`np.minimum`) or greatest of the `values` at it."""
     found = np.full(size, np.inf if how is np.minimum else -np.inf)
     how.at(found, at, values)
     return found
 
 
-def mapped(map: CurveMap, boxes: Boxes, slopes: BallArray) -> Landed:
-    """What becomes of curves in any number of boxes, in blocks of them."""
+def image_labels(map: CurveMap, boxes: Boxes, slopes: BallArray) -> Landed:
+    """The images of curves in any number of boxes, computed in blocks."""
     rows = []
     for start in range(0, boxes.chart.size, BLOCK):
         some = slice(start, start + BLOCK)
@@ -84,7 +87,7 @@ def mapped(map: CurveMap, boxes: Boxes, slopes: BallArray) -> Landed:
 
 
 class Labels:
-    """Labels in use, their cones, and the ranges of bends and densities of their pieces."""
+    """The labels in use, with their cones, and the ranges of bends and densities of their pieces."""
 
     def __init__(self, map: CurveMap, columns: int, rows: int, parts: int = 4) -> None:
         if parts % 2:
@@ -97,7 +100,7 @@ class Labels:
         self.high = np.array([c.y[1] - c.y[0] for c in map.charts]) / rows
         self.kept = np.array([c.kept for c in map.charts])
         self.shape = size.size, int(self.columns.max()), rows
-        self.known, self.number = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)  # cells in order
+        self.known, self.number = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)  # sorted cell numbers
         self.chart, self.column, self.row = (np.zeros(0, dtype=np.int64) for _ in range(3))
         self.low, self.top = np.zeros(0), np.zeros(0)
 
@@ -106,7 +109,7 @@ class Labels:
         return int(self.chart.size)
 
     def add(self, chart: Indices, column: Indices, row: Indices) -> int:
-        """New labels, and how many."""
+        """Adds labels at these cells, and returns the number of new ones."""
         flat = np.unique(np.ravel_multi_index((chart, column, row), self.shape))
         flat = np.setdiff1d(flat, self.known, assume_unique=True)
         if self.count + flat.size > MOST:
@@ -126,7 +129,7 @@ class Labels:
         return found
 
     def cells(self) -> tuple[Boxes, Indices, Indices]:
-        """The sheared cells in parts, with the label and the number of the part."""
+        """The sheared cells, cut into parts, with the label and the index of each part."""
         label = np.repeat(np.arange(self.count), self.parts)
         part = np.tile(np.arange(self.parts), self.count)
         chart, ends, sides = self.chart[label], [], []
@@ -139,9 +142,9 @@ class Labels:
         return Boxes(chart, (ends[0] - slop, ends[1] + slop), y), label, part
 
     def cast(self) -> Cast:
-        """The images of all labels; `ValueError` where nothing is known, or curves are not stretched one way."""
+        """The images of all labels; `ValueError` where a stretching is not bounded away from 0, or changes sign."""
         boxes, label, part = self.cells()
-        landed = mapped(self.map, boxes, hull(self.low, self.top)[label])
+        landed = image_labels(self.map, boxes, hull(self.low, self.top)[label])
         own, count = label[landed.source], self.count
         r = landed.stretch
         known = [np.isfinite(x.r) for x in landed[3:]]
@@ -149,9 +152,9 @@ class Labels:
             raise ValueError("a curve's stretching is not bounded away from 0; give finer cells, or there is no cone")
         x, foot = self.middles(self.chart, self.column), self.bottom[self.chart] + self.row * self.high[self.chart]
         line = Boxes(self.chart, (x - 1e-15, x + 1e-15), (foot - SLOP, foot + self.high[self.chart] + SLOP))
-        middle = mapped(self.map, line, BallArray(np.zeros(count)))
+        middle = image_labels(self.map, line, BallArray(np.zeros(count)))
         broken = np.bincount(middle.source, minlength=count) != 1
-        lost = ~(np.isfinite(middle.theta.r) & np.isfinite(middle.phi.r))  # what processors make of nan differs
+        lost = ~(np.isfinite(middle.theta.r) & np.isfinite(middle.phi.r))  # NaN differs between processors
         broken[middle.source[~middle.smooth | lost]] = True
         broken[own[~landed.smooth]] = True
         broken[label[np.bincount(landed.source, minlength=label.size) != 1]] = True
@@ -181,7 +184,7 @@ class Labels:
         return found[0], found[1]
 
     def across(self, chart: Indices, theta: Range) -> tuple[Indices, Indices, Indices]:
-        """The row, the chart and the column for every column that landings may lie in; beyond the last for a turn."""
+        """All columns that landings may lie in, as index of the landing, chart, column; beyond the last for a turn."""
         first, last = ((end - self.left[chart]) / self.wide[chart] for end in theta)
         low, high = np.floor(first - PAD).astype(np.int64), np.floor(last + PAD).astype(np.int64)
         if not self.map.closed:
@@ -192,7 +195,7 @@ class Labels:
     def crossed(
         self, source: Indices, chart: Indices, column: Indices, phi: Range, way: Range, slopes: Range, hulls: Range
     ) -> Targets:
-        """Rows in which a curve crosses the middle of a column: from `phi`, by a way and back and forth within it."""
+        """The rows in which a curve crosses the middle of a column, from `phi` along `way` and within the column."""
         column = column % self.columns[chart]
         low = np.minimum(hulls[0][chart, column], slopes[0])
         high = np.maximum(hulls[1][chart, column], slopes[1])
@@ -207,7 +210,7 @@ class Labels:
         return Targets(source, chart, column, bottom, top)
 
     def cut_off(self, chart: Indices, phi: BallArray) -> Range:
-        """Exit angles, not beyond charts that the map keeps to."""
+        """Ranges of exit angles, cut off at the ends of charts that the map stays in."""
         low, high = self.bottom[chart], self.bottom[chart] + self.rows * self.high[chart]
         kept = self.kept[chart]
         return (
@@ -216,7 +219,7 @@ class Labels:
         )
 
     def scattered(self, landed: Landed, which: Indices, source: Indices, hulls: Range) -> Targets:
-        """The labels of images of which only the landings are known."""
+        """The labels of images whose landings only are known."""
         chart, phi = landed.chart[which], self.cut_off(landed.chart[which], landed.phi[which])
         row, charts, column = self.across(chart, (landed.theta.lower()[which], landed.theta.upper()[which]))
         half, slopes = self.wide[charts] / 2 * (1 + PAD), landed.slope[which]
@@ -226,7 +229,7 @@ class Labels:
         )  # fmt: skip
 
     def spread(self, cast: Cast, hulls: Range) -> Spread:
-        """The labels of images of unbroken pieces, in order along the image."""
+        """The labels of the images of unbroken labels, in order along the image."""
         whole = np.flatnonzero(~cast.broken)
         order = np.zeros((self.count, self.parts), dtype=np.int64)
         order[cast.label, cast.part] = np.arange(cast.label.size)
@@ -264,7 +267,7 @@ class Labels:
         return Spread(targets, (leaves[0] - SLOP, leaves[1] + SLOP), last)
 
     def named(self, targets: Targets) -> tuple[Indices, Indices]:
-        """Each label that targets hold, with the number of the target; -1 where it is not in use."""
+        """The labels in each target, with the index of the target; -1 for a cell that is not in use."""
         entry = np.repeat(np.arange(targets.source.size), targets.top - targets.bottom + 1)
         row = ranges(targets.bottom, targets.top + 1)
         cell = np.ravel_multi_index((targets.chart[entry], targets.column[entry], row), self.shape)

@@ -1,8 +1,9 @@
-"""The mean of `nu_plus` over random starts on the cuspless table is negative where a chaotic attractor is born.
+"""The mean of the larger exponent `nu_plus` over random starts on the cuspless table is negative near `lambda*`.
 
-With the share `u` of starts that are not proved to end on period 2, the exponent `nu < 0` of that cycle and a bound
-`M` for every orbit, the mean is at most `(1 - u)*nu + u*M`. All hold for every contraction from `LOW` to `HIGH`, and
-`lambda*` lies between. Paper: section 5.3.
+Let `u` bound the share of starts that are not proved to converge to the cycle of period 2, let `nu < 0` be the exponent
+of that cycle, and `M` a bound for the exponents of all orbits. Then the mean is at most `(1 - u)*nu + u*M`. This is
+proved for every contraction from `LOW` to `HIGH`, with `lambda*`, where a chaotic attractor is born, between. Paper:
+section 5.3.
 """
 
 from dataclasses import dataclass
@@ -15,30 +16,30 @@ from sympy import Expr, Interval, Rational, S, integrate, log, pi
 
 from symbolic import Scene
 from symbolic.cycles.cycle import cuspless_horizontal, trace_and_determinant
-from symbolic.expressions.signs import Finding, conjunction, positive
+from symbolic.expressions.signs import SignFinding, conjunction, positive
 from symbolic.tables.geometry import velocity
 from symbolic.tables.table import Table, lam, theta
 from verification.arithmetic.arrays import hull
 from verification.arithmetic.balls import enclose, working
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.core import Core, attracts
-from verification.proofs.starts.strips import bounded, speeds, strips, unsettled
+from verification.proofs.starts.core import AbsorbingTube, attracts
+from verification.proofs.starts.strips import bounded, remainder, speeds, strips
 
 LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
-GATES = (0.405, 0.003), (0.4, 0.006), (0.38, 0.012), (0.36, 0.03)
-CORE = Core(chart=1, slope=0.0707, cubic=-0.0233, width=0.0006, inner=0.05, outer=0.41, cells=410, gates=GATES)
-MULTIPLIER = Rational(928, 1000)  # both multipliers of period 2 are smaller in modulus
-RATE, BOUNCES, WEIGHT = Fraction("0.52"), 2, 0.05  # nu_plus of every orbit is smaller; the norm that says so
-COLUMNS, ROWS = (512, 64), 48  # strips at first
-MESH = 2000  # points of each component, between which the diameter is measured
-ENOUGH = 0.98  # of the measure at which the mean would be 0
+ENTRY_TUBES = (0.405, 0.003), (0.4, 0.006), (0.38, 0.012), (0.36, 0.03)
+CORE = AbsorbingTube(1, 0.0707, -0.0233, width=0.0006, inner=0.05, outer=0.41, cells=410, entry_tubes=ENTRY_TUBES)
+MULTIPLIER = Rational(928, 1000)  # a bound of the moduli of the multipliers of period 2
+RATE, BOUNCES, WEIGHT = Fraction("0.52"), 2, 0.05  # bound of nu_plus; bounces and weight of the norm that proves it
+COLUMNS, ROWS = (512, 64), 48  # of the first strips
+MESH = 2000  # points of each component, for the diameter
+ENOUGH = 0.98  # relative to the measure of undecided starts at which the mean would be 0
 BITS = 64
 SLACK = 1 + 2.0**-40
 
 
 @dataclass(frozen=True)
 class Average:
-    """What is proved of the mean: of each step whether it is, and bounds."""
+    """The bound of the mean: `checks` for each step of the proof, `share` and `mean` as bounds."""
 
     checks: dict[str, bool]
     share: float
@@ -61,7 +62,7 @@ def area(table: Table) -> Expr:
 
 
 def diameter(map: PinballImages) -> float:
-    """A bound for the distance of two points of the boundary: of a mesh, and what lies between its points.
+    """An upper bound of the diameter of a table, from a mesh of boundary points and the distance between neighbours.
 
     >>> cuspless = PinballImages(Scene("cuspless", lam="1/2"))
     >>> 0 < diameter(cuspless) - 1.5 * 3**0.5 < 0.01
@@ -79,15 +80,15 @@ def diameter(map: PinballImages) -> float:
     return (most + gap) * SLACK
 
 
-def stable(trace: Expr, det: Expr, low: Fraction, high: Fraction) -> Finding:
-    """Are both multipliers smaller than `MULTIPLIER` in modulus, for every contraction of the range? By Jury."""
+def stable(trace: Expr, det: Expr, low: Fraction, high: Fraction) -> SignFinding:
+    """The finding that both multipliers are below `MULTIPLIER` in modulus, for the whole range (Jury test)."""
     r, box = MULTIPLIER, {lam: Interval(Rational(str(low)), Rational(str(high)))}
     return conjunction(*(positive(x, box) for x in (r**2 - trace * r + det, r**2 + trace * r + det, r**2 - det)))
 
 
 @cache
 def average(low: Fraction = LOW, high: Fraction = HIGH) -> Average:
-    """The bound for every contraction of a range about `lambda*`; the mean is infinite where a step is not proved."""
+    """The bound for every contraction of a range around `lambda*`; infinite where a step is not proved."""
     map = PinballImages(Scene("cuspless", lam=str(high)), (low, high))
     trace, det = trace_and_determinant(cuspless_horizontal())
     checks = attracts(map, CORE)
@@ -97,7 +98,7 @@ def average(low: Fraction = LOW, high: Fraction = HIGH) -> Average:
     with working(BITS):
         ratio = float((arb(diameter(map)) / (2 * enclose(pi * area(map.map.table)).real)).upper())
     enough = -nu / (rate - nu) / ratio * ENOUGH
-    left = unsettled(map, CORE, strips(map, COLUMNS, ROWS), enough)
+    left = remainder(map, CORE, strips(map, COLUMNS, ROWS), enough)
     share = left.measure * ratio * SLACK
     mean = ((1 - share) * nu + share * rate) if share < 1 and all(checks.values()) else np.inf
     return Average(checks, share, mean + 1e-12, left.strips)

@@ -1,8 +1,8 @@
-"""Standard pairs of a trapping region: labels, cones, bends and densities that the map keeps.
+"""Standard pairs of a trapping region: curves whose bounds of slope, bend and density the map preserves.
 
-Short segments, of two slopes about 0, are followed for some bounces through the boxes of the region; what they are
-then has labels. `pairs` finds all labels that follow, with cones that hold the images of all slopes, and then ranges
-for bends and for `d = (log rho)'`; see `labels` and `curves`.
+Short segments with slopes near 0 are followed for some bounces through the boxes of the region; their images have
+labels. `pairs` finds all labels of later images, with cones that hold their slopes, and then ranges for bends and for
+`d = (log rho)'`, the logarithmic derivative of the density; see `labels` and `curves`.
 """
 
 from collections.abc import Callable
@@ -11,19 +11,19 @@ from typing import NamedTuple
 import numpy as np
 
 from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics.boxes import Boxes, Images
-from verification.proofs.global_dynamics.graph import Cells, Grid, ranges
 from verification.proofs.starts.curves import CurveMap, Landed
 from verification.proofs.starts.labels import Array, Cast, Indices, Labels, Range, Spread, Targets, reduced
+from verification.rigorous.boxes import Boxes, Images
+from verification.rigorous.graph import Cells, Grid, ranges
 
 ROUNDS, WIDER = 80, 0.01
-LARGEST = 1e6  # bends and densities
-BOUNCES = 8  # before the first labels
-TILT = 1e-6  # slopes of the first segments
+LARGEST = 1e6  # the largest bends and logarithmic derivatives of densities
+BOUNCES = 8  # before labels are given
+TILT = 1e-6  # the largest slope of the first segments
 
 
 class First(NamedTuple):
-    """What short segments of a trapping region become: rows of images, with ranges of bends and densities."""
+    """Images of short segments of a trapping region after some bounces, with ranges of bends and densities."""
 
     landed: Landed
     bend: BallArray
@@ -31,9 +31,9 @@ class First(NamedTuple):
 
 
 def first(map: CurveMap, grid: Grid, cells: Cells, bounces: int = BOUNCES) -> First:
-    """Segments of small slopes in the boxes of a trapping region, after some bounces."""
+    """The images of segments with small slopes in the boxes of a trapping region, after some bounces."""
     boxes, count = grid.boxes(cells), cells.chart.size
-    names = grid.painted(cells, np.arange(count), -1)
+    names = grid.to_array(cells, np.arange(count), -1)
     zero = np.zeros(count)
     slopes, bends, density = hull(zero - TILT, zero + TILT), hull(zero, zero), hull(zero, zero)
     for bounce in range(bounces):
@@ -46,7 +46,7 @@ def first(map: CurveMap, grid: Grid, cells: Cells, bounces: int = BOUNCES) -> Fi
             break
         ends = ((end.lower(), end.upper()) for end in (landed.theta, landed.phi))
         places = Boxes(landed.chart, *ends)
-        met = grid.met(Images(np.arange(on.size), places, np.zeros(0, dtype=np.int64)))
+        met = grid.met(Images.exact(places))
         wide = np.repeat(np.arange(on.size), met.right - met.left + 1)
         column = ranges(met.left, met.right + 1) % grid.columns
         entry = np.repeat(np.arange(wide.size), (met.top - met.bottom + 1)[wide])
@@ -59,14 +59,14 @@ def first(map: CurveMap, grid: Grid, cells: Cells, bounces: int = BOUNCES) -> Fi
 
 
 def pushed(value: BallArray, source: Indices, to: Indices, count: int) -> BallArray:
-    """The hull of what comes to each box; 0 where nothing does."""
+    """The hull of the values pushed to each box from `source`; 0 where there are none."""
     low = reduced(np.minimum, count, to, value.lower()[source])
     high = reduced(np.maximum, count, to, value.upper()[source])
     return hull(np.where(low > high, 0.0, low), np.where(low > high, 0.0, high))
 
 
 def kept(start: Range, step: Callable[[Range], Range]) -> Range:
-    """Ranges that hold a start and are taken into themselves; `ValueError` if they grow on and on."""
+    """Ranges that hold `start` and are mapped into themselves by `step`; `ValueError` if they grow without end."""
     low, high = start
     for _ in range(5 * ROUNDS):
         more = (high - low) * WIDER / 5 + 1e-9
@@ -81,7 +81,7 @@ def kept(start: Range, step: Callable[[Range], Range]) -> Range:
 
 
 class Pairs(NamedTuple):
-    """Labels, their images in order or scattered, all edges, and a bound for `abs(d)` of each label."""
+    """Labels, their images (in order along curves, or scattered), all edges, and a bound for `abs(d)` of each label."""
 
     labels: Labels
     cast: Cast
@@ -92,7 +92,7 @@ class Pairs(NamedTuple):
 
 
 def pairs(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, parts: int = 4) -> Pairs:
-    """The standard pairs that segments in a trapping region become; `ValueError` says what is not proved."""
+    """The standard pairs to which segments in a trapping region are mapped; `ValueError` says what is not proved."""
     start, labels = first(map, grid, cells), Labels(map, columns, rows, parts)
     everything, charts = np.arange(start.landed.source.size), len(map.charts)
     none = np.full((charts, int(labels.columns.max())), np.inf)
@@ -132,7 +132,7 @@ def pairs(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, part
 def densities(
     start: First, begun: tuple[Indices, Indices], cast: Cast, edges: tuple[Indices, Indices], count: int
 ) -> Array:
-    """Bounds for `abs((log rho)')` on pieces of each label; ranges of bends come first."""
+    """Bounds for `abs((log rho)')` on pieces of each label, computed after the ranges of bends."""
     landed, own = cast.landed, cast.label
 
     def ends(value: BallArray, at: Indices, edge: tuple[Indices, Indices], size: int) -> Range:

@@ -1,20 +1,20 @@
-"""How many random starts are proved to end on a cycle, and what this makes of the mean of their exponents.
+"""A bound for the share of random starts that are not proved to converge to a cycle, and a bound for all exponents.
 
-A start is a chord that meets the boundary at `theta`, with incidence `eta`. Points uniform in a table of area `A`, with
-uniform directions, give chords the density `l*cos(eta)/(2*pi*A)` in `ds*deta`, with their length `l` (Santalo's
-formula): at most `D/(2*pi*A)` times `cos(eta)`, with the diameter `D`. Elastic bounces keep `cos(eta)*ds*deta`, so the
-bound holds at the second landing too, when the first bounce is elastic (the paper's appendix). It holds for starts
-uniform in `s` and `sin(eta)` as well, of density `1/(2*L)` with the perimeter `L`: by `L <= pi*D` and `4*pi*A <= L*L`
-of a convex table, `pi*A <= D*L`. So one number bounds the three shares of starts that are *not* proved to end on
-the cycle: the measure `cos(eta)*ds*deta` of what is left, times `D/(2*pi*A)`.
+A start is a chord that meets the boundary at `theta`, with incidence `eta`. For uniform points and directions in a
+table of area `A`, chords of length `l` have the density `l*cos(eta)/(2*pi*A)` in `ds*deta` (Santalo's formula), at most
+`D/(2*pi*A)` times `cos(eta)`, with the diameter `D`. Elastic bounces preserve `cos(eta)*ds*deta`, so the bound holds at
+the second landing too, when the first bounce is elastic (the paper's appendix). It also holds for starts uniform in `s`
+and `sin(eta)`, of density `1/(2*L)` with the perimeter `L`: on a convex table `L <= pi*D` and `4*pi*A <= L*L`, so `pi*A
+<= D*L`. So one number bounds the share of undecided starts for all three distributions: their measure in
+`cos(eta)*ds*deta`, times `D/(2*pi*A)`.
 
-The plane of `theta` and `eta` is cut into strips between two straight lines, which lean as stable curves do, so that a
-strip stays thin. One is settled when every parallelogram of its images comes to the core of the cycle, or a gate of it;
-the others are cut in two. The table is its own mirror image in the axis through the cycle: `eta >= 0` is enough.
+The plane of `theta` and `eta` is cut into strips between two lines in the direction of stable curves, so that images of
+strips stay thin. A strip is decided when every parallelogram of its images reaches the cycle's tube, or an entry tube;
+the others are cut in two. The table is symmetric in the axis through the cycle, so `eta >= 0` suffices.
 
-Of any orbit `nu_plus`, the upper limit, is at most the logarithm of the largest norm of the derivative of two bounces,
-over two. Starts that ever come to a join have measure 0, since the map's determinant vanishes nowhere for `lam > 0`.
-All this is proved for every contraction of a range. Paper: section 5.3 and the appendix.
+For every orbit `nu_plus` (as an upper limit) is at most half the logarithm of the largest norm of the derivative of two
+bounces. Starts whose orbits meet a join have measure 0, since the map's determinant is not 0 for `lam > 0`. The bounds
+hold for every contraction of a range. Paper: section 5.3 and the appendix.
 """
 
 from math import exp
@@ -25,30 +25,31 @@ from numpy.typing import NDArray
 
 from numeric import PinballMap
 from verification.arithmetic.arrays import BallArray, hull, turned
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.flights import Matrix, matrix, norm, times
+from verification.proofs.global_dynamics.flights import Matrix, matrix, norm
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.chords import Chords
-from verification.proofs.starts.core import Core
-from verification.proofs.starts.parallelograms import Parallelograms, carried
+from verification.proofs.starts.chords import ChordFlights
+from verification.proofs.starts.core import AbsorbingTube
+from verification.proofs.starts.parallelograms import Parallelograms, push_forward
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.norms import times
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
-SLACK = 1 + 2.0**-40  # covers the roundings of a sum
-MIDDLE = 1e-14  # more than the rounding of a midpoint
-WIDE = 0.05  # distance of these orbits, at most
-WIDEST = 0.3  # a parallelogram that is wider is given up
-LOOK, BLOCK = 1 << 12, 1 << 15  # strips at once: in float64, and closely
-FEW = 0.08  # the share of strips that are cut rather than followed on when all others have come home or failed
-LEAN = 5  # bounces after which strips that lean as they do are thinnest
-STEEPEST = 0.3  # of lines, in theta by eta
-MORE = 2.0  # times what has to be settled is looked at closely, the widest first: some of it fails
-CORNERS = (-1, -1, 1, 1), (-1, 1, -1, 1)  # across and along a strip: orbits looked at before anything is proved
-BENT = 1.0  # how much more than its first side a parallelogram may owe to the rest, before a strip is cut across
-EARLY = 1  # the bounce after which that is looked at
+SLACK = 1 + 2.0**-40  # above 1 by more than the rounding of a sum
+MIDDLE = 1e-14  # above the rounding of a midpoint
+WIDE = 0.05  # the largest distance between corner orbits
+WIDEST = 0.3  # the widest parallelogram that is followed
+LOOK, BLOCK = 1 << 12, 1 << 15  # strips in one call: in float64, and in balls
+FEW = 0.08  # when only this share of strips is undecided, they are cut and no longer followed
+LEAN = 5  # bounces after which strips in the chosen direction are thinnest
+STEEPEST = 0.3  # the largest slope d theta/d eta of lines
+MORE = 2.0  # strips of this multiple of the needed measure are examined in balls, as some fail
+CORNERS = (-1, -1, 1, 1), (-1, 1, -1, 1)  # across and along a strip: starts of float64 orbits
+BENT = 1.0  # the largest ratio of rest to first side before a strip is cut across
+EARLY = 1  # the bounce after which that ratio is tested
 BOUNCES = 20
-FIRST = 128, 4  # parts of a component over which the norm is asked first
+FIRST = 128, 4  # the first parts of a component over which the norm is bounded
 QUARTER = 1.5707963267948968  # above pi/2
 
 
@@ -69,7 +70,7 @@ class Strips(NamedTuple):
         return Strips(chart[chosen], *(field[chosen] for field in fields))
 
     def cut(self, across: Mask) -> "Strips":
-        """Each cut in two: by a line in its middle, or where `across` says so at its middle `eta`."""
+        """Each strip cut in two along its length, or, where `across` is True, at its middle `eta`."""
         down, flat = self.some(~across), self.some(across)
         line, lean = (down.left + down.right) / 2, (down.left_lean + down.right_lean) / 2
         parts = [down._replace(right=line, right_lean=lean), down._replace(left=line, left_lean=lean)]
@@ -80,7 +81,7 @@ class Strips(NamedTuple):
         return joined(parts)
 
     def started(self, map: PinballImages) -> Parallelograms:
-        """Parallelograms about the phase points after the bounce, `phi = -lam*eta`."""
+        """Parallelograms that hold the phase points after the bounce, with `phi = -lam*eta`."""
         lean, lam = (self.left_lean + self.right_lean) / 2, map.lam
         middle, exit = (self.left + self.right) / 2, -(lam * BallArray(self.middle))
         wide, tall = (self.right - self.left) / 2 * (1 + 1e-12), self.half * (1 + 1e-12)
@@ -91,9 +92,9 @@ class Strips(NamedTuple):
         return Parallelograms(self.chart, np.stack([middle, exit.m]), sides, rest)
 
     def measures(self, map: PinballImages) -> Array:
-        """Bounds for the integrals of `cos(eta)*ds*deta` over the strips."""
+        """Upper bounds for the integrals of `cos(eta)*ds*deta` over the strips."""
         sway = [np.abs(lean) * self.half for lean in (self.left_lean, self.right_lean)]
-        whole = hull(self.left - sway[0], self.right + sway[1])  # of lines that do not cross
+        whole = hull(self.left - sway[0], self.right + sway[1])  # the lines do not cross
         speed = speeds(map, self.chart, whole).upper()
         low = np.maximum(np.abs(self.middle) - self.half, 0.0)
         cosine = turned(BallArray(low))[0].upper()
@@ -109,9 +110,9 @@ def joined(parts: list[Strips]) -> Strips:
 
 
 def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
-    """Strips that cover all `theta` and `0 <= eta <= pi/2`; how they lean is a guess from float64 orbits.
+    """Strips that cover all `theta` and `0 <= eta <= pi/2`, in the direction of stable curves by float64 orbits.
 
-    `columns` are as many numbers as the table has components; `ValueError` if not, since a start would be in no strip.
+    `columns` has one number for each component of the table; `ValueError` if not.
     """
     if len(columns) != len(map.charts) or min(rows, *columns) < 1:
         raise ValueError(f"strips: columns = {columns}, rows = {rows}; accepted: 1 or more, for each component")
@@ -137,7 +138,7 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
 
 
 def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
-    """`d theta/d eta` of curves that a few bounces make short: a row for each `eta`, a column for each `theta`."""
+    """The slopes `d theta/d eta` of curves that a few bounces contract: rows for `eta`, columns for `theta`."""
     lam = float(np.max(map.lam))
     inside, on = np.clip(theta, theta[0] + 1e-6, theta[-1] - 1e-6), np.full(theta.size * eta.size, chart)
     at, phi = np.tile(inside, eta.size), -lam * np.repeat(eta, theta.size)
@@ -151,11 +152,8 @@ def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
     return np.asarray(np.clip(np.nan_to_num(lean), -STEEPEST, STEEPEST))
 
 
-def hopeful(map: PinballMap, core: Core, given: Strips) -> tuple[Mask, Mask]:
-    """Which strips may be settled, by float64 orbits of their corners; and which others had rather be cut across.
-
-    What is hopeful is looked at closely; a wrong guess costs time.
-    """
+def seems_to_enter_tube(map: PinballMap, core: AbsorbingTube, given: Strips) -> tuple[Mask, Mask]:
+    """Masks of strips that seem to enter the tube and of those to cut across: guesses from float64 corner orbits."""
     lam, count, corners = float(np.max(map.lam)), given.left.size, len(CORNERS[0])
     across, along = (np.array(side)[:, None] for side in CORNERS)
     u = along * given.half
@@ -171,7 +169,7 @@ def hopeful(map: PinballMap, core: Core, given: Strips) -> tuple[Mask, Mask]:
     most = 2 * aside.max(axis=1) - aside.min(axis=1)
     fine = np.logical_and.accumulate((chart == chart[:, :1]).all(axis=1) & (spread < WIDE), axis=0)
     inside = np.zeros((BOUNCES + 1, count), dtype=bool)
-    for outer, width in ((core.outer, core.width), *core.gates):
+    for outer, width in ((core.outer, core.width), *core.entry_tubes):
         inside |= (far + spread < outer) & (most < width)
     good = np.any(inside & fine & (chart[:, 0] == core.chart), axis=0)
     last = np.clip(np.sum(fine, axis=0), 1, BOUNCES), np.arange(count)
@@ -179,8 +177,8 @@ def hopeful(map: PinballMap, core: Core, given: Strips) -> tuple[Mask, Mask]:
     return good, np.asarray(np.maximum(np.abs(a - b), np.abs(c - d)) > np.maximum(np.abs(a - c), np.abs(b - d)))
 
 
-def settled(map: PinballImages, core: Core, given: Strips) -> tuple[Mask, Mask]:
-    """Which strips are proved to come to the core; and which of the others had rather be cut across."""
+def enter_tube(map: PinballImages, core: AbsorbingTube, given: Strips) -> tuple[Mask, Mask]:
+    """Masks of the strips proved to reach the core, and of those among the others to cut across."""
     sets, owner = given.started(map), np.arange(given.left.size)
     failed, flat, entered = (np.zeros(owner.size, dtype=bool) for _ in range(3))
     for bounce in range(BOUNCES):
@@ -190,7 +188,7 @@ def settled(map: PinballImages, core: Core, given: Strips) -> tuple[Mask, Mask]:
         sets, owner = sets[open_], owner[open_]
         if owner.size <= FEW * entered.size:
             break
-        source, images = carried(map, sets)
+        source, images = push_forward(map, sets)
         with np.errstate(invalid="ignore"):
             lost = ~images.known | ~(images.reach() < WIDEST)
         sets, owner = images, owner[source]
@@ -201,42 +199,42 @@ def settled(map: PinballImages, core: Core, given: Strips) -> tuple[Mask, Mask]:
     return entered & ~failed, flat
 
 
-class Left(NamedTuple):
-    """What is not settled: a bound for the measure `cos(eta)*ds*deta`, and how many strips were looked at closely."""
+class Remainder(NamedTuple):
+    """Undecided starts: a bound for their measure in `cos(eta)*ds*deta`; and the number of strips examined in balls."""
 
     measure: float
     strips: int
 
 
-def unsettled(map: PinballImages, core: Core, first: Strips, enough: float, rounds: int = 24) -> Left:
-    """Cuts strips until what is not settled has at most the measure `enough`, of all `eta`, or `rounds` are over.
+def remainder(map: PinballImages, core: AbsorbingTube, first: Strips, enough: float, rounds: int = 24) -> Remainder:
+    """Cuts strips until undecided starts of all `eta` have at most the measure `enough`, or `rounds` are over.
 
-    A strip that is left, or not looked at in the last round, counts whole.
+    A strip that is undecided, or not examined in the last round, counts whole.
     """
     cells, asked, left = first, 0, np.inf
     for _ in range(rounds):
         sizes, open_ = 2 * SLACK * cells.measures(map), np.ones(cells.left.size, dtype=bool)
-        looks = [hopeful(map.map, core, cells.some(slice(k, k + LOOK))) for k in range(0, sizes.size, LOOK)]
+        looks = [seems_to_enter_tube(map.map, core, cells.some(slice(k, k + LOOK))) for k in range(0, sizes.size, LOOK)]
         good, across = (np.concatenate(answers) for answers in zip(*looks, strict=True))
         hopes = np.flatnonzero(good)
         hopes = hopes[np.argsort(-sizes[hopes], kind="stable")]
         hopes = hopes[np.cumsum(sizes[hopes]) - sizes[hopes] <= MORE * (np.sum(sizes) - enough)]
         for k in range(0, hopes.size, BLOCK):
             chosen = hopes[k : k + BLOCK]
-            done, across[chosen] = settled(map, core, cells.some(chosen))
+            done, across[chosen] = enter_tube(map, core, cells.some(chosen))
             open_[chosen[done]] = False
             asked += chosen.size
             left = float(np.sum(sizes[open_])) * SLACK
             if left <= enough:
-                return Left(left, asked)
+                return Remainder(left, asked)
         cells = cells.some(open_).cut(across[open_])
-    return Left(left, asked)
+    return Remainder(left, asked)
 
 
 def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> Array:
-    """For each box a bound for the norm of the derivative of some bounces, in `max(abs(ds), abs(dphi)/weight)`.
+    """For each box a bound of the norm of the derivative of `bounces` bounces, in `max(abs(ds), abs(dphi)/weight)`.
 
-    Infinite where nothing is known. Where landings lie on both sides of a join each of them is asked.
+    It is infinite where it is not proved; where landings lie on both sides of a join, it bounds both derivatives.
     """
     found = np.zeros(boxes.chart.size)
     one, nought = BallArray(np.ones(found.size)), BallArray(np.zeros(found.size))
@@ -246,7 +244,7 @@ def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> A
 
 
 def speeds(map: PinballImages, chart: Indices, theta: BallArray) -> BallArray:
-    """How fast the boundary's parameters run, in arc length."""
+    """The speed of the boundary parameter, in arc length."""
     return norm(map.ops, map.place(chart, theta)[2:4])
 
 
@@ -259,7 +257,7 @@ def _steepest(
     found: Array,
     norm: tuple[Array, float],
 ) -> None:
-    """Goes on from boxes in which some bounces have ended; `product` is the derivative up to there."""
+    """Adds to `found` the bounds of orbits from boxes after some bounces; `product` is the derivative up to there."""
     if not owner.size:
         return
     with np.errstate(all="ignore"):
@@ -272,7 +270,7 @@ def _steepest(
             np.maximum.at(found, owner, np.where(np.isfinite(most), most, np.inf))
             return
         seen = np.zeros(owner.size, dtype=bool)
-        whole = Chords(map, boxes)
+        whole = ChordFlights(map, boxes)
         for piece in whole.split(*whole.arcs()):
             on = piece.on
             seen[on] = True
@@ -289,9 +287,9 @@ def _steepest(
 
 
 def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvings: int = 8) -> bool:
-    """Is `nu_plus` at most `rate` for every orbit? The norm of so many bounces says so, over boxes cut as needed.
+    """True if `nu_plus <= rate` is proved for every orbit, by the norm of the derivative of `bounces` bounces.
 
-    Where table and law are their own mirror images, boxes of `phi >= 0` are enough.
+    Boxes are halved up to `halvings` times; where table and law are symmetric, only those with `phi >= 0` are examined.
     """
     goal, half = exp(rate * bounces) / SLACK, map.mirrored
     for chart, ends in enumerate(map.charts):

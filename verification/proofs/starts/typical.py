@@ -1,13 +1,14 @@
-"""`nu_plus` of almost every orbit of a trapping region, from both sides: standard pairs and a potential.
+"""Lower and upper bounds of `nu_plus` for almost every orbit of a trapping region, by standard pairs and potentials.
 
-The lemma and its proof are in docs/global.md. A family of pieces of unstable curves is described by the mass `r[i]`
-of pieces of label `i` that reach from side to side of their column, the mass `e[i]` of the others, the density `E[i]`
-at ends of curves, summed, and `C[i]`, that at ends on a join, which are ends of a column. After one bounce
+The lemma and its proof are in docs/global.md. A family of pieces of unstable curves is described by four numbers for
+each label `i`: the mass `r[i]` of pieces that cross their whole column, the mass `e[i]` of the others, the sum `E[i]`
+of densities at ends of curves, and the sum `C[i]` of those at ends on a join, which are ends of a column. After one
+bounce
 
-- the mass `r[i]` of an unbroken label goes to the columns met in known shares; the others go where edges lead;
-- ends go along edges, their density divided by the stretching; `e[i] <= length*E[i]/(1 - D)`;
-- a curve cut by a join has two ends more, of type `C`. Its density at the cut is at most that of the mass in a
-  window of `window` columns on the left and on the right, half of each; or of an end there, if it ends before.
+- the mass `r[i]` of an unbroken label is distributed over the columns met in known shares, other mass along edges;
+- ends move along edges, and their density is divided by the stretching; `e[i] <= length*E[i]/(1 - D)`;
+- a curve cut by a join has two more ends, of type `C`. Its density at the cut is at most that of half the mass in a
+  window of `window` columns on each side, or of an end there, if the curve ends before.
 
 Numbers `y`, `w`, `v` for each label with
 
@@ -16,31 +17,33 @@ Numbers `y`, `w`, `v` for each label with
     r:  mean + (shares of max y over rows) + cuts <= y + high
 
 make `sum(y*(r + e) + w*E + v*C)` a potential: the mean of the logarithm of the stretching over any family is at most
-`high`, up to a bounded sum. Any numbers do, with `w` and `v` above 0; `potential` looks for good ones, and `holds`
-checks them by multiplication and addition alone. The same with minus the logarithm is the bound from below.
+`high`, up to a bounded sum. Any numbers with `w > 0` and `v > 0` that satisfy the inequalities prove the bound:
+`potential` finds them and `holds` checks them. The same with minus the logarithm gives the lower bound.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import ceil, floor
 
 import numpy as np
 
 from numeric.backends import elementary
-from verification.proofs.global_dynamics.graph import Cells, Grid
 from verification.proofs.starts.curves import CurveMap
 from verification.proofs.starts.labels import Array, Indices
 from verification.proofs.starts.standard_pairs import Pairs, pairs
+from verification.rigorous.graph import Cells, Grid
+from verification.rigorous.theorem import Theorem, hypothesis
 
 UP, DOWN = 1 + 1e-12, 1 - 1e-12
-SLACK = 1e-9  # for roundings; `holds` bounds them by the number of terms and their size, and refuses if that is more
+SLACK = 1e-9  # for rounding errors, which `holds` proves to be smaller
 LARGEST = 1e4
 TINY = 1e-9
 STEPS, PRECISE = 3000, 1e-5
-WEIGHTS = 4000  # bounces in which the ends' numbers are looked for
+WEIGHTS = 4000  # the most iterations for the numbers of the ends
 
 
 class Cut:
-    """Curves that a join cuts: the broken labels, windows beside them, and labels of the new ends."""
+    """The curves that one join cuts: the broken labels, windows beside them, and labels of the new ends."""
 
     def __init__(self, found: Pairs, broken: Indices, window: int) -> None:
         labels, count = found.labels, found.labels.count
@@ -52,16 +55,16 @@ class Cut:
             for _ in range(window):
                 chart, column = labels.chart[near], labels.column[near] + side
                 if np.any((column < 0) | (column >= labels.columns[chart])):
-                    raise ValueError("a join is met next to a join; give a smaller window or more columns")
+                    raise ValueError("a window beside a join reaches the next; give a smaller one or more columns")
                 foot, way = labels.bottom[chart] + labels.row[near] * labels.high[chart], side * labels.wide[chart]
                 phi, slopes = (foot, foot + labels.high[chart]), (labels.low[near], labels.top[near])
                 met = labels.named(labels.crossed(near, chart, column, phi, (way, way), slopes, hulls))[1]
                 near = np.unique(met[met >= 0])
                 self.window[near] = True
         self.near = self.window | ends
-        whole = (labels.columns * labels.wide).min()  # on the way to the same join again a curve passes a component
+        whole = (labels.columns * labels.wide).min()  # between two cuts by the same join a curve crosses a component
         if (2 * window + 3) * labels.wide.max() * found.cast.most[self.near].max() > whole:
-            raise ValueError("a window may meet a join twice; give a smaller one or more columns")
+            raise ValueError("a curve may meet a join twice within a window; give a smaller window or more columns")
         least = float(found.cast.least[broken].min())
         growth = (window + 1) * float((found.density * labels.wide[labels.chart])[self.near].max())
         if growth > 0.5:
@@ -72,11 +75,11 @@ class Cut:
         to = np.unique(found.edges[1][np.isin(found.edges[0], broken)])
         self.new = to[corner[to]]
         if not self.new.size:
-            raise ValueError("no label is known of the ends that a join makes")
+            raise ValueError("no label holds the ends of curves that a join cuts")
 
 
 class Balance:
-    """What standard pairs do to masses and ends, ready for potentials."""
+    """The coefficients of the inequalities for masses and ends, from standard pairs."""
 
     def __init__(self, found: Pairs, window: int) -> None:
         labels, cast, spread = found.labels, found.cast, found.spread
@@ -86,7 +89,7 @@ class Balance:
         if np.any(np.bincount(self.edges[0], minlength=self.count) == 0):
             raise ValueError("a label has no image")
         width = labels.wide[labels.chart]
-        turn = found.density * width  # by which the logarithm of a density varies over a column, at most
+        turn = found.density * width  # a bound of the variation of log-densities over a column
         if turn.max() > 0.5:
             raise ValueError("densities vary too much within a column; give finer columns")
         self.length, self.least = width / (1 - turn) * UP, cast.least * DOWN
@@ -116,7 +119,7 @@ class Balance:
             return []
         made, seen = [], np.zeros(labels.count, dtype=bool)
         ends = labels.left, labels.left + labels.columns * labels.wide
-        for join in range(count):  # at the upper end of this chart, and the lower one of the next
+        for join in range(count):  # between this chart and the next
             after = (join + 1) % count
             at = (landed.chart == join) & (landed.theta.upper() >= ends[1][join] - 1e-6 * labels.wide[join])
             at |= (landed.chart == after) & (landed.theta.lower() <= ends[0][after] + 1e-6 * labels.wide[after])
@@ -130,7 +133,7 @@ class Balance:
 
     @staticmethod
     def _mean(values: Array, turn: Array) -> Array:
-        """The greatest mean over a column of what is at most so much on each of its parts."""
+        """The largest mean over a column of a function bounded on its parts, for densities that vary by `turn`."""
         steps, total = values[:, :-1] - values[:, 1:], values[:, -1].copy()
         for k in range(steps.shape[1]):
             share = (k + 1) / values.shape[1]
@@ -139,12 +142,12 @@ class Balance:
         return total
 
     def best(self, values: Array) -> Array:
-        """The greatest value over the edges of each label."""
+        """The largest value over the edges of each label."""
         found: Array = np.maximum.reduceat(values[self.edges[1]], self.starts)
         return found
 
     def shared(self, y: Array) -> Array:
-        """The greatest mean of `y` over the image of pieces that reach from side to side."""
+        """For each label the largest mean of `y` over the images of the pieces that cross their whole column."""
         found = self.best(y)
         spread = self.found.spread
         if spread.last.size:
@@ -156,7 +159,7 @@ class Balance:
         return found
 
     def charged(self, v: Array) -> tuple[Array, Array]:
-        """What cuts cost for each unit of mass, and for each end."""
+        """The cost of cuts for each unit of mass, and for each end, with the potentials `v` of ends."""
         mass, end = np.zeros(self.count), np.zeros(self.count)
         for cut in self.cuts:
             top = float(v[cut.new].max())
@@ -165,21 +168,21 @@ class Balance:
         return mass, end
 
     def excess(self, gain: int, y: Array, high: float) -> Array:
-        """By how much mass of pieces that do not reach from side to side may do better."""
+        """The largest gain of mass in pieces that do not cross their column over that in pieces that do."""
         found: Array = np.maximum(self.gains[gain][1] + self.best(y) - y - high, 0.0)
         return found
 
     def ends(self, s: Array, w: Array, v: Array) -> tuple[Array, Array]:
-        """One bounce of the numbers of the ends."""
+        """One iteration of the inequalities for `w` and `v`, given `s`."""
         on, (_, cut) = self.best(w) / self.least + TINY, self.charged(v)
         return (self.length * s + on + cut) * UP, (on + cut) * UP
 
     def step(self, gain: int, y: Array, v: Array) -> Array:
-        """The left side of the inequality of the masses."""
+        """The left side of the mass inequality at each label, for the potentials `y` of masses and `v` of ends."""
         return self.gains[gain][0] + self.shared(y) + self.charged(v)[0]
 
     def potential(self, gain: int) -> tuple[Array, float]:
-        """A potential, and about the bound that it gives, by iteration in float64."""
+        """Numbers `y` of a potential and the approximate bound that it gives, by iteration in float64."""
         y, w, v, high = np.zeros(self.count), np.zeros(self.count), np.zeros(self.count), 0.0
         best = np.inf, y
         for _ in range(STEPS):
@@ -198,7 +201,7 @@ class Balance:
         return best[1], best[0]
 
     def weights(self, gain: int, y: Array, high: float) -> tuple[Array, Array]:
-        """Numbers of the ends for a potential of the masses; they may not be good ones."""
+        """Numbers `w` and `v` for a potential `y` of the masses; they may fail the check of `holds`."""
         s, w, v = self.excess(gain, y, high) + SLACK, np.zeros(self.count), np.zeros(self.count)
         for _ in range(WEIGHTS):
             more = self.ends(s, w, v)
@@ -208,11 +211,11 @@ class Balance:
         return w, v
 
     def roundings(self, gain: int, y: Array, left: Array, high: float) -> float:
-        """A bound for what float64 errs by in the inequality of the masses, and in `excess`.
+        """A bound for the rounding errors in the inequality of the masses, and in `excess`.
 
-        A sum of `n` terms, each rounded a few times, errs by `(n + 8)*2^-53` times the sum of their moduli. Terms are
-        differences of numbers of `y` or of gains; costs of cuts are positive, so that `left` bounds them with these.
-        Numbers of the ends are sums of positive ones, which `UP` covers.
+        A sum of `n` terms, each rounded a few times, errs by at most `(n + 8)*2^-53` times the sum of their moduli.
+        Terms are differences of entries of `y` or of gains; costs of cuts are positive, so `left` bounds them together
+        with these. The numbers of the ends are sums of positive terms, for which the factor `UP` suffices.
         """
         spread, gains = self.found.spread, self.gains[gain]
         terms = int(np.bincount(spread.targets.source, minlength=1).max()) + self.found.labels.parts + len(self.cuts)
@@ -220,17 +223,17 @@ class Balance:
         return (terms + 8.0) ** 2 * size * 2.0**-50
 
     def holds(self, gain: int, y: Array, w: Array, v: Array, high: float) -> bool:
-        """Do the numbers prove the bound? All inequalities are asked, with a slack for the roundings."""
+        """True if the numbers satisfy all inequalities with a margin for rounding, which proves the bound `high`."""
         least = self.ends(self.excess(gain, y, high) + SLACK, w, v)
         left = self.step(gain, y, v)
         sizes = [float(np.abs(x).max()) for x in (y, w, v, left)]
-        bounded = bool(np.all(w > 0) and np.all(v > 0))  # from below is the potential, as `y` is
+        bounded = bool(np.all(w > 0) and np.all(v > 0))  # the potential is bounded below, as `y` is
         small = bounded and all(size < LARGEST for size in sizes) and self.roundings(gain, y, left, high) < SLACK / 2
         masses = bool(np.all(left + SLACK <= y + high))
         return small and masses and bool(np.all(least[0] <= w)) and bool(np.all(least[1] <= v))
 
     def proved(self, gain: int) -> float | None:
-        """A bound that is proved, from above: for the exponent, or for its negative; None if none is."""
+        """A proved upper bound of the exponent (`gain` 0) or of its negative (`gain` 1); None where none is proved."""
         y, high = self.potential(gain)
         for _ in range(6):
             if not high < LARGEST:
@@ -243,26 +246,56 @@ class Balance:
 
 
 @dataclass(frozen=True)
-class Typical:
-    """`low <= nu_plus <= high` for almost every orbit that enters the region; `why` says what is not proved, if so."""
+class TypicalExponent(Theorem):
+    """Bounds `low <= nu_plus <= high` for almost every orbit that enters a trapping region given by boxes."""
 
-    low: float
-    high: float
-    labels: int
-    why: str = ""
+    map: CurveMap
+    grid: Grid
+    cells: Cells
+    columns: int
+    rows: int
+    window: int = 8
+
+    @cached_property
+    def balance(self) -> Balance | str:
+        """The coefficients of the inequalities; or the reason why they are not proved, in words."""
+        try:
+            return Balance(pairs(self.map, self.grid, self.cells, self.columns, self.rows), self.window)
+        except ValueError as error:
+            return str(error)
+
+    @cached_property
+    def ends(self) -> tuple[float | None, float | None]:
+        """Upper bounds of the exponent and of its negative; None where not proved."""
+        return (None, None) if isinstance(self.balance, str) else (self.balance.proved(0), self.balance.proved(1))
+
+    @hypothesis
+    def standard_pairs(self) -> bool:
+        """Images of pieces of curves are enclosed, and their densities vary little."""
+        return not isinstance(self.balance, str)
+
+    @hypothesis
+    def potentials(self) -> bool:
+        """Potentials bound the mean logarithm of the stretching from both sides."""
+        return None not in self.ends
 
     @property
-    def proved(self) -> bool:
-        return not self.why
+    def low(self) -> float:
+        """The lower bound of `nu_plus`; minus infinity where none is proved."""
+        return -np.inf if self.ends[1] is None else floor(-self.ends[1] * 1e6) / 1e6
 
+    @property
+    def high(self) -> float:
+        """The upper bound of `nu_plus`; infinity where none is proved."""
+        return np.inf if self.ends[0] is None else ceil(self.ends[0] * 1e6) / 1e6
 
-def typical(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, window: int = 8) -> Typical:
-    """Bounds for `nu_plus` of almost every orbit in a trapping region given by boxes."""
-    try:
-        balance = Balance(pairs(map, grid, cells, columns, rows), window)
-    except ValueError as error:
-        return Typical(-np.inf, np.inf, 0, str(error))
-    high, low = balance.proved(0), balance.proved(1)
-    if high is None or low is None:
-        return Typical(-np.inf, np.inf, balance.count, "ends of curves gather at joins; give more columns or rows")
-    return Typical(floor(-low * 1e6) / 1e6, ceil(high * 1e6) / 1e6, balance.count)
+    @property
+    def labels(self) -> int:
+        """The number of labels."""
+        return 0 if isinstance(self.balance, str) else self.balance.count
+
+    @property
+    def why(self) -> str:
+        """The reason why the bounds are not proved, and what to change; empty where they are."""
+        open_ends = "" if self.potentials else "ends of curves gather at joins; give more columns or rows"
+        return self.balance if isinstance(self.balance, str) else open_ends

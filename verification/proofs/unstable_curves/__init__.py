@@ -1,4 +1,4 @@
-"""Unstable curves: do they grow although they are folded, and do all come to one saddle, so that attractors are one?"""
+"""Growth of unstable curves in a trapping region, and the theorem that the region holds at most one attractor."""
 
 import lazy_loader
 

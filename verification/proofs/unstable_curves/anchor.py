@@ -1,24 +1,24 @@
-"""A saddle cycle in a region, and a rectangle about one of its points whose every crossing curve meets `W^s`.
+"""A rectangle around a saddle point in which every unstable curve that crosses it meets the saddle's stable set.
 
-Let `Q` be the rectangle over an interval of `theta` that holds all of the region there, and `F` the map of as many
-bounces as the cycle has. In `(u, v) = (dtheta, dphi)` the derivative of `F` over `Q` and over boxes that hold its
-images has entries `a, b, c, d`, in balls; so `F(x) - F(y)` is such a matrix times `x - y` for `x`, `y` in `Q`. With
-a slope `s` above that of all unstable curves, let
+Let `Q` be the rectangle over an interval of `theta` that holds the part of the region there, and let `F` be the map of
+a whole round of the saddle's cycle. In `(u, v) = (dtheta, dphi)` the derivative of `F` over `Q` has the rows `a, b` and
+`c, d`, in balls; so `F(x) - F(y)` is such a matrix times `x - y` for `x`, `y` in `Q`. With a slope `s` above that of
+all unstable curves, let
 
     |a| - s*|b| > 1,    |c|/s + |d| < 1,    |a|*r - |b|*h > w,
 
-where every point of the cycle in `Q` is at least `r` and at most `w` away from either end, and no point of `Q` is more
-than `h` above or below it. By the first two `|c| + s*|d| < s < s*(|a| - s*|b|)`. Then:
+where the fixed points of `F` in `Q` are at least `r` and at most `w` away from both ends of the interval, and no point
+of `Q` is more than `h` above or below them. By the first two `|c| + s*|d| < s < s*(|a| - s*|b|)`. Then:
 
 - an interval Newton step gives exactly one fixed point `p` of `F` in `Q`;
 - an unstable curve that crosses `Q` has an image under `F` that crosses `Q` (the last inequality, for an end of the
   curve and `p`: the ends leave `Q` on either side), so it holds a point `x` all of whose images under `F` are in `Q`;
-- for it `|u| <= |v|/s`, for all images of `x - p`, since else `|u|` would grow for ever (the first,
-  and what follows from both); so `|v|` shrinks (the second), and `x` lies on the stable set of the cycle;
-- images of the curve that cross `Q` come as near to the piece of `W^u(p)` that crosses `Q` as one likes: of two points
-  above one another, one on either, the preimages under `F` in `Q` differ by `|u| <= |v|/s`, and so differences shrink.
+- all images of `x - p` have `|u| <= |v|/s`, since otherwise `|u|` would grow without bound (by the first inequality
+  and their consequence); so `|v|` shrinks (by the second), and `x` lies on the stable set of the cycle;
+- images of the curve that cross `Q` converge to the piece of the unstable manifold `W^u(p)` that crosses `Q`: for a
+  point of the one above a point of the other, the preimages in `Q` differ by `|u| <= |v|/s`, so differences shrink.
 
-The last is what the inclination lemma says; here nothing smooth is asked of the map beyond the boxes of the cycle.
+The last is the inclination lemma; here the map must be smooth only on the boxes of the cycle.
 """
 
 from dataclasses import dataclass
@@ -27,17 +27,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray, hull
-from verification.proofs.global_dynamics import Boxes, Matrix, matrix, times
-from verification.proofs.unstable_curves.cover import Cover
-from verification.proofs.unstable_curves.spans import Course
+from verification.proofs.global_dynamics.flights import Matrix, matrix
+from verification.proofs.unstable_curves.cover import ConeField
+from verification.proofs.unstable_curves.spans import SpanMap
+from verification.rigorous.boxes import Boxes
+from verification.rigorous.norms import times
 
 Array = NDArray[np.float64]
-CUTS = 6  # of a box, each way, before it is mapped
+CUTS = 6  # a box is cut into CUTS by CUTS parts before it is mapped
 
 
 @dataclass(frozen=True)
-class Anchor:
-    """A rectangle of a region: all of it that lies over an interval of `theta`."""
+class SaddleRectangle:
+    """The rectangle that holds the part of a region over an interval `low <= theta <= high` of one chart."""
 
     chart: int
     low: float
@@ -46,11 +48,11 @@ class Anchor:
     top: float
 
 
-def anchor(cover: Cover, point: tuple[int, float, float], period: int, half: float) -> Anchor | None:
-    """The rectangle within `half` of a point of a cycle, given roughly; None where an inequality is not proved."""
+def anchor(cover: ConeField, point: tuple[int, float, float], period: int, half: float) -> SaddleRectangle | None:
+    """The rectangle around an approximate point of a cycle, `half` wide on each side; None where it is not proved."""
     chart, theta, phi = point
     bottom, top = _span(cover, chart, theta - half, theta + half)
-    if not bottom < phi < top:  # an interval Newton step is one about a point of the rectangle
+    if not bottom < phi < top:  # the interval Newton step needs a point of the rectangle
         return None
     box = (theta - half, theta + half), (bottom, top)
     whole = _followed(cover, chart, box, period)
@@ -65,15 +67,15 @@ def anchor(cover: Cover, point: tuple[int, float, float], period: int, half: flo
     slopes = cover.steepest
     steep = max(abs(float(slopes[0][chart])), abs(float(slopes[1][chart])))
     proved = _hyperbolic(whole[2], _slope(whole[2], steep), least, most, height)
-    return Anchor(chart, *box[0], bottom, top) if proved else None
+    return SaddleRectangle(chart, *box[0], bottom, top) if proved else None
 
 
-def _span(cover: Cover, chart: int, low: float, high: float) -> tuple[float, float]:
-    """Between which heights the region lies over an interval, and the cells beside it."""
+def _span(cover: ConeField, chart: int, low: float, high: float) -> tuple[float, float]:
+    """The lowest and highest `phi` of the region over an interval and the columns next to it; 0, 0 at a chart's end."""
     wide = cover.sides[0][chart]
     start = cover.grid.charts[chart].x[0]
     first, last = (int(np.floor((x - start) / wide)) for x in (low, high))
-    rows = Course(cover).rows
+    rows = SpanMap(cover).rows
     if first < 1 or last + 2 > cover.grid.columns:
         return 0.0, 0.0
     return float(rows[0][chart, first - 1 : last + 2].min()), float(rows[1][chart, first - 1 : last + 2].max())
@@ -82,8 +84,8 @@ def _span(cover: Cover, chart: int, low: float, high: float) -> tuple[float, flo
 Box = tuple[tuple[float, float], tuple[float, float]]
 
 
-def _followed(cover: Cover, chart: int, box: Box, period: int) -> tuple[int, Box, Matrix] | None:
-    """The chart and the box where a box is after so many bounces, and the product of derivatives over the boxes."""
+def _followed(cover: ConeField, chart: int, box: Box, period: int) -> tuple[int, Box, Matrix] | None:
+    """The chart and image of a box after `period` bounces, and the derivative over the box; None if not proved."""
     product: Matrix = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
     for _ in range(period):
         parts = Boxes(np.array([chart]), *((np.array([a]), np.array([b])) for a, b in box)).parts(CUTS, CUTS)[0]
@@ -102,15 +104,15 @@ def _followed(cover: Cover, chart: int, box: Box, period: int) -> tuple[int, Box
 
 
 def _hulled(some: BallArray, count: int) -> BallArray:
-    """One ball that holds all."""
+    """One ball that holds all balls of an array."""
     low, high = (np.broadcast_to(end, count) for end in (some.lower(), some.upper()))
     return hull(float(low.min()), float(high.max()))
 
 
 def _fixed(
-    whole: Matrix, guess: tuple[float, float], cover: Cover, chart: int, period: int
+    whole: Matrix, guess: tuple[float, float], cover: ConeField, chart: int, period: int
 ) -> tuple[BallArray, BallArray] | None:
-    """An interval Newton step for `F(x) = x` over the rectangle: all fixed points there, and one if it is inside."""
+    """The interval Newton image for `F(x) = x` over the rectangle, which holds all fixed points there; or None."""
     at = _followed(cover, chart, ((guess[0], guess[0]), (guess[1], guess[1])), period)
     if at is None or at[0] != chart:
         return None
@@ -125,13 +127,13 @@ def _fixed(
 
 
 def _inside(fixed: tuple[BallArray, BallArray], box: Box) -> bool:
-    """Does a box lie inside another?"""
+    """True if the balls lie in the interior of the box."""
     return all(a < x.lower() and x.upper() < b for x, (a, b) in zip(fixed, box, strict=True))
 
 
-def _held(cover: Cover, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
-    """Do the cells of the region hold a box?"""
-    member = cover.painted(np.ones(cover.cells.chart.size), 0.0)[chart]
+def _held(cover: ConeField, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
+    """True if the cells of the region cover the balls."""
+    member = cover.to_array(np.ones(cover.cells.chart.size), 0.0)[chart]
     spans = []
     for x, ends, count in zip(fixed, ("x", "y"), (cover.grid.columns, cover.grid.rows), strict=True):
         low, high = getattr(cover.grid.charts[chart], ends)
@@ -141,7 +143,7 @@ def _held(cover: Cover, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
 
 
 def _slope(entries: Matrix, steep: float) -> float:
-    """A slope `s` in the middle of those above the curves for which the first and the second inequality may hold."""
+    """A slope `s` midway between the bounds that the first two inequalities and the unstable curves impose."""
     b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
     first = entries[0][0]
     low = max(steep * (1 + 1e-9), c / (1 - d)) if d < 1 else np.inf
@@ -149,7 +151,7 @@ def _slope(entries: Matrix, steep: float) -> float:
 
 
 def _hyperbolic(entries: Matrix, s: float, least: float, most: float, height: float) -> bool:
-    """The three inequalities."""
+    """True if the three inequalities of the module docstring hold."""
     b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
     first = entries[0][0]
     low = (abs(float(first.m)) - float(first.r)) * (1 - 1e-12)

@@ -1,26 +1,26 @@
-"""Short unstable curves grow, although they are folded: the sum of inverse stretches over the parts of a curve.
+"""The proof that short unstable curves grow in spite of folds, by the sum of inverse stretches over their parts.
 
-A smooth unstable curve `p` in one chart is mapped to a curve that may pass from one chart to the next; there it is
-cut in smooth *parts*. After `n` bounces `p` is the union of arcs `p_i` that are mapped to smooth parts, each stretched
-by `L_i` at least in the chart's parameter. As the lengths of the arcs add up to that of `p`,
+A smooth unstable curve `p` in one chart is mapped to a curve that may pass from one chart to the next, where it is cut
+into smooth *parts*. For `n` bounces `p` is the union of arcs `p_i`, each mapped to a smooth part and stretched by `L_i`
+or more in the chart's parameter. As the lengths of the arcs add up to that of `p`,
 
     max length of a part  >=  length of p / sum(1/L_i),
 
-so where that sum is below 1 for all curves, every curve grows. (Collet and Levy for the Lozi map; in the theory of
-billiards the sum is that of the one-step expansion of an iterate.)
+so if that sum is below 1 for all curves, every curve grows. (Collet and Levy for the Lozi map; in the theory of
+billiards this is the one-step expansion of an iterate.)
 
-A curve *crosses* a column of cells if it lies over all of it. A curve over a chart that crosses no column lies over
-two columns at most, next to each other, and changes its height by no more than twice the greatest slope times the
-width of a column. So if it is in a cell, it is within one column and `reach` rows of that cell; over these cells the
-least stretch is taken. Its image, if no part of it crosses a column, passes at most one join, and then has two parts,
-both in the columns at that join, within `reach` rows of each other. With `V_0 = 1` for every cell, and
+A curve *crosses* a column of cells if it lies over all of it. A curve over a chart that crosses no column lies over two
+columns at most, next to each other, and changes its height by no more than twice the greatest slope times the width of
+a column. So if it is in a cell, it is within one column and `reach` rows of that cell; over these cells the least
+stretch is taken. Its image, if no part of it crosses a column, passes at most one join, and then has two parts, both in
+the columns at that join, within `reach` rows of each other. With `V_0 = 1` for every cell, and
 
     V_n(b) = 1/stretch(b) * max over the edges b -> c of ( V_{n-1}(c), plus, where c is at a join,
              the greatest V_{n-1} of a cell across that join within `reach` rows ),
 
 `V_n(b)` bounds the sum over `n` bounces for all curves that are in `b`, as long as no part crosses a column. *If `V_n`
 is below 1 for every cell of a trapping region, each unstable curve in it has, after finitely many bounces, an image
-with a smooth part that crosses a column.* The longest part would otherwise grow for ever, and two columns hold it.
+with a smooth part that crosses a column.* Otherwise the longest part would grow without end, within two columns.
 """
 
 from dataclasses import dataclass
@@ -29,28 +29,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import elementary
-from verification.proofs.unstable_curves.cover import Cover
+from verification.proofs.unstable_curves.cover import ConeField
 
 Array = NDArray[np.float64]
-LONGEST = 60  # bounces over which the sum is taken, at most
-UP = 1 + 1e-13  # more than what a step in float64 errs by
+LONGEST = 60  # the most bounces over which the sum is taken
+UP = 1 + 1e-13  # above the rounding of a step in float64
 
 
 @dataclass(frozen=True)
-class Growth:
-    """`sums[n - 1]` bounds the sum of inverse stretches over `n` bounces of every curve that crosses no column."""
+class CurveGrowth:
+    """Bounds `sums[n - 1]` of the sum of inverse stretches over `n` bounces, for every curve that crosses no column.
+
+    `reach` is the number of rows by which such a curve may rise or fall.
+    """
 
     sums: tuple[float, ...]
     reach: int
 
     @property
     def bounces(self) -> int | None:
-        """After how many the sum is below 1 for every curve; None if it never is."""
+        """The number of bounces after which the sum is below 1 for every curve; None if it is not reached."""
         return len(self.sums) if self.sums[-1] < 1 else None
 
 
-def growth(cover: Cover, longest: int = LONGEST) -> Growth:
-    """The sums of inverse stretches, up to the first number of bounces at which they are below 1."""
+def growth(cover: ConeField, longest: int = LONGEST) -> CurveGrowth:
+    """The bounds of the sum of inverse stretches, up to the first number of bounces for which they are below 1."""
     reach = _reach(cover)
     weight = _about(cover, elementary.exp(-cover.least) * UP, reach)
     value, sums, starts = np.ones(weight.size), list[float](), cover.inner.indptr[:-1]
@@ -60,12 +63,12 @@ def growth(cover: Cover, longest: int = LONGEST) -> Growth:
         sums.append(float(value.max()))
         if sums[-1] < 1:
             break
-    return Growth(tuple(sums), reach)
+    return CurveGrowth(tuple(sums), reach)
 
 
-def folded(cover: Cover, value: Array, reach: int) -> Array:
-    """Values of cells, and next to a join the greatest across it added, within `reach` rows."""
-    picture, found, cells = cover.painted(value, 0.0), value.copy(), cover.cells
+def folded(cover: ConeField, value: Array, reach: int) -> Array:
+    """The values of cells; at a join the greatest value across it, within `reach` rows, is added."""
+    picture, found, cells = cover.to_array(value, 0.0), value.copy(), cover.cells
     last = cover.grid.columns - 1
     for before, after in cover.map.joins:
         for here, column, there, across in ((before, last, after, 0), (after, 0, before, last)):
@@ -74,8 +77,8 @@ def folded(cover: Cover, value: Array, reach: int) -> Array:
     return found
 
 
-def _reach(cover: Cover) -> int:
-    """How many rows a curve may rise or fall over two columns."""
+def _reach(cover: ConeField) -> int:
+    """The number of rows by which a curve may rise or fall over two columns."""
     low, high = cover.steepest
     steep = np.maximum(np.abs(low), np.abs(high))
     steep[~np.isfinite(steep)] = 0.0  # charts without cells
@@ -83,17 +86,17 @@ def _reach(cover: Cover) -> int:
     return int(np.ceil(np.max(2 * steep * wide / tall) * (1 + 1e-9)))
 
 
-def _about(cover: Cover, values: Array, reach: int) -> Array:
-    """The greatest value within one column and `reach` rows."""
+def _about(cover: ConeField, values: Array, reach: int) -> Array:
+    """The greatest value within one column and `reach` rows of each cell."""
     first, last = cover.cells.row.min(), cover.cells.row.max()
-    picture = cover.painted(values, 0.0)[:, :, first : last + 1]  # rows beyond hold nothing
+    picture = cover.to_array(values, 0.0)[:, :, first : last + 1]  # rows beyond hold nothing
     picture = _greatest(_greatest(picture, 1, axis=1), reach, axis=2)
     found: Array = picture[cover.cells.chart, cover.cells.column, cover.cells.row - first]
     return found
 
 
 def _greatest(values: Array, reach: int, axis: int) -> Array:
-    """The greatest of the entries up to `reach` before and after each."""
+    """The greatest of the entries up to `reach` places before and after each."""
     turned = np.moveaxis(values, axis, 0)
     found = turned.copy()
     for step in range(1, min(reach, len(turned)) + 1):

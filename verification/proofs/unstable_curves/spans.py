@@ -1,9 +1,9 @@
-"""Unstable curves over an interval, of which only the ends are known, and what is known of their images.
+"""Enclosures of unstable curves by their two ends, and of the images of such curves.
 
 A *span* stands for every unstable curve in a region that lies over `low <= theta <= high` in one chart, with its two
-ends in given ranges of height. The image of such a curve is again one, from the image of one end to that of the
-other; where it passes a join it is cut, and each part is a span again. Ends that are known up to a box are cut off:
-the span is what the curve is sure to lie over. Heights are kept within the cells of the region.
+ends in given ranges of height. The image of such a curve is again one, from the image of one end to that of the other;
+where it passes a join it is cut, and each part is a span again. Since ends are known only up to a box, the span is the
+interval that the curve certainly covers. Heights (values of `phi`) are restricted to the cells of the region.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric.backends import elementary
-from verification.proofs.global_dynamics import Boxes
-from verification.proofs.unstable_curves.cover import Cover
+from verification.proofs.unstable_curves.cover import ConeField
+from verification.rigorous.boxes import Boxes
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-PAD = 1e-12  # more than what places along the charts err by in float64
+PAD = 1e-12  # above the rounding of places along the charts
 WIDEST = 1e300
 
 
 class Spans(NamedTuple):
-    """Spans, one entry each: where they come from, their chart, their ends and the ranges of height there."""
+    """An array of spans: the `origin` of each, its chart, its ends in `theta`, and the ranges of `phi` there."""
 
     origin: Indices
     chart: Indices
@@ -39,26 +39,26 @@ class Spans(NamedTuple):
         return Spans(self.origin[which], self.chart[which], self.low[which], self.high[which], *ends)
 
     def crossing(self, chart: int, low: float, high: float) -> NDArray[np.bool_]:
-        """Which lie over all of an interval."""
+        """A mask: which spans cover a whole interval."""
         found: NDArray[np.bool_] = (self.chart == chart) & (self.low <= low) & (self.high >= high)
         return found
 
 
 @dataclass(frozen=True)
-class Course:
-    """The charts of a cover laid out one after the other, and what its cells say of heights and slopes."""
+class SpanMap:
+    """The map of spans; charts are laid out in one row, one after the other."""
 
-    cover: Cover
+    cover: ConeField
 
     @cached_property
     def starts(self) -> Array:
-        """Where each chart begins when they are laid out in order, and where the last one ends."""
+        """The position in the row at which each chart begins, and at which the last one ends."""
         lengths = [chart.x[1] - chart.x[0] for chart in self.cover.grid.charts]
         return np.concatenate([[0.0], np.cumsum(lengths)])
 
     @cached_property
     def around(self) -> bool:
-        """Does the last chart end where the first one starts?"""
+        """True if the last chart ends where the first one starts."""
         return (len(self.starts) - 2, 0) in self.cover.map.joins
 
     @cached_property
@@ -73,7 +73,7 @@ class Course:
 
     @cached_property
     def rows(self) -> tuple[Array, Array]:
-        """The lowest and the highest point of the region in each column of each chart; none in columns without."""
+        """The lowest and the highest `phi` of the region in each column of each chart; infinite in empty columns."""
         boxes = self.cover.grid.boxes(self.cover.cells)
         bottom = np.full(self.cover.shape[:2], np.inf)
         top = np.full(self.cover.shape[:2], -np.inf)
@@ -83,7 +83,7 @@ class Course:
         return bottom, top
 
     def heights(self, chart: Indices, theta: Array) -> tuple[Array, Array]:
-        """Between which heights the region lies at places; all heights where no cell is."""
+        """The range of `phi` of the region at places; without bounds where there is no cell."""
         width = self.cover.sides[0][chart]
         place = (theta - self.lows[chart]) / width
         last = self.cover.grid.columns - 1
@@ -95,7 +95,7 @@ class Course:
         return found[0], found[1]
 
     def columns(self) -> Spans:
-        """For each cell the curves that cross its column and begin, on the left, in that cell."""
+        """For each cell a span for the curves that cross its column and whose left end is in that cell."""
         boxes, chart = self.cover.grid.boxes(self.cover.cells), self.cover.cells.chart
         low, high = boxes.x[0] + PAD, boxes.x[1] - PAD
         ends = []
@@ -113,13 +113,13 @@ class Course:
     def _within(self, chart: Indices, theta: Array, low: Array, high: Array) -> tuple[Array, Array]:
         bottom, top = self.heights(chart, theta)
         found = np.maximum(low, bottom), np.minimum(high, top)
-        empty = found[0] > found[1]  # no such curve: any range will do
+        empty = found[0] > found[1]  # no such curve: any range is correct
         return np.where(empty, bottom, found[0]), np.where(empty, top, found[1])
 
     def ends(self, spans: Spans, last: bool) -> tuple[Array, Array, Array, Array]:
-        """Where the first or the last ends of spans land, laid out along the charts, and at what heights.
+        """The landings of the first or the last ends of spans: range of position in the row, and range of `phi`.
 
-        Entries are nan where a landing is lost or may be anywhere.
+        Entries are NaN where a landing is lost or not bounded.
         """
         theta, (bottom, top) = (spans.high, spans.last) if last else (spans.low, spans.first)
         images = self.cover.map.images(Boxes(spans.chart, (theta, theta), (bottom, top)))
@@ -128,7 +128,7 @@ class Course:
         places = [self.starts[boxes.chart] + (x - self.lows[boxes.chart]) for x in boxes.x]
         base = np.full(count, np.nan)
         base[source] = places[0]
-        if self.around:  # of two landings at one join neither is a turn away from the other
+        if self.around:  # positions of two landings at one join must not differ by a turn
             shift = np.round((places[0] - base[source]) / turn) * turn
             places = [place - shift for place in places]
         low, high, down, up = (np.full(count, end) for end in (np.inf, -np.inf, np.inf, -np.inf))
@@ -146,13 +146,13 @@ class Course:
         return low - PAD, high + PAD, down, up
 
     def step(self, spans: Spans) -> Spans:
-        """The parts of the images of spans; those of which nothing is known are left out."""
+        """The spans of the images of spans, split at joins; images without a proved span are omitted."""
         here, there = self.ends(spans, False), self.ends(spans, True)
         turned = np.array(self.cover.sign)[spans.chart] < 0
         left = [np.where(turned, b, a) for a, b in zip(here, there, strict=True)]
         right = [np.where(turned, a, b) for a, b in zip(here, there, strict=True)]
         turn = self.starts[-1]
-        if self.around:  # a curve that is short enough does not go around
+        if self.around:  # a short curve does not go once around
             on = np.floor(left[1] / turn) * turn
             left[0], left[1] = left[0] - on, left[1] - on
             on = np.round(((right[0] + right[1]) / 2 - (left[0] + left[1]) / 2) / turn) * turn
@@ -167,7 +167,7 @@ class Course:
         return self._cut(spans.origin[good], [x[good] for x in left], [x[good] for x in right])
 
     def _cut(self, origin: Indices, left: list[Array], right: list[Array]) -> Spans:
-        """What lies between two ends, chart by chart."""
+        """The spans between two ends, chart by chart."""
         run = left[1] - left[0], right[1] - right[0]
         low, high = left[1], right[0]
         down, up = left[2] + self._fall(run[0]), left[3] + self._rise(run[0])
@@ -197,7 +197,7 @@ class Course:
 
 
 def longest(spans: Spans, kept: int) -> Spans:
-    """So many of the longest spans of each origin."""
+    """The `kept` longest spans of each origin."""
     order = np.lexsort((spans.low - spans.high, spans.origin))
     origin = spans.origin[order]
     rank = np.arange(origin.size) - np.searchsorted(origin, origin)

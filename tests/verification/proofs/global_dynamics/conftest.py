@@ -1,4 +1,4 @@
-"""What several tests of all orbits ask of an enclosure."""
+"""A fixture for tests of enclosures of all orbits."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 
 @pytest.fixture(scope="session")
 def tight():
-    """Does a ball hold all sampled values, and little beside them?"""
+    """A test whether a ball contains all sampled values and is hardly wider than their range."""
 
     def holds(ball, values, factor=1.1, slack=1e-12):
         low, high, width = np.min(values), np.max(values), np.ptp(values)

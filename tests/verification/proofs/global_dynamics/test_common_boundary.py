@@ -1,4 +1,4 @@
-"""Two basins next to one stable manifold, and the discs that a contraction takes into themselves."""
+"""Two basins on both sides of a stable manifold, and discs that a contraction maps into themselves."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -7,40 +7,38 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flint import arb
+from flint import acb, arb
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import BallArray
+from verification.cycles.recurrence import Closure
 from verification.paper.egg.basins import MIDDLE, beyond_the_crisis
 from verification.proofs.global_dynamics import common_boundary
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.common_boundary import CHECKS, Disc, attracts, disc, entered_around
+from verification.proofs.global_dynamics.branch import ManifoldSeries
+from verification.proofs.global_dynamics.common_boundary import Disc, attracts, disc, entered_around
 from verification.proofs.global_dynamics.flights import Slopes
-from verification.proofs.manifolds.saddle import Orbit
+from verification.proofs.manifolds.saddle import SaddleCycle
+from verification.rigorous.boxes import Boxes
 
 FOUND = beyond_the_crisis()
 
 
-def test_the_stable_manifold_of_the_triangle_bounds_both_basins_beyond_the_crisis():
+def test_a_stable_manifold_bounds_both_basins():
     assert FOUND.proved
     assert all(entered_around(FOUND, k, *point) for k, point in enumerate(MIDDLE))
 
 
-def failing(**changes):
-    """The checks that are not proved of a changed statement."""
-    return {name for name, held in replace(FOUND, **changes).checks.items() if held is not True}
-
-
+@pytest.mark.slow
 def test_the_orbits_go_to_the_one_triangle_and_not_to_the_other():
-    assert failing(sinks=FOUND.sinks[::-1], turn=FOUND.turn[::-1]) == {"first", "second"}
-    assert failing(starts=FOUND.starts[::-1]) == {"first", "second"}
+    assert {*replace(FOUND, sinks=FOUND.sinks[::-1], turn=FOUND.turn[::-1]).open} == {"first", "second"}
+    assert {*replace(FOUND, starts=FOUND.starts[::-1]).open} == {"first", "second"}
     assert not any(entered_around(FOUND, 1 - k, *point) for k, point in enumerate(MIDDLE))
 
 
 def test_one_cycle_twice_is_no_pair_of_cycles():
     twice = {"sinks": (FOUND.sinks[0],) * 2, "turn": (FOUND.turn[0],) * 2}
-    assert failing(**twice, starts=(0.9, 0.9)) == {"apart"}
+    assert {*replace(FOUND, **twice, starts=(0.9, 0.9)).open} == {"apart"}
 
 
 @pytest.mark.parametrize(
@@ -52,14 +50,14 @@ def test_one_cycle_twice_is_no_pair_of_cycles():
     ],
 )
 def test_a_disc_that_is_not_taken_into_itself_proves_nothing(change):
-    assert "discs" in failing(**change)
+    assert "discs" in replace(FOUND, **change).open
 
 
 def test_below_the_crisis_the_branch_goes_to_no_triangle():
-    below = Orbit("triangle of the vertices", (-0.207952,), FOUND.saddle.closure)
+    below = SaddleCycle("triangle of the vertices", (-0.207952,), FOUND.saddle.closure)
     sink = 1.22591248, 0.39269908
     changed = replace(FOUND, lam=Fraction(3, 5), saddle=below, sinks=(sink, (-sink[0], -sink[1])))
-    assert {name for name, held in changed.checks.items() if held is not True} == {"first", "second"}
+    assert {*changed.open} == {"first", "second"}
 
 
 def test_points_of_a_disc_approach_one_another():
@@ -76,18 +74,8 @@ def test_a_saddle_is_no_disc():
     assert not attracts(FOUND.map, disc(FOUND.map, (-0.14235898, 0.43119899), 1e-3), tau / 3)
 
 
-def test_every_check_may_fail_and_nothing_is_refuted():
-    assert set(FOUND.checks) == set(CHECKS)
-    with pytest.raises(ValueError, match="accepted: one smooth closed curve"):
-        replace(FOUND, scene=Scene("cuspless"))
-    with pytest.raises(ValueError, match="no symmetry of the table"):
-        replace(FOUND, turn=(Fraction(1, 4), Fraction(2, 3)))
-    with pytest.raises(ValueError, match="lam is in"):
-        replace(FOUND, lam=Fraction(1))
-
-
 def stub(matrix, image, lost=False):
-    """A map with one derivative everywhere, `[[a, b], [c, d]]`, and the image of the centre within a radius."""
+    """A map with the constant derivative `[[a, b], [c, d]]`, whose image of the centre is `image` up to 1e-9."""
     (a, b, c, d), count = map(float, np.ravel(matrix)), common_boundary.CUT**2
     each = lambda x: BallArray(np.full(count, x))  # noqa: E731
     slopes = Slopes(each(a), each(b), each(-c / d), each(0.0), each(-d), each(0.0))
@@ -97,8 +85,8 @@ def stub(matrix, image, lost=False):
     return SimpleNamespace(derivatives=lambda _: ((piece, slopes),), images=lambda _: found)
 
 
-def test_a_disc_is_taken_into_itself_exactly_where_norm_and_offset_leave_room():
-    """Of matrices in frames of all shapes, by singular values; up to whole turns of the angle."""
+def test_a_disc_is_taken_into_itself_where_there_is_room():
+    """Random matrices in frames of any shape, against singular values, with angles up to whole turns."""
     rng, seen = np.random.default_rng(4), []
     for _ in range(400):
         inverse, centre, radius = rng.uniform(-1, 1, (2, 2)), rng.uniform(-1, 1, 2), rng.uniform(0.05, 1)
@@ -118,51 +106,51 @@ def test_a_disc_is_taken_into_itself_exactly_where_norm_and_offset_leave_room():
     assert min(sum(seen), len(seen) - sum(seen)) > 10
 
 
-def test_an_orbit_enters_a_disc_when_a_landing_is_proved_to_lie_in_it_or_a_copy(monkeypatch):
-    """Of three landings the second is near a copy turned by thirds: within the disc, or hardly beyond."""
-    rng, seen, landings = np.random.default_rng(5), [], []
-    whole = SimpleNamespace(start=lambda *_: None, orbit=lambda *_: iter(landings))
-    monkeypatch.setattr(common_boundary, "EnclosedMap", lambda *_: whole)
-    monkeypatch.setattr(common_boundary, "PinballMap", lambda *_, lam: None)
-    for _ in range(200):
-        inverse, centre, radius = rng.uniform(-1, 1, (2, 2)), rng.uniform(-1, 1, 2), rng.uniform(0.1, 0.5)
-        part, u = int(rng.integers(0, 3)), rng.uniform(-1, 1, 2) * radius
-        if abs(np.linalg.det(inverse)) < 0.3 or abs(np.hypot(*u) / radius - 1) < 1e-6:
-            continue
-        at = centre + inverse @ u + np.array([tau * (part / 3 + rng.integers(-1, 2)), 0])
-        one, away = Disc(tuple(centre), tuple(map(tuple, inverse)), radius), SimpleNamespace(theta=arb(0), phi=arb(40))
-        landings[:] = [away, SimpleNamespace(theta=arb(at[0]), phi=arb(at[1])), away]
-        for turns in ((0, 1, 2), (part,), ((part + 1) % 3,)):
-            copies = [np.hypot(*np.linalg.solve(inverse, off(at, centre, k))) < radius for k in turns]
-            parts = tuple(Fraction(k, 3) for k in turns)
-            assert common_boundary.enters(FOUND.scene, FOUND.lam, (arb(0), arb(0)), one, parts) is any(copies)
-            seen.append(any(copies))
-        landings[1].phi = arb(at[1], 10)
-        assert not common_boundary.enters(FOUND.scene, FOUND.lam, (arb(0), arb(0)), one, (Fraction(part, 3),))
-    assert min(sum(seen), len(seen) - sum(seen)) > 30
+def off(at, centre, part):
+    """The displacement of a point from the middle of the copy turned by `part` thirds, up to whole turns."""
+    theta = at[0] - centre[0] - tau * part / 3
+    return np.array([theta - tau * np.rint(theta / tau), at[1] - centre[1]])
+
+
+def series(*coefficients):
+    return SimpleNamespace(c=[acb(x) for x in coefficients])
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_points_of_a_branch_are_those_of_its_series(side):
+    """Series `1 + 3*z` and `2 - z + z**2` with the factor 4, from `z = 4**(low - 1)` on; phi is the difference."""
+    made = SimpleNamespace(factor=acb(4), pair=lambda: (series(1, 3), series(2, -1, 1)))
+    map = SimpleNamespace(over=lambda _: SimpleNamespace(angle=lambda before, here: (here - before, None)))
+    lows, highs = [0.0, 0.5, 0.25], [0.0, 0.75, 1.0]
+    points = ManifoldSeries(made, arb(2) ** -20, 100, map).points(side, lows, highs)
+    assert len(points) == 3
+    for (theta, phi), low, high in zip(points, lows, highs, strict=True):
+        wanted = []
+        for share in np.linspace(low, high, 9):
+            z = side * 4 ** (share - 1)
+            wanted.append((1 + 3 * z, 2 - z + z * z - (1 + 3 * z)))
+        for ball, some, slack in zip((theta, phi), np.transpose(wanted), (2.0**-20, 2.0**-19), strict=True):
+            least, most = float(ball.lower()), float(ball.upper())
+            assert least < some.min() - 0.9 * slack
+            assert some.max() + 0.9 * slack < most
+            assert most - least < 3 * np.ptp(some) + 2.2 * slack
 
 
 @pytest.mark.parametrize(
-    ("theta", "phi", "held"), [(0.5, 0, False), (0.4375, 0, True), (0, -0.5, False), (0, 0.25, True)]
-)
-def test_the_edge_itself_of_a_disc_is_no_part_of_it(monkeypatch, theta, phi, held):
-    whole = SimpleNamespace(
-        start=lambda *_: None, orbit=lambda *_: iter([SimpleNamespace(theta=arb(theta), phi=arb(phi))])
-    )
-    monkeypatch.setattr(common_boundary, "EnclosedMap", lambda *_: whole)
-    monkeypatch.setattr(common_boundary, "PinballMap", lambda *_, lam: None)
-    one = Disc((0.0, 0.0), ((1.0, 0.0), (0.0, 1.0)), 0.5)
-    assert common_boundary.enters(FOUND.scene, FOUND.lam, (arb(0), arb(0)), one, (Fraction(0),)) is held
-
-
-def test_a_disc_without_a_point_is_taken_nowhere():
-    """Of a radius below 0 the image would be smaller whatever the norm."""
-    unit = ((1.0, 0.0), (0.0, 1.0))
-    assert not attracts(stub([[1.5, 0], [0, 1.5]], (0.0, 0.0)), Disc((0.0, 0.0), unit, -1.0), 0.0)
-    assert attracts(stub([[0.5, 0], [0, 0.5]], (0.0, 0.0)), Disc((0.0, 0.0), unit, 1.0), 0.0)
-
-
-def off(at, centre, part):
-    """From the middle of a copy turned by thirds, up to whole turns."""
-    theta = at[0] - centre[0] - tau * part / 3
-    return np.array([theta - tau * np.rint(theta / tau), at[1] - centre[1]])
+    ("changes", "said"),
+    [
+        ({"side": 0}, "side = 0"), ({"side": 2}, "side = 2"), ({"lam": Fraction(0)}, "lam = 0"),
+        ({"lam": Fraction(1)}, "lam = 1"), ({"turn": (Fraction(1, 3), Fraction(1, 4))}, "no symmetry"),
+        ({"turn": (Fraction(1, 2), Fraction(2, 3))}, "no symmetry"),
+        ({"scene": Scene("egg", alpha="0.08", law="-lam*sin(eta)")}, "one smooth closed curve"),
+        ({"scene": Scene("cuspless")}, "one smooth closed curve"),
+        ({"saddle": replace(FOUND.saddle, start=FOUND.saddle.start * 2)}, "no symmetry"),
+        ({"saddle": replace(FOUND.saddle, closure=Closure(-1, FOUND.saddle.closure.shift))}, "no symmetry"),
+        ({"saddle": replace(FOUND.saddle, closure=Closure(1, (1, 4)))}, "no symmetry"),
+    ],
+)  # fmt: skip
+def test_each_hypothesis_of_a_common_boundary_is_asked_when_it_is_stated(changes, said):
+    with pytest.raises(ValueError, match=said):
+        replace(FOUND, **changes)
+    again = replace(FOUND, side=-FOUND.side, turn=(Fraction(4, 3), Fraction(-1, 3)))
+    assert again.turns == (0, Fraction(1, 3), Fraction(2, 3))

@@ -1,22 +1,18 @@
-"""Morse graphs over boxes of parameters: images hold for every parameter of a box, and what continues is the same."""
+"""Morse graphs over boxes of parameters: valid for each parameter of a box, and continued from box to box."""
 
 import json
 from fractions import Fraction
-from multiprocessing import active_children
 
 import numpy as np
 import pytest
 
 from numeric import PinballMap
-from numeric.sweeps.run import UnfinishedError, run
-from numeric.sweeps.workers import Lost
+from numeric.sweeps.run import run
 from symbolic import Scene
 from verification.app.cli import main
-from verification.maps.first_hit import convex
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.database import common, continued, database, same_order
-from verification.proofs.global_dynamics.graph import Cells, Grid
+from verification.proofs.global_dynamics.database import continued, database, same_order
 from verification.proofs.global_dynamics.parameter_box import ParameterBox
+from verification.rigorous.boxes import Boxes
 
 EGG = Scene("egg", alpha="1/20")
 FLOWER = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/90:0..1/30"}})
@@ -34,7 +30,7 @@ BOXES = 60
         (Scene("ellipse", a="3/2"), "a", ("3/2", "31/20")),
     ],
 )
-def test_the_image_of_a_box_holds_the_landings_at_every_parameter_of_its_range(scene, parameter, shape):
+def test_images_hold_the_landings_at_every_parameter(scene, parameter, shape):
     low, high = map(Fraction, shape)
     box = ParameterBox(scene, LAM, parameter, (low, high))
     (chart,), rng = box.charts, np.random.default_rng(1)
@@ -56,30 +52,6 @@ def test_the_image_of_a_box_holds_the_landings_at_every_parameter_of_its_range(s
             assert np.all((exit[0] <= landed.phi[source]) & (landed.phi[source] <= exit[1]))
 
 
-def test_with_the_shape_as_a_coordinate_images_are_smaller_than_with_its_range_in_every_formula():
-    from verification.proofs.global_dynamics.images import PinballImages
-
-    box = ParameterBox(EGG, LAM, "alpha", (Fraction(1, 20), Fraction(33, 640)))
-    some = Boxes(np.zeros(1, dtype=np.int64), (np.array([0.3]), np.array([0.31])), (np.array([0.1]), np.array([0.11])))
-    plain = type("Plain", (ParameterBox,), {"flights": PinballImages.flights})(EGG, LAM, "alpha", box.over)
-    sides = [float(np.ptp(np.array(found.images(some).boxes.x))) for found in (box, plain)]
-    assert sides[0] < 0.9 * sides[1]
-
-
-def test_up_to_its_turns_the_egg_has_a_third_of_the_phase_space():
-    (chart,) = ParameterBox(EGG, LAM, "alpha", (Fraction(1, 20), Fraction(33, 640))).charts
-    assert chart.x[1] - chart.x[0] == pytest.approx(2 * np.pi / 3, rel=1e-15)
-
-
-def test_sets_without_a_common_cell_have_nothing_in_common_and_strips_of_two_heights_are_told_apart_by_angle():
-    here = np.array([[0], [0], [-1], [1]], dtype=np.int8)
-    assert common(here, here, 1.0, 1.0, (2, 2)).tolist() == [[True, False], [False, True]]
-    # a strip of twice the height: its two middle rows reach as far as all four of the first
-    there = np.array([[0], [1], [0], [-1]], dtype=np.int8)
-    assert common(here, there, 1.0, 2.0, (2, 2)).tolist() == [[False, True], [True, False]]
-    assert common(there, here, 2.0, 1.0, (2, 2)).tolist() == [[False, True], [True, False]]
-
-
 @pytest.mark.parametrize("turned", [False, True])
 def test_graphs_continue_only_where_the_same_sets_lead_to_the_same(turned):
     order = np.array([[1, 1, 0], [0, 1, 0], [0, 1, 1]], dtype=np.int8)
@@ -94,7 +66,7 @@ def found():
     return sweep, run(sweep, workers=1)
 
 
-def test_boxes_next_to_one_another_in_a_quiet_place_are_one_class_and_its_map_stays_with_the_sets(found):
+def test_quiet_boxes_are_one_class_where_orbits_end(found):
     dataset = found[1]
     assert np.unique(continued(dataset)).tolist() == [0]
     assert (dataset.attracting.values >= 1).all()
@@ -106,45 +78,6 @@ def test_boxes_next_to_one_another_in_a_quiet_place_are_one_class_and_its_map_st
     column = np.floor((end.theta - chart.x[0]) / (chart.x[1] - chart.x[0]) * 64).astype(int) % 64
     row = np.floor((end.phi / box.height + 1) / 2 * 64).astype(int)
     assert np.all(cells[row, column] >= 0)  # where orbits end, there is a Morse set
-
-
-def test_landings_that_are_shared_between_contractions_are_those_found_alone():
-    shape, lams = (Fraction(1, 20), Fraction(33, 640)), (LAM, (Fraction(7, 10), Fraction(5, 7)))
-    first = ParameterBox(EGG, lams[0], "alpha", shape)
-    grid = Grid(first.charts, 24, 16)
-    some = grid.boxes(Cells(*(field[:200] for field in grid.whole())))
-    first.images(grid.boxes(Cells(*(field[100:] for field in grid.whole()))))  # with others before them
-    for lam in lams:
-        shared, alone = (box.images(some) for box in (first.at(lam), ParameterBox(EGG, lam, "alpha", shape)))
-        assert np.array_equal(shared.source, alone.source)
-        assert all(map(np.array_equal, (*shared.boxes.x, *shared.boxes.y), (*alone.boxes.x, *alone.boxes.y)))
-
-
-def test_by_processes_interrupted_or_by_this_one_the_graphs_are_the_same(found, tmp_path):
-    def stop(done, parts):
-        if done:
-            raise KeyboardInterrupt
-
-    store = tmp_path / "graphs.zarr"
-    with pytest.raises(KeyboardInterrupt, match="1 of 2 parts are in"):
-        run(found[0], store, workers=2, tick=stop)
-    assert not active_children()
-    stored = run(found[0], store, workers=2)
-    for name in ("sets", "attracting", "cells", "leads"):
-        assert np.array_equal(found[1][name].values, stored[name].values)
-
-
-def test_a_part_at_which_processes_die_is_named_and_what_is_done_is_kept(found, tmp_path, monkeypatch):
-    part = found[0].part((1, 0, 0, 0, 0, 0))
-    monkeypatch.setattr("numeric.sweeps.run.in_processes", lambda *_, **_also: iter([(part, Lost(-9))]))
-    with pytest.raises(UnfinishedError, match=r"part at \(1, 0.*signal 9.*0 of 2 parts are in"):
-        run(found[0], tmp_path / "graphs.zarr", workers=2)
-
-
-def test_a_set_that_meets_none_of_the_other_graph_stands_in_no_ones_way():
-    order = np.array([[1, 1, 1], [0, 1, 1], [0, 0, 1]], dtype=np.int8)
-    match = np.array([[1, 0], [0, 0], [0, 1]], dtype=bool)  # the second holds nothing at the border
-    assert same_order(match, order, order[np.ix_([0, 2], [0, 2])])
 
 
 def test_a_parameter_that_is_called_as_a_field_of_the_results_is_refused():
@@ -179,16 +112,9 @@ def test_a_shape_that_moves_the_ends_of_the_charts_or_the_law_is_refused(scene, 
 
 
 @pytest.mark.parametrize("size", [(18, 16, 4), (18, 18, 6)])
-def test_blocks_that_do_not_fit_are_an_error_and_not_boxes_of_which_nothing_is_known(size):
+def test_blocks_that_do_not_fit_are_refused(size):
     with pytest.raises(ValueError, match="no power of 2"):
         database(EGG, "alpha", [0.05, 0.06], [0.1, 0.2], *size)
-
-
-@pytest.mark.parametrize("name", ["b", "c"])
-def test_a_shape_is_proved_convex_or_not_whatever_its_parameter_is_called(name):
-    flower = Scene.of({"polar": f"1 + {name}*cos(5*theta)", "shape": {name: "1/50"}})
-    assert convex(flower.over(name, 0, "1/26")) is True
-    assert convex(flower.over(name, 0, "1/10")) is None
 
 
 @pytest.mark.parametrize(

@@ -1,18 +1,15 @@
-"""Equations of a rotating cycle: their derivatives are their differences, whatever ring, closure and unknowns."""
+"""Equations of a rotating cycle: derivatives agree with differences, for each ring, closure and set of unknowns."""
 
 import cmath
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flint import acb, arb
+from flint import arb
 from sympy import Rational, Symbol, cos, sin
 
 from verification.arithmetic.balls import FLOAT64
 from verification.cycles.recurrence import AFTER, BEFORE, HERE, IDENTITY, MIRROR, Closure, Explicit
-from verification.proofs.periodic import torus
-from verification.proofs.periodic.interval_newton import Enclosure, Status
 from verification.proofs.periodic.torus import Rotating, Rotation, Torus
 
 t, d, push = (Symbol(name, real=True) for name in ("t", "d", "push"))
@@ -29,7 +26,7 @@ POINTS = {
 @pytest.mark.parametrize("free", POINTS)
 @pytest.mark.parametrize("ring", [RING, replace(RING, closure=MIRROR), replace(RING, period=1)], ids=str)
 def test_what_is_solved_for_are_the_differences_of_the_equations(free, ring):
-    """The matrix of first derivatives is made by differences of the values; away from a cycle, at any numbers."""
+    """The matrix of first derivatives against differences of the values, at random points away from a cycle."""
     fixed, given = POINTS[free]
     problem, h = Rotating(ring, free, fixed), 1e-6
     z = [*PLACES[-ring.period :], *given] if ring.period > 1 else [0.0, *given]
@@ -46,7 +43,7 @@ def test_what_is_solved_for_are_the_differences_of_the_equations(free, ring):
 
 @pytest.mark.parametrize("ring", [RING, replace(RING, closure=MIRROR), replace(RING, period=1)], ids=str)
 def test_a_turn_is_the_difference_of_the_bordering_function_along_the_circle(ring):
-    """`mu = exp(i*omega)` moves by `i*mu` as `omega` grows."""
+    """The derivative of `mu = exp(i*omega)` by `omega` is `i*mu`."""
     h = 1e-6
     problem = Rotating(ring, ("t", "d"), {"trace": Rational(1, 2)})
     here = Rotation(problem, FLOAT64, [*PLACES[: ring.period], 1.25, 0.75])
@@ -59,7 +56,7 @@ def test_a_turn_is_the_difference_of_the_bordering_function_along_the_circle(rin
 
 
 def test_an_orbit_that_goes_on_by_whole_turns_has_the_normal_form_of_one_that_stays():
-    """A rule of differences and of sines has the same coefficients with `2*pi` added at each bounce."""
+    """A rule in differences and sines keeps its coefficients when `2*pi` is added at each bounce."""
     rule = AFTER - HERE - d * (HERE - BEFORE) + push * sin(HERE) - push * sin(Rational(1, 2)) + cos(HERE - BEFORE)
     stays = Explicit("kicked", rule - 1, (d, push), 1)
     fixed = {"push": Rational(3, 2)}
@@ -76,7 +73,7 @@ def test_an_orbit_that_goes_on_by_whole_turns_has_the_normal_form_of_one_that_st
 
 @pytest.mark.parametrize("closure", [IDENTITY, MIRROR])
 def test_a_rule_times_a_function_that_is_not_0_has_the_same_normal_form(closure):
-    """An odd rule times an even function is odd: half of a cycle may be followed too."""
+    """An odd rule times an even function is odd, so that half of a cycle can be followed too."""
     bent = 2 * HERE * BEFORE if closure == IDENTITY else 0
     plane = AFTER - t * HERE + d * BEFORE + bent - HERE**2 * BEFORE + push * HERE**3
     factor = 2 + 3 * AFTER * HERE + AFTER**2 + (AFTER if closure == IDENTITY else 0)
@@ -97,27 +94,6 @@ def test_a_rule_times_a_function_that_is_not_0_has_the_same_normal_form(closure)
         assert abs(forms[0].drift("d") - forms[1].drift("d")) < 1e-12
 
 
-@pytest.mark.parametrize("status", [Status.UNKNOWN, Status.EMPTY])
-def test_of_a_cycle_that_is_not_proved_nothing_else_is_told(monkeypatch, status):
-    monkeypatch.setattr(torus, "interval_newton", lambda *_: Enclosure(status, [arb(0), arb(1), arb(1)]))
-    fixed = {"trace": Rational(1, 2)}
-    plane = AFTER - t * HERE + d * BEFORE - push * HERE**2 * BEFORE
-    problem = Rotating(Explicit("plane", plane, (t, d, push), 1), ("t", "d"), fixed | {"push": Rational(1)})
-    found = torus.torus(problem, [0.01, 0.49, 1.02], "d")
-
-    assert found.checks == {"exists": None}
-    assert (found.certified, found.attracting, found.side) == (False, None, 0)
-
-
-@pytest.mark.parametrize(("lam", "answer"), [(0, None), (1, None), (0.5, True), (-0.5, None), (1.5, None)])
-def test_the_map_has_a_smooth_inverse_where_the_contraction_is_above_0_and_below_1(monkeypatch, lam, answer):
-    for name in ("closes_smoothly", "convex", "inside", "minimal"):
-        monkeypatch.setattr(torus, name, lambda *_: True)
-    ring = SimpleNamespace(shapes=(), table=None, law=SimpleNamespace(uniform=True), closure=IDENTITY, components=(0,))
-    found = torus.on_the_table(ring, SimpleNamespace(at={"lam": arb(lam)}, x=[]))
-    assert found == {"admissible": True, "minimal_period": True, "contraction": answer}
-
-
 @pytest.mark.parametrize(
     ("lyapunov", "growth", "attracting", "side"),
     [
@@ -131,18 +107,3 @@ def test_a_curve_attracts_by_the_sign_of_its_coefficient_and_lies_where_the_prod
     for checks, certified in (({"one": True}, True), ({"one": True, "other": None}, False), ({"one": False}, False)):
         found = Torus(None, None, checks, *(x if isinstance(x, arb) else arb(x) for x in (growth, lyapunov)))
         assert (found.certified, found.attracting, found.side) == (certified, attracting, side)
-
-
-def test_a_complex_number_is_of_the_kind_of_its_parts_and_an_area_is_that_of_two_of_them():
-    assert isinstance(torus.complex_number(arb(1), arb(2)), acb)
-    assert torus.complex_number(0.5, -2.0) == 0.5 - 2j
-    assert torus._area(3 + 1j, 1 + 2j) == 5
-    assert torus._area(1 + 2j, 3 + 1j) == -5
-
-
-def test_coefficients_of_powers_are_told_apart_by_three_phases():
-    """Of `2 + 3*z + (1 - i)*z**2` on the unit circle, and of a second row."""
-    phases = [cmath.rect(1, 2 * cmath.pi * k / 3) for k in range(3)]
-    rows = [[2 + 3 * z + (1 - 1j) * z**2, 5 * z] for z in phases]
-    for k, wanted in enumerate(([2, 0], [3, 5], [1 - 1j, 0])):
-        assert torus.harmonic(phases, rows, k) == pytest.approx(wanted, abs=1e-12)

@@ -1,4 +1,4 @@
-"""What the map does to unstable curves: difference quotients, boxes and their points, and what is refused."""
+"""Images of unstable curves: against difference quotients, boxes against their points, and refused data."""
 
 from fractions import Fraction
 
@@ -7,16 +7,16 @@ import pytest
 
 from symbolic import Scene
 from verification.arithmetic.arrays import BallArray
-from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.curves import PinballCurves
+from verification.rigorous.boxes import Boxes
 
 STARTS = (1, 0.1, 0.05), (1, -0.4, -0.2), (0, 0.3, 0.05), (0, 1.3, -0.3), (0, -1.6, 0.4)  # component, theta, phi
 
 
 @pytest.mark.parametrize(("chart", "start", "exit"), STARTS)
 def test_density_along_curves_is_what_the_map_makes_of_it(chart, start, exit):
-    """By difference quotients along a curve of a slope and a bend; a stretching may be negative."""
+    """By difference quotients along a curve with a slope and a bend; the stretch may be negative."""
     map = PinballImages(Scene("cuspless", lam="0.12"))
     m, w, step = 0.15, 0.3, 1e-4
     theta = start + step * np.arange(-2, 3)
@@ -37,8 +37,8 @@ def test_density_along_curves_is_what_the_map_makes_of_it(chart, start, exit):
     assert found.bend.m[0] + found.by_bend.m[0] * w == pytest.approx(bend, rel=1e-5, abs=1e-5)
 
 
-def test_what_is_told_of_curves_in_a_box_holds_what_is_told_of_its_points():
-    """And of all slopes of a range; of boxes that land on one component, and are told to."""
+def test_curves_in_a_box_hold_those_at_its_points():
+    """Also for all slopes of a range; and for boxes that land on one component, given as an argument."""
     curves, rng, size = PinballCurves(PinballImages(Scene("cuspless", lam="0.12"))), np.random.default_rng(4), 2e-3
     chart = np.repeat([0, 1], 150)
     x = np.where(chart == 0, rng.uniform(-2.0, 2.0, 300), rng.uniform(-1.2, 1.2, 300))

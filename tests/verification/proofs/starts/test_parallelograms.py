@@ -1,28 +1,26 @@
-"""Parallelograms hold the images of all of their points, and their derivatives; the kernels are the second method."""
+"""Parallelograms contain the images of all their points, with derivatives; the kernels are the second method."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import arb
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from symbolic import Scene, tables
+from symbolic import Scene
 from verification.arithmetic.arrays import hull
-from verification.arithmetic.balls import enclose, working
-from verification.proofs.global_dynamics.boxes import Boxes
-from verification.proofs.global_dynamics.flights import constant_bends, matrix
+from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts.chords import Chords
-from verification.proofs.starts.parallelograms import Parallelograms, carried
+from verification.proofs.starts.chords import ChordFlights
+from verification.proofs.starts.parallelograms import Parallelograms, push_forward
+from verification.rigorous.boxes import Boxes
 
 LOW, HIGH = Fraction("0.0712"), Fraction("0.0713")
 Array = NDArray[np.float64]
 
 
 def drawn(map: PinballImages, seed: int, count: int, size: float) -> Boxes:
-    """Boxes anywhere on all components, a tenth of them at an end of one."""
+    """Random boxes on all components, a tenth of them at an end of one."""
     rng = np.random.default_rng(seed)
     chart = rng.integers(0, len(map.charts), count)
     low, high = np.array([c.x for c in map.charts])[chart].T
@@ -32,9 +30,10 @@ def drawn(map: PinballImages, seed: int, count: int, size: float) -> Boxes:
     return Boxes(chart, (left, left + size * rng.random(count)), (bottom, bottom + size / 3 * rng.random(count)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "size"), [("cuspless", 0.02), ("cuspless", 0.001), ("egg", 0.02)])
 def test_orbits_stay_in_the_images(name: str, size: float) -> None:
-    """Of every set, known after some bounces, the orbit of a random point is in one of the images."""
+    """For each set the orbit of a random point lies in one of the images, bounce by bounce."""
     scene = Scene("egg", alpha="0.08", lam="0.0713") if name == "egg" else Scene("cuspless", lam="0.0713")
     images, map = PinballImages(scene, (LOW, HIGH)), PinballMap(scene, lam="0.07126")
     boxes, rng = drawn(images, 1, 800, size), np.random.default_rng(2)
@@ -43,7 +42,7 @@ def test_orbits_stay_in_the_images(name: str, size: float) -> None:
     chart, owner, sets = boxes.chart, np.arange(800), Parallelograms.about(boxes)
     followed = 0
     for _ in range(9):
-        source, sets = carried(images, sets)
+        source, sets = push_forward(images, sets)
         owner = owner[source]
         step = map.step(theta, phi, chart)
         theta, phi, chart = step.theta, step.phi, step.component
@@ -62,7 +61,7 @@ def test_orbits_stay_in_the_images(name: str, size: float) -> None:
 
 
 def test_derivatives_hold_those_of_the_kernels() -> None:
-    """Also where a flight goes from the arc to the wall or back."""
+    """Also for flights from the arc to the wall or back."""
     images, map = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH)), PinballMap("cuspless", lam="0.07126")
     boxes, rng = drawn(images, 3, 2000, 0.004), np.random.default_rng(4)
     theta, phi = (a + (b - a) * rng.random(boxes.chart.size) for a, b in (boxes.x, boxes.y))
@@ -73,7 +72,7 @@ def test_derivatives_hold_those_of_the_kernels() -> None:
     ]
     factors = np.array([[speed[0] / speed[1], 1 / speed[1]], [speed[0], np.ones_like(theta)]])
     told = told * factors.transpose(2, 0, 1)
-    flights, asked = Chords(images, boxes), 0
+    flights, asked = ChordFlights(images, boxes), 0
     for on, chart, low, high, _ in flights.pieces(*flights.arcs()):
         arc = hull(low, high)
         entries = matrix(flights.slopes(on, chart, arc))
@@ -89,11 +88,11 @@ def test_derivatives_hold_those_of_the_kernels() -> None:
 
 
 def test_beyond_a_join_every_flight_crosses_the_longer_component() -> None:
-    """The crossing with the cardioid's formula, by Newton's method, lies in the arc that is told, also past the end."""
+    """The crossing with the cardioid's formula, by Newton's method, lies in the returned arc, also past its end."""
     images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
     boxes, rng = drawn(images, 5, 6000, 0.03), np.random.default_rng(6)
     theta, phi = (a + (b - a) * rng.random(6000) for a, b in (boxes.x, boxes.y))
-    flights, beyond = Chords(images, boxes), 0
+    flights, beyond = ChordFlights(images, boxes), 0
     for on, chart, low, high, smooth in flights.pieces(*flights.arcs()):
         if smooth or not on.size:
             continue
@@ -112,44 +111,9 @@ def test_beyond_a_join_every_flight_crosses_the_longer_component() -> None:
 
 
 def leaving(chart: Array, theta: Array, phi: Array) -> tuple[Array, ...]:
-    """Start and direction of flights on the cuspless table, by hand."""
+    """Start `(x, y)` and unit direction of flights on the cuspless table, from its formulas."""
     c, s = np.cos(theta), np.sin(theta)
     dx, dy = np.where(chart == 0, -s - np.sin(2 * theta), 0.0), np.where(chart == 0, c + np.cos(2 * theta), -1.0)
     x, y = np.where(chart == 0, (1 + c) * c, -0.25), np.where(chart == 0, (1 + c) * s, -theta)
     tangent = np.arctan2(dy, dx)
     return x, y, np.cos(tangent + np.pi / 2 - phi), np.sin(tangent + np.pi / 2 - phi)
-
-
-def test_charts_hold_the_ends_of_components_and_inner_ends_lie_on_them() -> None:
-    """The arc of the cuspless table ends at `2*pi/3`, which is no double, the wall at `3*sqrt(3)/4/2`."""
-    images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
-    with working(200):
-        for chart, inner, part in zip(images.charts, images.inner.T, tables.cuspless.components, strict=True):
-            first, last = (enclose(end).real for end in (part.start, part.end))
-            assert all((arb(chart.x[0]) < first, first < arb(inner[0]), arb(inner[1]) < last, last < arb(chart.x[1])))
-            assert max(chart.x[1] - inner[1], inner[0] - chart.x[0]) < 1e-14
-
-
-def test_the_double_about_which_landings_are_enclosed_lies_in_the_arc() -> None:
-    """Also where the midpoint lands beyond the arc, or on another component: arcs cut from those of their boxes."""
-    images = PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
-    boxes, rng = drawn(images, 7, 4000, 0.02), np.random.default_rng(8)
-    flights, moved = Chords(images, boxes), 0
-    for on, chart, low, high, smooth in flights.split(*flights.arcs()):
-        cut = low + (high - low) * rng.random(on.size)
-        for arc in (hull(low, high), hull(low, cut), hull(cut, high)):
-            with np.errstate(all="ignore"):
-                (at, place), told = flights.near(on, chart, arc), np.isfinite(arc.r)
-            assert np.all((arc.lower() <= at.m)[told] & (at.m <= arc.upper())[told])
-            again = images.place(chart, at)
-            assert all(np.array_equal(a.m, b.m, equal_nan=True) for a, b in zip(place, again, strict=True))
-            moved += int(np.sum(at.m[told] == arc.m[told]))
-        assert smooth or np.any(chart != flights.landed[0][on])
-    assert moved > 100
-
-
-def test_only_constant_bends_are_known() -> None:
-    """The tangent of a cardioid turns by 3/2 of the parameter, that of a circle by 1; an ellipse has no such number."""
-    assert constant_bends(tables.cuspless) == (Fraction(3, 2), 0)
-    assert constant_bends(tables.circle) == (1,)
-    assert constant_bends(tables.ellipse.at(a=2)) == (None,)

@@ -1,4 +1,4 @@
-"""Sets of starts hold what they are said to hold and hardly more: parallelograms, cores, strips, norms over boxes."""
+"""Sets of starts contain their points and are hardly larger: parallelograms, cores, strips, norms over boxes."""
 
 from dataclasses import replace
 
@@ -7,15 +7,11 @@ import pytest
 
 from numeric import PinballMap
 from symbolic import Scene
-from verification.arithmetic.arrays import BallArray
-from verification.proofs.global_dynamics.boxes import Boxes
 from verification.proofs.global_dynamics.images import PinballImages
-from verification.proofs.starts import core as core_of
-from verification.proofs.starts import strips as strips_of
-from verification.proofs.starts.core import Core, derivative
 from verification.proofs.starts.mean import CORE, HIGH, LOW
 from verification.proofs.starts.parallelograms import Parallelograms
-from verification.proofs.starts.strips import Strips, settled, steepest, unsettled
+from verification.proofs.starts.strips import Strips, steepest
+from verification.rigorous.boxes import Boxes
 
 LAM = 0.07126
 SIGNS = np.array([(u, v, e, f) for u in (-1, 1) for v in (-1, 1) for e in (-1, 1) for f in (-1, 1)])
@@ -23,7 +19,7 @@ SIGNS = np.array([(u, v, e, f) for u in (-1, 1) for v in (-1, 1) for e in (-1, 1
 
 @pytest.fixture(scope="module")
 def map() -> PinballImages:
-    """The cuspless table next to `lambda*`."""
+    """The cuspless table at a contraction next to `lambda*`."""
     return PinballImages(Scene("cuspless", lam="0.0713"), (LOW, HIGH))
 
 
@@ -34,14 +30,14 @@ def drawn(seed: int, count: int, size: float = 1.0) -> Parallelograms:
 
 
 def corners(sets: Parallelograms) -> np.ndarray:
-    """The extreme points: coordinate, which, set."""
+    """The extreme points of parallelograms, as an array over coordinate, corner and set."""
     u, v, e, f = SIGNS.T[..., None]
     return np.stack([
         sets.middle[k] + u * sets.sides[k, 0] + v * sets.sides[k, 1] + (e, f)[k] * sets.rest[k] for k in (0, 1)
     ])  # fmt: skip
 
 
-def test_a_parallelogram_reaches_as_far_as_its_corners_in_every_direction() -> None:
+def test_a_parallelogram_reaches_as_far_as_its_corners() -> None:
     sets, rng = drawn(1, 300), np.random.default_rng(2)
     off = corners(sets) - sets.middle[:, None]
     for first, second in ((1.0, 0.0), (0.0, 1.0), (0.3, -2.0), *rng.uniform(-2, 2, (5, 2))):
@@ -59,22 +55,11 @@ def test_a_parallelogram_reaches_as_far_as_its_corners_in_every_direction() -> N
     assert np.array_equal(lost.known, np.arange(300) % 3 != 0)
 
 
-def test_other_sets_take_the_place_of_wider_ones_alone() -> None:
-    """One that is not finite takes none; one that is hardly wider along `theta` does, as it keeps directions."""
-    one = Parallelograms.about(Boxes(np.zeros(1, dtype=int), (np.zeros(1), np.ones(1)), (np.zeros(1), np.ones(1))))
-    for wide, tall, taken in ((0.9, 1, True), (1.4, 1, True), (1.6, 1, False), (1.6, 0.6, True), (1.6, 0.7, False)):
-        sides = one.sides * np.array([wide, tall])[:, None, None]
-        other = replace(one, sides=sides, middle=one.middle + 5)
-        assert bool(one.replaced(np.array([0]), other).middle[0, 0] == 5.5) is taken
-        lost = replace(other, rest=np.full((2, 1), np.inf))
-        assert one.replaced(np.array([0]), lost).middle[0, 0] == 0.5
-
-
 @pytest.mark.parametrize("gates", [(), ((0.36, 0.03),)])
 def test_a_core_holds_the_sets_all_of_whose_points_it_has(gates: tuple) -> None:
-    """Corners and points between them; sets that keep 2 per cent of the width, and a bend, from its border are held."""
+    """Corners and points between them; sets that keep 2 per cent of the width and a bend from its border lie inside."""
     sets, rng, seen = drawn(3, 4000, 1e-4), np.random.default_rng(4), []
-    core = replace(CORE, cubic=-0.5, gates=gates)
+    core = replace(CORE, cubic=-0.5, entry_tubes=gates)
     outer, width = gates[0] if gates else core.bounds
     p = lambda x: (core.slope + core.cubic * x**2) * x  # noqa: E731
     theta = rng.uniform(-1.05, 1.05, 4000) * outer
@@ -94,7 +79,7 @@ def test_a_core_holds_the_sets_all_of_whose_points_it_has(gates: tuple) -> None:
 
 
 def test_the_parts_of_a_core_cover_its_half_and_hardly_more() -> None:
-    """Random points of `theta >= 0`, moved aside as said; parts reach beyond by less than a hundredth of the width."""
+    """Random displaced points of `theta >= 0`; parts extend beyond by less than a hundredth of the width."""
     core, rng = replace(CORE, cubic=-0.5, cells=100), np.random.default_rng(5)
     for aside in (np.zeros(1), np.array([-2e-3, 1e-3])):
         parts = core.parts(aside)
@@ -113,29 +98,8 @@ def test_the_parts_of_a_core_cover_its_half_and_hardly_more() -> None:
         assert np.all(parts.rest[0] == 0)
 
 
-@pytest.mark.parametrize(
-    ("entries", "converges"),
-    [
-        ((0.9, 0.05, 0.05, 0.9), True),
-        ((0.9, 0.2, 0.2, 0.9), False),
-        ((-0.9, 0.05, -0.05, 0.9), True),
-        ((0.5, 10.0, 0.02, 0.5), True),  # 0.5 + sqrt(0.2)
-        ((0.5, 10.0, 0.03, 0.5), False),
-        ((1.1, 0.0, 0.0, 0.1), False),
-        ((np.nan, 0.0, 0.0, 0.1), False),
-    ],
-)
-def test_orbits_of_the_inner_core_converge_where_a_norm_shrinks(monkeypatch, map, entries, converges) -> None:
-    """The matrix of the largest absolute values over all parts has its largest eigenvalue below 1."""
-    a, b, c, d = (BallArray(np.array([0.0, x]), np.array([abs(x), 0.0])) for x in entries)
-    monkeypatch.setattr(core_of, "derivative", lambda *_: [[a, b], [c, d]])
-    assert core_of._converges(map, CORE) is converges
-    monkeypatch.setattr(core_of, "derivative", lambda *_: None)
-    assert not core_of._converges(map, CORE)
-
-
 def twice(theta: np.ndarray, phi: np.ndarray, chart: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The kernels' derivative of two bounces by arc length and exit angle; and where they end."""
+    """The kernels' derivative of two bounces by arc length and exit angle, and `theta` and component of the end."""
     map, product = PinballMap("cuspless", lam=str(LAM)), np.eye(2)
     for _ in range(2):
         product = map.derivative(theta, phi, chart) @ product
@@ -145,7 +109,7 @@ def twice(theta: np.ndarray, phi: np.ndarray, chart: np.ndarray) -> tuple[np.nda
 
 
 def small_boxes(map: PinballImages, seed: int, size: float) -> tuple[Boxes, np.ndarray, np.ndarray]:
-    """On either component, and a point in each."""
+    """Random small boxes on both components, and the coordinates of a point in each."""
     rng, count = np.random.default_rng(seed), 150
     chart = rng.integers(0, 2, count)
     low, high = np.array([c.x for c in map.charts])[chart].T
@@ -159,7 +123,7 @@ def speed(chart: np.ndarray, theta: np.ndarray) -> np.ndarray:
 
 
 def test_a_bound_of_two_bounces_holds_the_kernels_norm_and_is_near_it(map) -> None:
-    """In `max(abs(ds), abs(dphi)/weight)`: rows are summed with `weight` times what `phi` does."""
+    """In the norm `max(abs(ds), abs(dphi)/weight)`, where `phi` counts `weight` times in row sums."""
     for size, weight, most in ((1e-4, 0.05, 1.05), (4e-3, 0.3, 2.0)):
         boxes, theta, phi = small_boxes(map, 6, size)
         found = steepest(map, boxes, 2, weight)
@@ -171,28 +135,8 @@ def test_a_bound_of_two_bounces_holds_the_kernels_norm_and_is_near_it(map) -> No
         assert np.median(found[finite] / true[finite]) < most
 
 
-def test_the_derivative_of_two_bounces_over_boxes_holds_that_at_their_points(map) -> None:
-    """On the wall about the cycle, from where all land on the arc and come back."""
-    rng = np.random.default_rng(7)
-    x, y = rng.uniform(-0.3, 0.3, 300), rng.uniform(-0.02, 0.02, 300)
-    chart, size = np.ones(300, dtype=np.int64), 1e-3
-    boxes = Boxes(chart, (x, x + size), (y, y + size))
-    entries = derivative(map, boxes)
-    assert entries is not None
-    theta, phi = x + size * rng.random(300), y + size * rng.random(300)
-    product, _, last = twice(theta, phi, chart)
-    assert np.all(last == 1)
-    for i in (0, 1):
-        for j in (0, 1):
-            gap = np.abs(product[:, i, j] - entries[i][j].m)  # the wall's parameter is its arc length
-            assert np.all(gap <= entries[i][j].r + 1e-12)
-            assert np.median(entries[i][j].r) < 0.05
-    across = Boxes(chart, (x + 0.3, x + 0.9), (y, y + size))
-    assert derivative(map, across) is None  # these land on both sides of a join
-
-
 def test_the_measure_of_a_strip_is_a_little_more_than_its_integral(map) -> None:
-    """`cos(eta)*ds*deta` by sums of 60 by 60 midpoints."""
+    """The integral of `cos(eta)*ds*deta`, by sums over 60 by 60 midpoints."""
     rng, count = np.random.default_rng(8), 60
     chart = rng.integers(0, 2, count)
     left, wide = rng.uniform(-0.6, 0.5, count), rng.uniform(0.01, 0.1, count)
@@ -207,53 +151,3 @@ def test_the_measure_of_a_strip_is_a_little_more_than_its_integral(map) -> None:
     assert np.all(true <= found)
     steeper = np.cos(np.maximum(middle - half, 0)) / np.cos(middle)
     assert np.all(found <= true * steeper * (1.05 + 5 * wide))
-
-
-def flat(count: int) -> Strips:
-    """Strips side by side on the wall."""
-    left, nought = np.arange(count) * 1e-3, np.zeros(count)
-    return Strips(np.ones(count, dtype=int), left, left + 1e-3, nought, nought, nought + 0.5, nought + 1e-3)
-
-
-def test_a_strip_is_settled_when_each_of_its_images_comes_home(monkeypatch, map) -> None:
-    """Strips whose images part in two: one comes to the core at once, the other after a bounce, never, or is lost."""
-    home, far, late, lost = range(4)
-    place = {home: 0.0, far: 50.0, late: 100.0}
-    fates = [(home, home), (home, far), (home, late), (home, lost), (far, far), (lost, home), (late, late), (far, late)]
-
-    def carried(map, sets):
-        each = [then(x) for x in sets.middle[0]]
-        kinds = np.array([k for some in each for k in some])
-        source = np.repeat(np.arange(sets.chart.size), [len(some) for some in each])
-        images = sets[source]
-        middle = images.middle.copy()
-        middle[0] = [place.get(k, 0.0) for k in kinds]
-        rest = np.where(kinds == lost, np.inf, 1e-6) * np.ones((2, 1))
-        return source, replace(images, middle=middle, rest=rest)
-
-    def then(x):
-        return fates[round(x / 1e-3 - 0.5)] if x < 1 else (home,) if x == place[late] else (far,)
-
-    monkeypatch.setattr(strips_of, "carried", carried)
-    monkeypatch.setattr(strips_of, "FEW", 0.0)
-    monkeypatch.setattr(Core, "enters", lambda self, sets: (sets.middle[0] == 0) & sets.known)
-    done, _ = settled(map, CORE, flat(len(fates))._replace(left=flat(9).left[:8] + 1e-9))
-    assert done.tolist() == [set(fate) <= {home, late} for fate in fates]
-
-
-def test_what_is_left_is_the_measure_of_all_strips_that_are_not_settled(monkeypatch, map) -> None:
-    """Of both signs of `eta`; strips that are not hopeful are not asked, and count."""
-    first, asked = flat(10), []
-    whole = 2 * first.measures(map)
-    good = np.arange(10) % 2 == 0
-
-    def settles(map, core, some):
-        asked.append(some.left.size)
-        return some.left > 5e-3, np.zeros(some.left.size, dtype=bool)
-
-    monkeypatch.setattr(strips_of, "hopeful", lambda map, core, some: (good[: some.left.size], ~good[: some.left.size]))
-    monkeypatch.setattr(strips_of, "settled", settles)
-    left = unsettled(map, CORE, first, 0.0, rounds=1)
-    assert left.measure == pytest.approx(np.sum(whole[~(good & (first.left > 5e-3))]), rel=1e-9)
-    assert left.measure >= np.sum(whole[~(good & (first.left > 5e-3))])
-    assert (left.strips, asked) == (5, [5])

@@ -1,4 +1,4 @@
-"""No two attractors in regions of the cuspless table, contraction by contraction; a second attractor is refused."""
+"""At most one attractor in regions of the cuspless table, at several contractions; two attractors are refused."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from symbolic import Scene
-from verification.proofs.global_dynamics import Boxes, PinballImages
+from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.unstable_curves.anchor import anchor
-from verification.proofs.unstable_curves.no_two_attractors import REFUSED, NoTwoAttractors
+from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractors
+from verification.rigorous.boxes import Boxes
 
 SADDLES = {  # a point of an unstable cycle of period 4; half the width of its rectangle, columns and rows
     "0.09": (2.0754578, -0.0348760, 0.003, 1024, 8192),
@@ -23,49 +24,33 @@ SADDLES = {  # a point of an unstable cycle of period 4; half the width of its r
 
 
 def region(lam, besides=()):
-    """What is to be proved of the region that grows from the cycle, its mirror image and other points."""
+    """The statement for the region that grows from the cycle, its mirror image and other points."""
     theta, phi, half, columns, rows = SADDLES[lam]
     points = [(0, theta, phi), (0, -theta, -phi), *besides]
     chart, x, y = (np.array(row) for row in zip(*points, strict=True))
     map = PinballImages(Scene("cuspless"), (Fraction(lam),) * 2)
-    return NoTwoAttractors(map, columns, rows, Boxes(chart, (x, x), (y, y)), (0, theta, phi), 4, half, 24)
+    return NoTwoAttractors(map, columns, rows, Boxes(chart, (x, x), (y, y)), (0, theta, phi), 4, half)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lam", SADDLES)
-def test_the_cuspless_table_has_no_two_attractors_in_a_region_about_the_corner_orbit(lam):
+def test_the_cuspless_table_has_no_two_attractors(lam):
     found = region(lam)
     assert found.proved, found.reason
-    assert lam != "0.12" or found.checks["visits"]
     _, theta, phi = found.saddle
     other = anchor(found.region, (0, -theta, -phi), 4, found.half)  # so the region holds the cycle's mirror image
     assert (other.low, other.high) == (-found.anchor.high, -found.anchor.low)
 
 
-@pytest.mark.parametrize("lam", ["0.09", "0.14"])
-def test_both_ends_of_what_crosses_the_rectangle_leave_it_on_either_side_after_four_bounces(lam):
-    """Ends at any height of the region there, from border to border: so what lies between crosses it again."""
-    found = region(lam)
-    at, map = found.anchor, found.map.map
-    heights = np.linspace(at.bottom, at.top, 41)
-    sides = []
-    for theta in (at.low, at.high):
-        component, x, y = np.full(41, at.chart), np.full(41, theta), heights
-        for _ in range(4):
-            end = map.step(x, y, component)
-            component, x, y = end.component, end.theta, end.phi
-        assert np.all(component == at.chart)
-        sides.append((x.min(), x.max()))
-    assert sides[1][1] < at.low < at.high < sides[0][0]  # the multiplier is negative
-
-
 def test_on_coarser_cells_it_is_not_proved_and_nothing_is_said():
     coarse = replace(region("0.12"), columns=512, rows=512)
     assert not coarse.proved
-    assert any(coarse.reason.endswith(why) for why in REFUSED.values()) or "no cones" in coarse.reason
+    assert coarse.open
 
 
+@pytest.mark.slow
 def test_a_region_that_holds_the_cycle_of_period_2_besides_is_refused():
-    """At 0.09 that attracts too: its two multipliers lie within the unit circle."""
+    """At 0.09 that cycle attracts too: both its multipliers lie inside the unit circle."""
     both = region("0.09", ((0, 0.0, 0.0), (1, 0.0, 0.0)))
     assert not both.proved
     assert both.checks["cones"] is None or both.checks["growth"] is None

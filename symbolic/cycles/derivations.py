@@ -1,0 +1,314 @@
+"""Functions that derive a result from a table: curvature, lengths, derivative, double normals, thresholds, code.
+
+A table argument is one of `symbolic.tables`, a scene, or the name of one of the paper's. Results are exact, in
+the letters of the table, and `lam` for the contraction.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import import_module
+from typing import Any, TypeAlias
+
+from sympy import And, Expr, Interval, Matrix, Piecewise, S, Symbol, pi, simplify, sqrt
+
+from symbolic.cycles import cycle as cycles
+from symbolic.cycles.cycle import Cycle, shortened, trace_and_determinant
+from symbolic.cycles.thresholds import flip_contraction, focus_contraction, stability_number
+from symbolic.expressions.signs import nonnegative, positive, vanishes
+from symbolic.expressions.text import Kernel, kernel, load
+from symbolic.motion import collision
+from symbolic.tables import geometry, named
+from symbolic.tables.curves import size
+from symbolic.tables.definition import POINTS
+from symbolic.tables.scene import Scene, given_table
+from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.validity import enclosed_area, parameter_box, root
+
+Tabled: TypeAlias = Table | Scene | str  # or a map of `numeric`, which has a scene
+theta0, theta1 = Symbol("theta0", real=True), Symbol("theta1", real=True)  # boundary parameters of a flight's ends
+SMALL = 80  # largest size, in operations, names and numbers, of an expression that is simplified
+ARITHMETICS = {  # module and function of each number system, imported at its first use
+    "numpy": ("numeric.backends.scalars", "array_arithmetic"),
+    "mpmath": ("verification.arithmetic.balls", "mpmath_arithmetic"),
+    "arb": ("verification.arithmetic.balls", "ball_arithmetic"),
+}
+
+
+def table_of(given: Tabled) -> Table:
+    """The exact table of a scene (with its numbers), a map, or a name of the paper's; a table is returned unchanged."""
+    held = given if isinstance(given, str) else getattr(given, "table", given)  # a scene and a map have a table
+    table, _ = given_table(held, POINTS, {})
+    return named(table) if isinstance(table, str) else table
+
+
+def _each(given: Tabled | Component, derive: Callable[[Component], Expr]) -> Any:
+    """`derive` of a component, or of a table's only one; a dict by name for a table of several components."""
+    if isinstance(given, Component):
+        return derive(given)
+    parts = table_of(given).components
+    return derive(parts[0]) if len(parts) == 1 else {part.name: derive(part) for part in parts}
+
+
+def curvature(table: Tabled | Component) -> Any:
+    """The signed curvature, in 1/length, negative where the boundary focuses; a dict by name for several components.
+
+    Paper: section 2 (sign convention) and eq. (curvature-polar). Textbooks use the opposite sign.
+
+    >>> from symbolic import curvature
+    >>> from symbolic.tables.table import theta
+    >>> curvature("cardioid").subs(theta, 0), curvature("cuspless")["wall"]
+    (-3/4, 0)
+    """
+    return _each(table, geometry.curvature)
+
+
+def arc_length(table: Tabled | Component) -> Any:
+    """Arc length from the start of the component to `theta`, in units of length; a dict by name for several components.
+
+    Where there is no closed form it contains an unevaluated integral, for `numeric` and `verification` to integrate.
+
+    >>> arc_length("circle")
+    theta + pi
+    """
+
+    def derive(part: Component) -> Expr:
+        length = geometry.arc_length(part)
+        return simplify(length - length.subs(theta, part.start))
+
+    return _each(table, derive)
+
+
+def perimeter(table: Tabled) -> Expr:
+    """The length of the whole boundary.
+
+    >>> perimeter("cardioid")
+    8
+    """
+    return geometry.perimeter(table_of(table))
+
+
+def area(table: Tabled) -> Expr:
+    """The enclosed area, by Green's formula; `ValueError` where no closed form is found.
+
+    >>> area("cardioid")
+    3*pi/2
+    """
+    found = enclosed_area(table_of(table))
+    if found is None:
+        raise ValueError(f"{table_of(table).name}: no closed form of the area is found")
+    return found
+
+
+def derivative_matrix(table: Tabled | None = None, *components: int, **values: Expr) -> Matrix:
+    """`d(s1, phi1)/d(s0, phi0)` of one flight and one reflection. Paper: eq. (derivative_of_map).
+
+    Without a table: in the paper's letters `K0, K1, t, cos_phi0, cos_eta1, lam`, each of which may be given a value.
+    With a table: along the chord from `theta0` to `theta1`; `components` are their two indices, by default the first.
+    `lam` stands for the slope of the reflection law at the landing, with the opposite sign.
+
+    >>> derivative_matrix().det().simplify()
+    cos_phi0*lam/cos_eta1
+    >>> derivative_matrix("circle").subs({theta0: 0, theta1: pi})
+    Matrix([
+    [1,  -2],
+    [0, lam]])
+    """
+    if table is None:
+        return collision.derivative_matrix(**values)
+    parts, (here, there) = table_of(table).components, components or (0, 0)
+    ends = [(parts[index], parameter) for index, parameter in ((here, theta0), (there, theta1))]
+    points, tangents = (
+        [
+            Matrix([x.subs(theta, at) for x in (part.point if not order else geometry.velocity(part))])
+            for part, at in ends
+        ]
+        for order in (0, 1)
+    )
+    chord = points[1] - points[0]
+    t = sqrt(_short(chord.dot(chord)))
+    across = [tangent[0] * chord[1] - tangent[1] * chord[0] for tangent in tangents]  # chord times inward normal
+    speeds = [geometry.speed(part).subs(theta, at) for part, at in ends]
+    given = {
+        "K0": geometry.curvature(ends[0][0]).subs(theta, theta0),
+        "K1": geometry.curvature(ends[1][0]).subs(theta, theta1),
+        "t": t,
+        "cos_phi0": _short(across[0]) / (speeds[0] * t),
+        "cos_eta1": -_short(across[1]) / (speeds[1] * t),
+    }
+    return collision.derivative_matrix(**{**given, **values})
+
+
+def _short(expression: Expr) -> Expr:
+    """The expression, simplified if it is short enough for that to be fast."""
+    return simplify(expression) if size(expression) <= SMALL else expression
+
+
+@dataclass(frozen=True)
+class SlapMap:
+    """The map at `lam = 0`, where each flight leaves along the normal: `residual = 0` says where it lands.
+
+    `residual` is a length times a speed, in `theta0` and `theta1`; it vanishes for `theta1 = theta0` too. `derivative`
+    is `ds1/ds0` along the flight. Paper: section 2.2.
+    """
+
+    table: Table
+    residual: Expr
+    derivative: Expr
+
+    def _repr_latex_(self) -> str:
+        from symbolic.tables.formula import latex
+
+        return rf"$\displaystyle {latex(self.residual)} = 0, \quad \frac{{ds_1}}{{ds_0}} = {latex(self.derivative)}$"
+
+
+def slap_map(table: Tabled, *components: int) -> SlapMap:
+    """The slap map, the one-dimensional map that remains at `lam = 0`, from one component to another.
+
+    >>> slap = slap_map("circle")
+    >>> slap.residual.subs(theta1, theta0 + pi), slap.derivative.subs(theta1, theta0 + pi).simplify()
+    (0, 1)
+    """
+    parts, (here, there) = table_of(table).components, components or (0, 0)
+    start, tangent = parts[here].point, geometry.velocity(parts[here])
+    chord = [y.subs(theta, theta1) - x.subs(theta, theta0) for x, y in zip(start, parts[there].point, strict=True)]
+    residual = sum((v.subs(theta, theta0) * d for v, d in zip(tangent, chord, strict=True)), S.Zero)
+    matrix = derivative_matrix(table, here, there, lam=S.Zero, cos_phi0=S.One)
+    return SlapMap(table_of(table), _short(residual), _short(matrix[0, 0]))
+
+
+def double_normals(table: Tabled) -> tuple[Cycle, ...]:
+    """The cycles of period 2 along the axes of symmetry, one of each kind, the longest chord first.
+
+    Such a chord is normal to the boundary at both ends, so it is a cycle for every contraction. Axes that a symmetry
+    of the table takes into one another are one kind. `ValueError` where the table has no proved axis.
+
+    >>> [cycle.name for cycle in double_normals("ellipse")]
+    ['axis at 0', 'axis at pi/2']
+    """
+    whole = table_of(table)
+    found: list[Cycle] = []
+    for symmetry in geometry.group(whole):
+        if symmetry.sign > 0:
+            continue
+        bounces = _on_axis(whole, symmetry)
+        cycle = Cycle(f"axis at {symmetry.angle / 2}", whole, tuple(bounces))
+        if len(bounces) == 2 and cycles.is_double_normal(cycle) and not any(_alike(cycle, other) for other in found):
+            found.append(cycle)
+    if not found:
+        raise ValueError(
+            f"{whole.name}: no axis of symmetry with a chord along it is proved; accepted: a table with one"
+        )
+    middle = {
+        p.symbol: (p.range.start + (p.range.end if p.range.end.is_finite else p.range.start + 2)) / 2
+        for p in whole.shapes
+    }
+    return tuple(sorted(found, key=lambda cycle: -cycle.length(0).subs(middle).evalf()))
+
+
+def _on_axis(table: Table, symmetry: geometry.Symmetry) -> list[tuple[int, Expr]]:
+    """The boundary points on the axis of a reflection, as (component, parameter), without cusps and corners."""
+    marked = {(mark.component, mark.theta) for mark in table.undefined}
+    found = []
+    for index, (part, onto, shift) in enumerate(zip(table.components, symmetry.onto, symmetry.shift, strict=True)):
+        whole = part.end - part.start == 2 * pi and len(table.components) == 1
+        for at in (shift / 2, shift / 2 + pi) if whole else (shift / 2,):
+            at = at - 2 * pi if whole and at > pi else at
+            inside = whole or (positive(at - part.start, {}) and positive(part.end - at, {}))
+            if onto == index and inside and (index, at) not in marked and (index, at - 2 * pi) not in marked:
+                found.append((index, at))
+    return found
+
+
+def _alike(one: Cycle, other: Cycle) -> bool:
+    """Have two chords the same length and the same curvatures at their ends?"""
+    ends = [sorted((frame.curvature for frame in cycle.frames), key=str) for cycle in (one, other)]
+    return vanishes(one.length(0) - other.length(0)) and all(vanishes(p - q) for p, q in zip(*ends, strict=True))
+
+
+def multipliers(cycle: Cycle) -> tuple[Expr, Expr]:
+    """`(mu_plus, mu_minus)`, the eigenvalues of the monodromy matrix, in `lam` and the letters of the table.
+
+    >>> from symbolic.cycles.cycle import minor_axis
+    >>> from symbolic.tables.table import a, lam
+    >>> [mu.subs({a: 2, lam: 0}).simplify() for mu in multipliers(minor_axis())]
+    [1/4, 0]
+    """
+    return cycles.multipliers(*trace_and_determinant(cycle))
+
+
+def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
+    """The contractions at which a cycle of period 2 along a double normal doubles its period and becomes a focus.
+
+    `flip`: a multiplier is -1; the cycle is stable below. `focus`: the multipliers are complex above. None where no
+    contraction in [0, 1] has this property for any shape in the range; a formula with its condition where it has it for
+    some shapes only. `ValueError` for other cycles.
+
+    >>> from symbolic.cycles.cycle import cuspless_horizontal
+    >>> thresholds(cuspless_horizontal())
+    {'flip': (1 - sqrt(11)/4)/(sqrt(11)/4 + 1), 'focus': None}
+    """
+    if len(cycle.bounces) != 2 or not cycles.is_double_normal(cycle):
+        raise ValueError(f"{cycle.name}: thresholds are known of cycles of period 2 that are normal at both ends")
+    P = stability_number(cycle)
+    box = {letter: range for letter, range in parameter_box(cycle.table).items() if letter in P.free_symbols}
+    if P.is_number:
+        return {"flip": flip_contraction(P), "focus": focus_contraction(P)}
+    return {"flip": _threshold(-P, -P, P + 1, box), "focus": _threshold(1 - P, P, 1 - P, box)}
+
+
+def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]) -> Expr | None:
+    """`(1 - r)/(1 + r)`, `r = sqrt(square)`, on the condition `one >= 0` and `other >= 0`; None if that never holds."""
+    inside = {letter: Interval.open(range.start, range.end) for letter, range in box.items()}
+    if any(nonnegative(-gap, inside) for gap in (one, other)):
+        return None
+    r = root(square, box)
+    value = shortened((1 - r) / (1 + r))
+    held = all(nonnegative(gap, inside) for gap in (one, other))
+    return value if held else Piecewise((value, And(one >= 0, other >= 0)))
+
+
+@lru_cache(maxsize=64)
+def _kernel(letters: tuple[Symbol, ...], names: tuple[str, ...], entries: tuple[Expr, ...]) -> Kernel:
+    """The generated function that returns `entries`, the same for every arithmetic and every number of digits."""
+    return kernel("value", letters, dict(zip(names, entries, strict=True)))
+
+
+def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int = 50) -> Any:
+    """The code of an expression or a matrix, for arrays, for mpmath numbers, for balls, or as text.
+
+    The function takes the free letters in alphabetical order, `theta` first. `arithmetic` is `"numpy"`, `"mpmath"` or
+    `"arb"` (with `digits`), or `"text"`, which returns the source in the closed vocabulary of
+    `symbolic.expressions.text`; a rational is written `q(1, 3)` there and never rounded.
+
+    >>> from sympy import cos
+    >>> from symbolic.tables.table import alpha
+    >>> print(generate(alpha * cos(theta) / 3, "text"))
+    def value(theta, alpha):
+        value = q(1, 3)*alpha*cos(theta)
+        return (value,)
+    <BLANKLINE>
+    >>> f = generate(cos(theta) / 3, "arb", digits=20)
+    >>> print(f(0).str(20))
+    [0.33333333333333333333 +/- 3.34e-21]
+    """
+    entries = list(expression) if isinstance(expression, Matrix) else [S(expression)]
+    letters = sorted(
+        {x for entry in entries for x in entry.free_symbols}, key=lambda x: (x not in (theta, theta0, theta1), str(x))
+    )
+    names = ["value"] if len(entries) == 1 else [f"value{i}" for i in range(len(entries))]
+    made = _kernel(tuple(letters), tuple(names), tuple(entries))
+    if arithmetic == "text":
+        return made.text
+    if arithmetic not in ARITHMETICS:
+        raise ValueError(f"generate: {arithmetic!r} is no arithmetic; accepted: text, {', '.join(ARITHMETICS)}")
+    module, name = ARITHMETICS[arithmetic]
+    system, run = getattr(import_module(module), name)(digits)
+    function = load(made, system)
+
+    def value(*arguments: Any, **named_arguments: Any) -> Any:
+        given = [*arguments, *(named_arguments[str(letter)] for letter in letters[len(arguments) :])]
+        return run(function, given, getattr(expression, "shape", None))
+
+    value.__doc__ = f"Arguments: {', '.join(map(str, letters))}.\n\n{made.text}"
+    return value

@@ -1,0 +1,116 @@
+"""The derivations offered by `symbolic`: the paper's formulas from one call each, and the code generated from them."""
+
+import flint
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from sympy import Rational, latex, pi, simplify, sqrt
+
+import symbolic
+from numeric import PinballMap
+from symbolic import curvature, derivative_matrix, double_normals, generate, monodromy, multipliers, tables, thresholds
+from symbolic.cycles.derivations import theta0, theta1
+from symbolic.cycles.thresholds import alpha_tilde, flip_contraction, focus_contraction, lambda_c, lambda_minus
+from symbolic.tables.table import a, alpha, lam, theta
+
+PEA = tables.polar("1 + b*cos(2*theta)", b="0:1/5")
+B = PEA.shapes[0].symbol
+
+
+def test_the_axes_of_the_ellipse_have_the_paper_s_threshold():
+    long, short = double_normals("ellipse")
+
+    assert thresholds(long) == {"flip": None, "focus": None}
+    assert thresholds(short)["flip"] is None
+    assert simplify((thresholds(short)["focus"] - lambda_minus()).subs(a, Rational(7, 3))) == 0
+
+
+def test_the_egg_s_diameter_flips_on_the_paper_s_curve():
+    (diameter,) = double_normals("egg")
+    there = thresholds(diameter)["flip"].subs(alpha, alpha_tilde().subs(lam, Rational(1, 3)))
+
+    assert abs(there.evalf(30) - Rational(1, 3)) < Rational(1, 10**25)
+
+
+def test_the_cuspless_threshold_is_a_number():
+    assert thresholds(double_normals("cuspless")[0]) == {"flip": lambda_c(), "focus": None}
+
+
+@pytest.mark.parametrize("P", [Rational(361, 121), Rational(0), Rational(1, 2), Rational(-5)])
+def test_there_is_no_flip_but_for_numbers_from_minus_one_to_zero(P):
+    assert flip_contraction(P) is None
+
+
+@pytest.mark.parametrize("P", [Rational(25), Rational(-1, 4), Rational(-5)])
+def test_there_is_no_focus_but_for_numbers_from_zero_to_one(P):
+    assert focus_contraction(P) is None
+
+
+def test_multipliers_are_those_of_the_monodromy_matrix():
+    for cycle in double_normals(PEA):
+        M = monodromy(cycle)
+        for mu in multipliers(cycle):
+            point = {B: Rational(1, 7), lam: Rational(1, 2)}
+            assert abs((mu**2 - M.trace() * mu + M.det()).subs(point).evalf(30)) < Rational(1, 10**20)
+
+
+def test_letters_are_greek_from_whatever_function_they_come():
+    shown = latex(monodromy(double_normals("egg")[0]) * 2)
+
+    assert r"\lambda" in shown
+    assert r"\alpha" in shown
+    assert "lam" not in shown.replace(r"\lambda", "")
+
+
+@pytest.mark.parametrize("text", ["1/5", "1:0", "x:1", "0..1"])
+def test_a_range_is_two_numbers_in_order(text):
+    with pytest.raises(ValueError, match="b"):
+        tables.polar("1 + b*cos(2*theta)", b=text)
+
+
+def test_a_family_is_a_table_over_all_of_its_range():
+    with pytest.raises(ValueError, match="is not positive at"):
+        tables.polar("1 + b*cos(2*theta)", b="0:3/2")
+
+
+@given(st.floats(-3, 3), st.fractions("0", "1/5", max_denominator=100))
+def test_generated_code_agrees_over_arrays_mpmath_and_balls(at, b):
+    kappa = curvature(PEA)
+    by = {kind: generate(kappa, kind)(at, b) for kind in ("numpy", "mpmath", "arb")}
+    exact = kappa.subs({theta: Rational(at), B: Rational(b.numerator, b.denominator)}).evalf(40)
+
+    assert abs(by["numpy"] - float(exact)) <= 1e-13 * abs(float(exact))
+    assert abs(by["mpmath"] - exact) <= abs(exact) * Rational(1, 10**38)
+    assert by["arb"].overlaps(flint.arb(str(exact), str(abs(exact) * Rational(1, 10**36))))
+
+
+TABLES = {"circle": {}, "ellipse": {"a": "3/2"}, "cardioid": {}, "egg": {"alpha": "2/25"}}
+MATRIX = {
+    name: generate(derivative_matrix(tables.named(name).at(**shape)), "mpmath", digits=30)
+    for name, shape in TABLES.items()
+}
+
+
+@given(st.sampled_from(sorted(TABLES)), st.floats(-3, 3), st.floats(-1.4, 1.4), st.sampled_from(["0.3", "0.95"]))
+def test_the_numeric_jacobian_is_the_symbolic_matrix_along_the_chord(name, at, phi, contraction):
+    map = PinballMap(name, lam=contraction, **TABLES[name])
+    step = map.step(at, phi)
+    if step.code != 0 or np.cos(step.eta) < 1e-2:
+        return
+    expected = np.array(MATRIX[name](at, float(step.theta), contraction).tolist(), dtype=float)
+
+    assert np.allclose(map.derivative(at, phi), expected, rtol=1e-9, atol=1e-9)
+
+
+def test_the_slap_map_of_the_circle_goes_to_the_other_side():
+    slap = symbolic.slap_map("circle")
+
+    assert simplify(slap.residual.subs(theta1, theta0 + pi)) == 0
+    assert simplify(slap.derivative.subs(theta1, theta0 + pi)) == 1
+
+
+def test_lengths_and_areas_are_the_closed_forms():
+    assert symbolic.perimeter("cardioid") == 8
+    assert simplify(symbolic.area("cuspless") - (15 * sqrt(3) / 16 + pi)) == 0
+    assert symbolic.arc_length("circle").subs(theta, pi) == 2 * pi

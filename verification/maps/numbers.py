@@ -1,0 +1,109 @@
+"""Number systems in which a table's programs run with many digits: mpmath, real balls and complex balls.
+
+Each has `turned`, cosine and sine at the cost of one.
+"""
+
+from typing import Any
+
+from flint import acb, arb, fmpq
+
+from numeric.backends.scalars import ScalarBackend
+
+
+class Numbers(ScalarBackend[Any]):
+    """The numbers of an mpmath context, as an arithmetic for programs."""
+
+    def turned(self, x: Any) -> tuple[Any, Any]:
+        """Cosine and sine."""
+        found: tuple[Any, Any] = self.context.cos_sin(x)  # type: ignore[attr-defined]
+        return found
+
+
+class Balls(ScalarBackend[Any]):
+    """Operations of ball arithmetic that a program calls: constants, roots and elementary functions."""
+
+    def __init__(self) -> None:
+        """Takes no context, unlike the other number systems."""
+
+    def q(self, p: int, n: int) -> arb:
+        """A ball that holds `p/n`."""
+        return arb(fmpq(p, n))
+
+    @property
+    def pi(self) -> arb:
+        """A ball that holds pi."""
+        return arb.pi()
+
+    def sqrt(self, x: Any) -> Any:
+        """The square root."""
+        return x.sqrt()
+
+    def sin(self, x: Any) -> Any:
+        """The sine."""
+        return x.sin()
+
+    def cos(self, x: Any) -> Any:
+        """The cosine."""
+        return x.cos()
+
+    def turned(self, x: Any) -> tuple[Any, Any]:
+        """Cosine and sine."""
+        sine, cosine = x.sin_cos()
+        return cosine, sine
+
+    def exp(self, x: Any) -> Any:
+        """The exponential."""
+        return x.exp()
+
+    def log(self, x: Any) -> Any:
+        """The natural logarithm."""
+        return x.log()
+
+    def atan(self, x: Any) -> Any:
+        """The arc tangent."""
+        return x.atan()
+
+    def sinh(self, x: Any) -> Any:
+        """The hyperbolic sine."""
+        return x.sinh()
+
+    def cosh(self, x: Any) -> Any:
+        """The hyperbolic cosine."""
+        return x.cosh()
+
+    def tanh(self, x: Any) -> Any:
+        """The hyperbolic tangent."""
+        return x.tanh()
+
+    def root(self, x: Any, n: int) -> Any:
+        """The positive `n`-th root."""
+        return x.root(n)
+
+
+class ComplexBalls(Balls):
+    """Analytic operations on complex balls; not finite where a branch cut may meet the ball."""
+
+    def sqrt(self, x: Any) -> Any:
+        """The principal square root."""
+        return x.sqrt(analytic=True)
+
+    def log(self, x: Any) -> Any:
+        """The natural logarithm."""
+        return x.log(analytic=True)
+
+    def atan(self, x: Any) -> Any:
+        """The arc tangent; not finite on balls that may meet its branch cuts."""
+        return x.atan() if abs(x.imag) < 1 else acb("nan")
+
+    def root(self, x: Any, n: int) -> Any:
+        """The principal `n`-th root."""
+        return (x.log(analytic=True) / n).exp()
+
+    def q(self, p: int, n: int) -> Any:
+        """A ball that holds `p/n`."""
+        return acb(fmpq(p, n))
+
+    @property
+    def pi(self) -> Any:
+        """A ball that holds pi."""
+        return acb.pi()

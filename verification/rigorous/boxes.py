@@ -1,0 +1,158 @@
+"""Arrays of boxes of a phase space, and maps that send each box to boxes which hold its image.
+
+A phase space consists of charts: rectangles with two coordinates each. A map of the plane is given by its formula and
+that of its derivative, evaluated in balls; the image of a box follows by the mean-value theorem.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.arithmetic.arrays import BallArray, hull
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Boxes(NamedTuple):
+    """Boxes of a phase space, one entry each: its chart, and arrays of the low and high ends of both coordinates."""
+
+    chart: Indices
+    x: tuple[Array, Array]
+    y: tuple[Array, Array]
+
+    def chosen(self, which: Indices | NDArray[np.bool_] | slice) -> "Boxes":
+        """Some of the boxes, by their indices, a mask or a slice."""
+        return Boxes(self.chart[which], *((low[which], high[which]) for low, high in (self.x, self.y)))
+
+    def parts(self, across: int, up: int) -> tuple["Boxes", Indices]:
+        """The boxes cut into `across` by `up` equal parts, and for each part the index of its box."""
+        source = np.repeat(np.arange(self.chart.size), across * up)
+        sides = [np.tile(np.repeat(np.arange(across), up), self.chart.size), np.tile(np.arange(up), source.size // up)]
+        ends = []
+        for (low, high), step, count in zip((self.x, self.y), sides, (across, up), strict=True):
+            low, high = low[source], high[source]
+            size = np.abs(low) + np.abs(high)
+            cut = [low + (high - low) * ((step + end) / count) for end in (0, 1)]
+            ends.append((np.maximum(cut[0] - 1e-15 * size, low), np.minimum(cut[1] + 1e-15 * size, high)))
+        return Boxes(self.chart[source], *ends), source
+
+    def mirrored(self) -> "Boxes":
+        """The images of the boxes under `(x, y) -> (-x, -y)`."""
+        return Boxes(self.chart, *((-high, -low) for low, high in (self.x, self.y)))
+
+
+class Images(NamedTuple):
+    """Rectangles that hold images: `source` is the index of the mapped box; `lost` are boxes with no proved image."""
+
+    source: Indices
+    boxes: Boxes
+    lost: Indices
+
+    @classmethod
+    def exact(cls, boxes: Boxes) -> "Images":
+        """The boxes themselves, as images under the identity."""
+        return cls(np.arange(boxes.chart.size), boxes, np.zeros(0, dtype=np.int64))
+
+
+class Chart(NamedTuple):
+    """A closed rectangle of phase space; with `period` its first coordinate is an angle, and its ends are one point."""
+
+    name: str
+    x: tuple[float, float]
+    y: tuple[float, float]
+    period: bool = False
+    kept: bool = False  # the map stays in the charts: an image beyond one is rounding
+
+
+class BoxMap(Protocol):
+    """A map of a phase space in charts, which encloses the images of boxes."""
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts."""
+
+    @property
+    def label(self) -> str:
+        """The map and its parameters, in words."""
+
+    def images(self, boxes: Boxes) -> Images:
+        """Rectangles that hold the image of each box, including any part outside of the charts."""
+
+
+@dataclass(frozen=True)
+class Turned:
+    """A map of one closed curve, modulo a rotation symmetry of order `turns`."""
+
+    map: BoxMap
+    turns: int
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        """The chart: the first coordinate covers one part in `turns` of a full turn, and is periodic."""
+        (chart,) = self.map.charts
+        return (chart._replace(x=(-np.pi / self.turns, np.pi / self.turns)),)
+
+    @property
+    def label(self) -> str:
+        """The map and the order of the symmetry, in words."""
+        return f"{self.map.label}, up to {self.turns} turns"
+
+    def images(self, boxes: Boxes) -> Images:
+        """The images under the map itself."""
+        return self.map.images(boxes)
+
+
+@dataclass(frozen=True)
+class PlaneImages:
+    """A map of a rectangle of the plane, from `formula(x, y)` and the entries `derivative(x, y)`, both of balls.
+
+    >>> half = PlaneImages("halving", Chart("plane", (-1, 1), (-1, 1)), lambda x, y: (x / 2, y / 2),
+    ...     lambda x, y: ((0.5, 0), (0, 0.5)))
+    >>> box = Boxes(np.array([0]), (np.array([0.5]), np.array([1.0])), (np.array([0.0]), np.array([0.5])))
+    >>> [round(float(end[0]), 9) for end in half.images(box).boxes.x]
+    [0.25, 0.5]
+    """
+
+    label: str
+    chart: Chart
+    formula: Any
+    derivative: Any
+
+    @property
+    def charts(self) -> tuple[Chart, ...]:
+        return (self.chart,)
+
+    def images(self, boxes: Boxes) -> Images:
+        centre, reach, whole = centred(boxes)
+        (a, b), (c, d) = self.derivative(*whole)
+        values = self.formula(*centre)
+        x, y = (value + p * reach[0] + q * reach[1] for value, (p, q) in zip(values, ((a, b), (c, d)), strict=True))
+        ends = x.lower(), x.upper(), y.lower(), y.upper()
+        return collected([(np.arange(boxes.chart.size), boxes.chart, *ends)], boxes.chart.size)
+
+
+def centred(boxes: Boxes) -> tuple[list[BallArray], list[BallArray], list[BallArray]]:
+    """Midpoints, deviations from them as balls about 0, and whole ranges of boxes, for both coordinates."""
+    whole = [hull(*boxes.x), hull(*boxes.y)]
+    return [BallArray(b.m) for b in whole], [BallArray(0.0 * b.m, b.r) for b in whole], whole
+
+
+Row = tuple[Indices, Indices, Array, Array, Array, Array]
+
+
+def collected(rows: list[Row], count: int) -> Images:
+    """The images of `count` boxes, from rows of arrays `source, chart, x low, x high, y low, y high`.
+
+    A box without a row, or with an end that is not finite, is lost.
+    """
+    source, chart, *ends = (np.concatenate(column) for column in zip(*rows, strict=True))
+    good = np.logical_and.reduce([np.isfinite(end) for end in ends])
+    known = np.zeros(count, dtype=bool)
+    known[source] = True
+    known[source[~good]] = False
+    keep = known[source]
+    a, b, c, d = (end[keep] for end in ends)
+    return Images(source[keep], Boxes(chart[keep], (a, b), (c, d)), np.flatnonzero(~known))

@@ -1,0 +1,90 @@
+"""A search that proves that a region holds no solution: boxes cover it, each is tested, and undecided ones are halved.
+
+The boxes are arrays of some thousand at a time. Where a midpoint is rounded, the half box is widened by the rounding
+error, so that neighbouring boxes leave no gap. Midpoints and widths of few binary digits are halved exactly.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+CHUNK = 4096  # boxes in one call of the test
+
+
+@dataclass(frozen=True)
+class Cuboids:
+    """Boxes in `n` dimensions, as rows of middles and of half widths: arrays of shape `(boxes, n)`."""
+
+    middle: Array
+    half: Array
+
+    def __getitem__(self, rows: Any) -> "Cuboids":
+        return Cuboids(self.middle[rows], self.half[rows])
+
+    @property
+    def size(self) -> int:
+        """The number of boxes."""
+        return len(self.middle)
+
+    def halves(self) -> "Cuboids":
+        """Each box cut in two across its longest side; the two halves cover it.
+
+        >>> Cuboids(np.array([[0.0, 3.0]]), np.array([[1.0, 2.0]])).halves().middle.tolist()
+        [[0.0, 2.0], [0.0, 4.0]]
+        """
+        cut = np.arange(self.half.shape[1]) == np.argmax(self.half, axis=1)[:, None]
+        half = np.where(cut, self.half / 2, self.half)
+        step, parts = np.where(cut, half, 0.0), []
+        for aside in (-step, step):
+            middle = self.middle + aside
+            moved = middle - self.middle
+            off = np.abs((self.middle - (middle - moved)) + (aside - moved))  # the exact rounding error of the middle
+            parts.append(Cuboids(middle, np.where(off == 0, half, np.nextafter(half + off, np.inf))))
+        return Cuboids(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("middle", "half")))
+
+
+class Search(NamedTuple):
+    """The outcome of a search: `empty` is True when nothing is proved to be there, None when it ended undecided."""
+
+    empty: bool | None
+    boxes: int
+
+
+def exclude(
+    start: Cuboids,
+    nothing_in: Callable[[Cuboids], NDArray[np.bool_]],
+    budget: int,
+    smallest: float,
+    tick: Callable[[int], None] = lambda boxes: None,
+) -> Search:
+    """A search whether the region covered by `start` holds nothing.
+
+    `nothing_in` returns a mask of the boxes that are proved to hold nothing; the other boxes are halved. The search
+    ends undecided after `budget` boxes, or at an undecided box with all sides below `smallest`. `tick` is called with
+    the number of boxes tested so far. `ValueError` where a box is not finite.
+
+    >>> line = Cuboids(np.array([[0.0]]), np.array([[1.0]]))
+    >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 2) > boxes.half[:, 0], 100, 1e-3).empty
+    True
+    >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 1 / 3) > boxes.half[:, 0], 100, 1e-3).empty is None
+    True
+    """
+    if not (np.all(np.isfinite(start.middle)) and np.all((start.half >= 0) & np.isfinite(start.half))):
+        raise ValueError("exclude: a middle or a half width is not finite, or below 0; accepted: boxes with both ends")
+    queue, tested = start, 0
+    while queue.size:
+        chunk, queue = queue[-CHUNK:], queue[:-CHUNK]
+        tested += chunk.size
+        tick(tested)
+        if tested > budget:
+            return Search(None, tested)
+        left = chunk[~nothing_in(chunk)]
+        if np.any(np.max(left.half, axis=1, initial=0.0) < smallest):
+            return Search(None, tested)
+        halves = left.halves()
+        queue = Cuboids(*(np.concatenate(pair) for pair in ((queue.middle, halves.middle), (queue.half, halves.half))))
+    return Search(True, tested)

@@ -1,0 +1,44 @@
+"""Contraction in a norm: derivatives in a frame, and weights for which they shrink vectors."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verification.arithmetic.arrays import BallArray
+
+Array = NDArray[np.float64]
+Matrix = list[list[BallArray]]
+ROUNDS = 400  # of power iterations
+SLACK = 1e-9  # relative; more than the rounding of a dozen operations
+
+
+def shrinkage(size: Array, target: NDArray[np.int64]) -> float:
+    """An upper bound `q` for which `size*v <= q*v'`, with a vector `v > 0` for each set and `v'` that of its target.
+
+    `size` has shape `(2, 2, sets)` and bounds the derivative's entries in modulus over each set; set `i` is mapped to
+    set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`.
+
+    >>> round(shrinkage(np.array([[[0.5], [8.0]], [[0.0], [0.25]]]), np.array([0])), 2)
+    0.5
+    """
+    if not np.all(np.isfinite(size)):
+        return np.inf
+    size, vectors = size * (1 + SLACK) + 1e-300, np.ones((2, size.shape[2]))
+    for _ in range(ROUNDS):  # the bound below holds for any positive vectors
+        image = np.zeros_like(vectors)
+        np.maximum.at(image.T, target, np.einsum("ijk,jk->ik", size, vectors).T)
+        vectors = vectors + image
+        vectors /= vectors.max()
+    moved = np.einsum("ijk,jk->ik", size, vectors)
+    return float(np.max(moved / vectors[:, target])) * (1 + SLACK)
+
+
+def times(first: Matrix, second: Matrix) -> Matrix:
+    """The product of two 2 by 2 matrices."""
+    return [[first[i][0] * second[0][j] + first[i][1] * second[1][j] for j in (0, 1)] for i in (0, 1)]
+
+
+def in_frame(frame: tuple[tuple[float, float], tuple[float, float]], matrix: Matrix) -> Matrix:
+    """The product of the inverse of a 2 by 2 `frame`, given by its rows, and a matrix."""
+    (a, b), (c, d) = ([BallArray(x) for x in row] for row in frame)
+    det = a * d - b * c
+    return times([[d / det, -b / det], [-c / det, a / det]], matrix)

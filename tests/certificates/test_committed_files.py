@@ -14,6 +14,7 @@ SHORT = (
 LONG = "cardioid-period-9", "doubling-3"  # by the equations for long cycles
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*SHORT, *LONG])
 def test_what_a_committed_certificate_states_is_proved_and_told_with_its_digits(check, name):
     given = document(name)
@@ -28,6 +29,7 @@ def test_what_a_committed_certificate_states_is_proved_and_told_with_its_digits(
     ) + check.exact(given["radius"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHORT)
 def test_a_box_beside_the_solution_is_not_proved(check, name):
     """The box is moved by four of its radii, in each coordinate in turn, both ways."""

@@ -363,6 +363,7 @@ def test_a_file_that_is_proved_takes_less_than_half_of_its_steps(check, name):
     assert 2 * check.left[0] > check.beside("entries").budget(given) > 250_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORGED)
 def test_a_forged_file_is_refused_by_both_readers(check, tmp_path, capsys, name):
     file = tmp_path / "forged.json"

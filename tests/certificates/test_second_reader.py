@@ -34,6 +34,7 @@ BESIDE = (  # each for what few certificates need
 OWN = ("symbolic", "numeric", "verification", "flint", "sympy", "mpmath", "numpy")
 
 
+@pytest.mark.slow
 def test_a_sample_of_every_kind_is_proved_by_python_alone_in_an_empty_folder(tmp_path):
     names = (*QUICK, LONG, REGION)
     for reader in ("check.py", *BESIDE):
@@ -95,6 +96,7 @@ def test_the_same_files_are_made_again_byte_by_byte(make):
         assert make.text(name) == (FOLDER / f"{name}.json").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "environment",
     [

@@ -175,6 +175,7 @@ def test_the_circle_is_neutral_for_the_command_too(capsys):
     assert "neutral, period 2" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("lam", "symmetries"), [("0.381", ["C1"] * 6), ("0.3815", ["D1"] * 3)])
 def test_mirror_images_join_at_their_crisis_and_not_before(lam, symmetries):
     """The crisis, a tangency enclosed in balls, is at 0.3810743: docs/crises.md."""

@@ -124,6 +124,7 @@ def test_the_diameters_of_the_circle_have_exponents_0_and_log_lam():
     assert group.measured.lower.mean == pytest.approx(np.log(0.5), abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [{"table": "circle"}, {"table": "ellipse", "a": 2}], ids=["circle", "ellipse"])
 @pytest.mark.parametrize("bounces", [64, 256, 1024])
 def test_where_vectors_grow_like_a_power_of_the_time_the_error_holds_the_exponent_0(scene, bounces):

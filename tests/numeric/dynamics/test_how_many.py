@@ -18,6 +18,7 @@ from symbolic.tables.gallery import regular
 from verification.app.cli import main
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("n", "lam", "seed"), [(7, "0", 1), (7, "0.001", 2)])
 def test_a_regular_polygon_with_an_odd_number_of_sides_has_as_many_attractors(n, lam, seed):
     """A theorem on slap maps of regular polygons, from 7 sides on [DelMagnoLopesDiasDuarteGaivao2014]."""
@@ -30,6 +31,7 @@ def test_a_regular_polygon_with_an_odd_number_of_sides_has_as_many_attractors(n,
         assert attractor.nu_minus == (-np.inf if lam == "0" else pytest.approx(log(0.001), abs=1e-12))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lam", ["0.3", "0.9", "0.999"])
 def test_angles_in_a_polygon_contract_by_lam_at_each_bounce(lam):
     map = PinballMap(tables.polygon((0, 0), (3, 0), (4, 2), (1, 3)), lam=lam)
@@ -38,6 +40,7 @@ def test_angles_in_a_polygon_contract_by_lam_at_each_bounce(lam):
         assert group.measured.lower.error < 1e-13
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("table", "lam"), [("cardioid", "0.5"), ("diamond", "0.5")])
 def test_all_ways_to_ask_for_exponents_have_one_answer(table, lam):
     map = PinballMap(table, lam=lam)
@@ -71,6 +74,7 @@ def test_a_sticky_table_is_undecided_and_no_number_of_attractors_is_made_up(caps
     assert len(document["attractors"]) == 1
 
 
+@pytest.mark.slow
 def test_the_stadium_with_short_sides_has_one_exponent(capsys):
     """The value is that of an independent ray tracer, 0.1209 +- 0.0002."""
     arguments = ["--orbits", "8", "--bounces", "4000", "--start-law", "phase", "--json", "-"]

@@ -247,6 +247,7 @@ def scenes(seed, every=1):
             yield found[:3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_first_hits_on_pieces_of_all_kinds(seed):
     for k, found in enumerate(scenes(seed, 9)):

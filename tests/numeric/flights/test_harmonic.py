@@ -81,6 +81,7 @@ def conic(request):
     return lambda lam="0.9", **more: PinballMap(table, lam=lam, kernels=False, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lam", ["0", "0.9", "1"])
 def test_a_conic_about_the_origin_is_met_in_closed_form_as_exactly_as_the_papers_tables(conic, lam):
     """From both tips and from random points; forming a difference of radii would lose three digits at the far tip.

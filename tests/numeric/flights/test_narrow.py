@@ -82,6 +82,7 @@ def derivative(curve, at):
     return float(x), float(y)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NARROW)
 def test_a_narrow_feature_is_hit(name):
     table, curve, features, rounding = NARROW[name]
@@ -138,6 +139,7 @@ def test_a_ripple_of_thousands_of_waves_is_met_where_a_scan_meets_it():
         assert landed.code[i] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lam", [0, Rational(1, 2), 1])
 def test_a_circle_whose_parameter_stands_still_at_a_point(lam):
     """The circle with angle `theta - sin(theta)`, whose speed is 0 at `theta = 0`; half of the flights start there."""
@@ -164,6 +166,7 @@ def test_a_parameter_that_stands_still_inside_of_a_component_is_refused():
         tables.parametric(cos(angle), sin(angle), name="slow")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "radius",
     [1 + cos(1000 * theta) / 100, 1 + cos(10**6 * theta) / 10**13, 1 + sin(1000 * theta + sin(theta)) / 1000],

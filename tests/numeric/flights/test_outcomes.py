@@ -77,6 +77,7 @@ TABLES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lam", [0, 0.5, 1])
 @pytest.mark.parametrize("name", TABLES)
 def test_a_regular_landing_is_ahead_and_from_within(name, lam):

@@ -71,6 +71,7 @@ def test_the_ray_is_inside_the_table_until_it_lands(polar, kind):
     assert np.max(away - radius) < 64 * EPS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "lam", "kernels"),
     [*itertools.product(["limacon", "star", "peanut", "words"], [0, 0.95], [False]), ("peanut", 0.95, True)],

@@ -69,6 +69,7 @@ def landed(map, where, at, phi):
     return step, np.cos(step.eta)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CUT)
 def test_how_a_curve_is_cut_changes_no_flight(name):
     """From the same points, every fourth at a join, both forms of the curve have the same landings and angles."""
@@ -88,6 +89,7 @@ def test_how_a_curve_is_cut_changes_no_flight(name):
     assert np.max(np.abs(one.eta - other.eta) * straight) < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*CUT, "egg and disc", "spline"])
 @pytest.mark.parametrize("kernels", [False, True])
 def test_no_flight_passes_through_a_join_at_which_it_is_aimed(name, kernels):

@@ -80,6 +80,7 @@ def copy(request):
     return COPIES[request.param], answers(COPIES[request.param](1, 0, 0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", [-60])
 def test_a_copy_that_is_a_power_of_two_as_large_has_the_same_bits(copy, power):
     made, (_, orbit, growth, s, derivative, _) = copy
@@ -97,6 +98,7 @@ def test_a_copy_that_is_a_power_of_two_as_large_has_the_same_bits(copy, power):
     assert np.max(np.abs(np.cos(at) - np.cos(other.theta[-1]))) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("away", [(10**6, -(10**6)), (10**9, 10**9)])
 def test_a_copy_that_is_moved_has_the_same_orbits(copy, away):
     made, (_, orbit, growth, s, derivative, _) = copy
@@ -115,6 +117,7 @@ def test_a_copy_that_is_moved_has_the_same_orbits(copy, away):
     assert np.array_equal(component, other.component[-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("k", [Rational(1, 10**10), 10**30])
 def test_a_bounce_does_not_depend_on_the_unit_of_length(copy, k):
     made, _ = copy

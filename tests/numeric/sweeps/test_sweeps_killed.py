@@ -105,6 +105,7 @@ def test_an_interrupted_sweep_says_how_to_go_on(tmp_path):
 STORING = ["parameter-space", "--alphas", "0:0.1:401", "--lams", "0.3:0.6:3", "--starts", "1", "--bounces", "8"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_ctrl_c_while_results_are_stored_is_one_sentence(tmp_path, seed):
     """The parts take no time, so nearly all of the run stores results: Ctrl-C falls into a random write."""

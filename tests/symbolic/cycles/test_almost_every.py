@@ -13,6 +13,7 @@ def test_the_steps_are_proved():
     assert two_rates().outcome is Outcome.PROVED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", ["13/20", "27/40"])
 def test_areas_are_bounded_by_no_other_power(power):
     """At `x = C = 1` both sides are 1, and 2/3 is the slope of the left one."""

@@ -158,6 +158,7 @@ def crooked_ovals(draw):
     return x, sin(theta) + Add(*(c * sin(k * theta) for k, c in zip((2, 3, 4), shares, strict=True)))
 
 
+@pytest.mark.slow
 @given(curve=crooked_ovals(), size=SIZES, angle=ANGLES, mirror=st.booleans(), start=st.integers(-3, 3))
 def test_a_simple_curve_stays_a_table_however_it_is_moved(curve, size, angle, mirror, start):
     sense = -1 if mirror else 1  # a mirror image is run backwards

@@ -118,6 +118,7 @@ def completed(folder, shell, *words):
     return re.split(r"[\s,]+", done.stdout)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_commands_and_options_are_completed_for_each_shell(shell, tmp_path):
     assert "report" in completed(tmp_path, shell, "pinball", "repo")

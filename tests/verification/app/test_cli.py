@@ -236,6 +236,7 @@ def test_help_loads_no_mathematics():
         assert about in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ["--polar 1+cos(3*theta)/20", "stadium", "--scene flower.toml"])
 def test_a_table_of_ones_own_is_read_and_proved_once_and_then_without_sympy(table, tmp_path):
     flower = '[shape]\nb = "{}"\n'

@@ -21,6 +21,7 @@ def live():
     return LiveTable()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", SEVERAL)
 def test_the_command_on_the_page_is_one_that_runs(table, live, capsys):
     live.table.value = table

@@ -45,6 +45,7 @@ RETRACTED = "M10 10 C10 10 90 10 90 10 C90 10 90 50 90 50 C90 50 10 50 10 50 C10
 CIRCLE = '<circle cx="50" cy="30" r="20" {}/>'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -172,6 +173,7 @@ NESTED = '<g id="g0"><path d="M0 0H1V1Z"/></g>' + "".join(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "text", "says"),
     [
@@ -238,6 +240,7 @@ def two_halves(angle, away):
     return draw
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.3, 0.7391, 1.9, -1.234567, -2.8])
 @pytest.mark.parametrize("away", [(0.0, 0.0), (500000.25, 5400000.75), (9.1e6, 1e7 + 0.1)])
 def test_half_turns_that_join_smoothly_do_so_turned_and_far_from_the_origin(tmp_path, capsys, angle, away):

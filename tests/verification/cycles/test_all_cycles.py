@@ -126,6 +126,7 @@ def near_the_axes(formula):
     return catalogue
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formula", BENT)
 def test_completeness_is_proved_for_other_laws_and_not_of_a_catalogue_that_lacks_a_cycle(formula):
     catalogue = near_the_axes(formula)

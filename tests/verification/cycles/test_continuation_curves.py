@@ -63,6 +63,7 @@ def test_the_first_doubling_is_followed_along_alpha_tilde(curves):
     assert abs(plane[-1, 1]) < 1e-12
 
 
+@pytest.mark.slow
 def test_every_doubling_ends_in_a_resonance_where_nothing_is_lost(curves):
     for each in curves:
         (end,) = each.special

@@ -41,6 +41,7 @@ def by_radius(radii, ends, lam):
     return boundary_of_arcs([(f"{r}*cos(theta)", f"{r}*sin(theta)") for r in radii], ends, lam)
 
 
+@pytest.mark.slow
 def test_the_two_diameters_of_an_ellipse_of_24_points_are_found_on_its_knots(tmp_path):
     """A spline through evenly spaced points; on the short axis det M = lam**2, and both exponents are -log(2)/2."""
     path, found = tmp_path / "ellipse.csv", tmp_path / "cycles.json"
@@ -60,6 +61,7 @@ def test_the_two_diameters_of_an_ellipse_of_24_points_are_found_on_its_knots(tmp
     assert not stable["one_sided"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", CUTS)
 def test_cycles_of_an_ellipse_in_several_arcs_are_those_of_the_ellipse(ends):
     found, whole = (find_cycles(scene, up_to=3) for scene in (in_arcs(ends), find_cycles(WHOLE, up_to=3)[0].scene))
@@ -91,6 +93,7 @@ def test_a_cycle_on_two_joins_is_proved_and_attracts_whatever_the_cut(scene):
     assert abs(abs(Rational(proof.value)) - pi.evalf(40) / 2) <= Rational(proof.radius) + Rational(1, 10**39)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [halves("3/2", 2), in_arcs(CUTS[1], "1/4")])
 def test_that_cycles_are_all_is_proved_for_a_curve_of_several_pieces_and_not_without_one(tmp_path, scene):
     """A canary: with either of the two diameters left out the proof stays open."""

@@ -80,6 +80,7 @@ def gap(map, mp, one, other):
     return abs(mp.sin((one - other) / 2)) if len(map.states.ends) == 1 else abs(one - other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TABLES)
 def test_a_landing_is_the_first_of_all_zeros_of_the_flight_function(name):
     map = TABLES[name]

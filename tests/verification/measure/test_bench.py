@@ -52,6 +52,7 @@ QUICK = [
 ]
 
 
+@pytest.mark.slow
 def test_orbits_have_the_digits_of_the_plain_script():
     rows = list(asked_rows(1, [one for one in QUESTIONS if one.digits == 30]))  # `ValueError` where they differ
 

@@ -121,6 +121,7 @@ def limacon():
     return bifurcations(LIMACON, lam=("93/100", "97/100"), values=24)
 
 
+@pytest.mark.slow
 def test_a_scan_finds_no_attracting_cycle_that_is_on_no_branch(limacon):
     assert unaccounted(limacon.document(5), LIMACON, np.linspace(0.931, 0.969, 9), 400) == []
 

@@ -195,6 +195,7 @@ def test_a_bifurcation_of_a_table_s_cycles_is_located_and_its_certificate_checks
     assert run(check, [str(certificate)]).return_value == 0
 
 
+@pytest.mark.slow
 def test_a_tangency_asked_of_a_radius_is_the_named_crisis_and_its_proof_stands(capsys):
     """The named crisis is located by its own contact and by the folds of a cycle that shadows it."""
     given = ["tangency", "--polar", "1 + 2*cos(3*theta)/25", "--lam", "0.655:0.67", "--period", "3", "--searches", "1"]

@@ -168,6 +168,7 @@ def test_a_wrong_question_is_told_in_a_sentence(ask, says):
         ask()
 
 
+@pytest.mark.slow
 def test_a_fold_near_the_end_of_the_interval_is_found_unasked():
     """The expected value is from a search at many more contractions."""
     scene = Scene.of({"polar": "1 + cos(2*theta)/10", "lam": "1/2"})

@@ -137,6 +137,7 @@ def test_a_refuted_sentence_fails_at_a_witness_inside_the_range_that_is_printed(
     assert stray(claim, judged(claim.id)) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FAIL_AT_A_WITNESS)
 def test_a_refuted_observation_fails_at_a_witness_inside_the_range_that_is_printed(name):
     (result,) = verify(name)

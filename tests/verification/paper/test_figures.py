@@ -38,6 +38,7 @@ def crossings(curve: Curve) -> np.ndarray:
     return curve.x[i] + (curve.x[i + 1] - curve.x[i]) * gap[i] / (gap[i] - gap[i + 1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(pictures()))
 def test_every_figure_draws_without_a_warning(name):
     picture = pictures()[name]

@@ -139,6 +139,7 @@ def named(row):
     return pytest.param(row, id=f"{row[0]}-{words[0]}", marks=[pytest.mark.slow] if row[0] in DEAR else [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", [named(row) for row in UNPROVED])
 def test_a_verdict_rests_on_each_finding_that_its_judge_asks_for(row):
     name, module, word, verdicts = row
@@ -290,6 +291,7 @@ FACTS = [  # claim, verdicts before and after, module, word, what it means of wh
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", [named(row) for row in FACTS])
 def test_a_verdict_changes_with_the_facts(row):
     name, before, after, module, word, made, *forget = row

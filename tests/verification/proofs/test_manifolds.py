@@ -85,6 +85,7 @@ def test_the_map_acts_on_the_parameter_as_multiplication(z, case, unstable):
     assert np.allclose(np.sin(near), np.sin(image), atol=3e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "digits"), [("merging", 11), ("boundary", 15), ("symmetry-restoring", 9)])
 def test_two_methods_and_more_digits_agree_on_a_crisis(kind, digits):
     few, many = crisis(kind, SHAPE, 6), crisis(kind, SHAPE, digits)

@@ -27,6 +27,7 @@ def test_from_a_later_contact_of_the_henon_map_the_published_first_is_found():
     assert earlier(found.first.contact, Henon(Rational(3, 10)), 1.39, 11).first is None
 
 
+@pytest.mark.slow
 def test_from_the_later_contact_of_the_widening_the_first_is_found_whatever_its_phase():
     """It arrives after 16 bounces, two rounds and four bounces, which a search by whole rounds misses."""
     found = earlier(CONTACTS["interior-crisis-1-later"], table(SHAPE), 0.42841914, 36)

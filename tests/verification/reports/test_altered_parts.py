@@ -38,6 +38,7 @@ def again(out, steps):
     return report(Scene("ellipse", a="3/2"), out, clock=clock, tick=steps.append, **SMALL)
 
 
+@pytest.mark.slow
 def test_parts_of_which_a_number_or_the_picture_was_altered_are_made_again(made):
     out, before = made
     parts = out.with_suffix(".parts")
@@ -54,6 +55,7 @@ def test_parts_of_which_a_number_or_the_picture_was_altered_are_made_again(made)
     assert "77777" not in out.read_text()
 
 
+@pytest.mark.slow
 def test_parts_that_were_not_altered_are_not_made_again(made):
     out, before = made
     for path, content in before.items():
@@ -64,6 +66,7 @@ def test_parts_that_were_not_altered_are_not_made_again(made):
     assert not {"scene", "slap", "portrait-0", "census-0-0", "life-0"} & {*steps}
 
 
+@pytest.mark.slow
 def test_a_table_without_attractors_has_a_page(tmp_path):
     """In the unit square at contraction 0 each normal flight returns on itself, so there is no attractor."""
     out = tmp_path / "square.html"

@@ -78,6 +78,7 @@ CANARIES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("proved", "changes", "failing"), CANARIES)
 def test_a_change_of_the_data_makes_its_hypotheses_fail_and_no_other(proved, changes, failing):
     assert proved.proved

@@ -113,6 +113,7 @@ def test_a_least_gap_is_the_largest_sixteenth_at_which_chords_are_steep_both_way
     assert completeness.least_gap(lambda here, there: [BallArray(np.ones(256))], 0.0) == 0
 
 
+@pytest.mark.slow
 def test_a_catalogue_without_one_cycle_is_never_complete_be_it_a_turned_copy_of_another():
     table, lam = egg(3).at(alpha="1/20"), Rational(1, 4)
     whole = all_cycles(table, lam, 2).catalogue

@@ -192,6 +192,7 @@ def test_the_diameter_is_that_of_the_cardioid(map: PinballImages) -> None:
     assert 0 < diameter(map) - 1.5 * 3**0.5 < 0.01
 
 
+@pytest.mark.slow
 def test_the_average_is_negative_where_the_attractor_is_born() -> None:
     """Proved next to lambda*, above sampled values; at 0.09, where most starts are chaotic, no bound is proved."""
     found = average()

@@ -6,6 +6,7 @@
 import json
 import time
 from fractions import Fraction
+from math import ceil, floor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -191,7 +192,8 @@ def show(console: "Console", label: str, document: dict[str, Any]) -> None:
     for found in document["regions"]:
         low, high = found["basin"]
         console.print(f"proved: {found['name']}, about set {found['set']}")
-        console.print(f"        its basin holds between {low:.2%} and {high:.2%} of phase space, by area")
+        held = f"between {floor(low * 1e4) / 100:.2f}% and {ceil(high * 1e4) / 100:.2f}%" if low < 1 else "all"
+        console.print(f"        its basin holds {held} of phase space, by area")
         if found["basin_sampled"] is not None:
             share, error = found["basin_sampled"]
             console.print(f"        sampled: {share:.2%} +- {error:.2%} of random starts are in it after 2000 bounces")

@@ -42,12 +42,13 @@ from symbolic.tables.definition import exact
 
 
 def ball_of(*parts: Any) -> arb:
-    """The ball of a midpoint and a radius, each `(mantissa, exponent)`; or of a text, where the ball is not finite."""
+    """The ball of a midpoint and a radius, each `(mantissa, exponent)`, or of a text if the ball is not finite."""
     return arb(*parts)
 
 
 def _parts(ball: arb) -> tuple[Callable[..., arb], tuple[Any, ...]]:
-    """Function and arguments by which pickle restores a ball bit for bit; python-flint cannot pickle one."""
+    """The function and the arguments by which pickle restores a ball bit for bit; python-flint's balls do not pickle.
+    """
     if not ball.is_finite():
         return ball_of, (str(ball),)
     return ball_of, tuple(tuple(map(int, half.man_exp())) for half in (ball.mid(), ball.rad()))
@@ -61,7 +62,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class BallWords(Generic[T]):
-    """An arithmetic: constants and functions of the formulas' closed vocabulary over numbers of type `T`."""
+    """An arithmetic over numbers of type `T`: the constants and functions that the generated formulas may call."""
 
     pi: T
     q: Callable[[int, int], T]
@@ -150,7 +151,7 @@ def mpmath_arithmetic(digits: int) -> tuple[Arithmetic, Callable[..., Any]]:
 
 
 def ball_arithmetic(digits: int) -> tuple[BallWords[arb], Callable[..., Any]]:
-    """Arithmetic of balls of `digits` digits, and its `run`, as for mpmath; text is the exact number that it shows."""
+    """Arithmetic of balls of `digits` digits, and its function `run`; a decimal text is read as an exact number."""
     bits = bits_of(digits, 10)
 
     def run(function: Callable[..., Any], arguments: Sequence[Any], shape: Sequence[int] | None) -> Any:
@@ -162,7 +163,7 @@ def ball_arithmetic(digits: int) -> tuple[BallWords[arb], Callable[..., Any]]:
 
 
 def _as_given(x: Any) -> arb:
-    """A number as a ball: a float is its exact value, text the number that it shows."""
+    """A number as a ball: a float stands for its exact value, a text for the decimal number that it shows."""
     if isinstance(x, str):
         found = exact("argument", x)
         return _as_given(found) if isinstance(found, Fraction) else real_ball(found)
@@ -178,8 +179,8 @@ def _rows(values: Sequence[Any], shape: Sequence[int]) -> list[list[Any]]:
 def working(bits: int) -> Iterator[None]:
     """Context in which ball arithmetic rounds to `bits` bits; the old precision is restored afterwards.
 
-    The precision of `flint` is one for the whole process, so other threads wait until this one leaves. Proofs that are
-    to run at the same time need a process each.
+    The precision of `flint` is one for the whole process, so other threads wait until this one leaves the context.
+    Proofs that run at the same time need a process each.
 
     >>> before = ctx.prec
     >>> with working(333):

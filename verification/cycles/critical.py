@@ -131,7 +131,8 @@ def critical(
     parameters: Sequence[str],
     fixed: Mapping[str, Expr] | None = None,
 ) -> Small:
-    """System for a cycle that bifurcates in all these `kinds`: unknowns are its bounces, then the free `parameters`.
+    """System for a cycle that has all the bifurcations `kinds` at once: unknowns are its bounces, then the
+    `parameters`.
 
     >>> from verification.cycles.recurrence import delayed
     >>> from verification.cycles.newton import floats
@@ -157,7 +158,7 @@ def critical(
 def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
     """System for the fold of the egg's cycle that turns by `2*pi*p/q` at each bounce: unknowns `theta` and `lam`.
 
-    Where that turn maps the table to itself, one bounce with its neighbours a turn away is the whole system.
+    If this rotation maps the table to itself, a single bounce, whose neighbours are its rotated images, is enough.
 
     >>> from sympy import Rational
     >>> import mpmath

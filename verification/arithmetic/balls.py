@@ -47,8 +47,7 @@ def ball_of(*parts: Any) -> arb:
 
 
 def _parts(ball: arb) -> tuple[Callable[..., arb], tuple[Any, ...]]:
-    """The function and the arguments by which pickle restores a ball bit for bit; python-flint's balls do not pickle.
-    """
+    """Function and the arguments by which pickle restores a ball bit for bit; python-flint's balls do not pickle."""
     if not ball.is_finite():
         return ball_of, (str(ball),)
     return ball_of, tuple(tuple(map(int, half.man_exp())) for half in (ball.mid(), ball.rad()))

@@ -94,8 +94,7 @@ class LostError(ValueError):
 
 
 def corrected(system: CurveSystem, guess: Array, row: Array, level: float) -> tuple[Array, int]:
-    """The solution near `guess` with `row . z = level`, and the number of Newton steps; `LostError` if there is none.
-    """
+    """Solution near `guess` with `row . z = level`, and the number of Newton steps; `LostError` if there is none."""
     lost = LostError(f"{system.label}: Newton's method no longer converges")
 
     def correction(unknowns: list[Array]) -> list[Array]:
@@ -225,8 +224,7 @@ def zero(system: CurveSystem, start: CurvePoint, end: CurvePoint, name: str) -> 
 
 
 def zero_near(system: CurveSystem, first: Array, last: Array, name: str) -> CurvePoint | None:
-    """The point where a test function vanishes between the solutions near two guesses; None if its signs there agree.
-    """
+    """Point where a test function vanishes between the solutions near two guesses; None if its signs there agree."""
     row = np.append(np.zeros(len(first) - 1), 1.0 if last[-1] > first[-1] else -1.0)
     try:
         start, end = (started(system, z, row) for z in (first, last))

@@ -352,8 +352,7 @@ def named(name: str, table: Table) -> tuple[Chords, Array, float | None]:
 
 
 def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None = None) -> tuple[Chords, Array]:
-    """The chord system of bounces at the parameters `theta` on the named components (None: the first one), and `theta`.
-    """
+    """Chord system of bounces at the parameters `theta` on the named components (None: the first one), and `theta`."""
     names = [component.name for component in table.components]
     if len(theta) < 2:
         raise ValueError(f"--start has {len(theta)} bounce; a cycle has at least 2, such as 0.1,3.0")

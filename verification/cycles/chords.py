@@ -147,8 +147,7 @@ def _places(table: Table, order: int) -> dict[str, int]:
 
 
 def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:
-    """The chord angles of a table; in float64, where they are needed most often, the same object is returned each time.
-    """
+    """Chord angles of a table; in float64, where they are needed most often, the same object is returned each time."""
     kept = arithmetic is ARRAYS or arithmetic is FLOAT64
     return _in_float64(table, arithmetic is ARRAYS) if kept else ChordAngles(table, arithmetic)
 
@@ -160,8 +159,7 @@ def _in_float64(table: Table, arrays: bool) -> ChordAngles:
 
 @dataclass(frozen=True)
 class Chords:
-    """Cycles of a billiard by the collision rule; the parameters are `lam`, free shape parameters, and the law's own.
-    """
+    """Cycles of a billiard by the collision rule; parameters are `lam`, free shape parameters, and the law's own."""
 
     table: Table
     components: tuple[int, ...]
@@ -202,8 +200,7 @@ class Chords:
         return self._terms(ahead, back, at["lam"], order, self._all_reflected(back[0], ring[1:-1], at, order))
 
     def _all_reflected(self, eta: Array, here: Array, at: Parameters, order: int) -> Slopes:
-        """The exit angles by the law at all bounces, and derivatives; a law in arc length has a formula per component.
-        """
+        """Exit angles by the law at all bounces, and derivatives; a law in arc length has a formula per component."""
         if not self.law.measured:
             return self._reflected(ARRAYS, 0, eta, here, at, order)
         found: dict[str, Array] = {}
@@ -229,8 +226,7 @@ class Chords:
         return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], *place, *own), strict=True))
 
     def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int, law: Slopes) -> Terms[X]:
-        """The collision rule and its derivatives, from the angles of the chords ahead and back and their derivatives.
-        """
+        """Collision rule and its derivatives, from the angles of the chords ahead and back and their derivatives."""
         zero: Any = 0 * f[0]  # type: ignore[operator]  # of the same kind
         if law:
             return self._bent(f, b, order, law, zero)
@@ -250,8 +246,7 @@ class Chords:
         return Terms(f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2]), by, bend, slope_by)
 
     def _bent(self, f: Sequence[Any], b: Sequence[Any], order: int, law: Slopes, zero: Any) -> Terms[Any]:
-        """The collision rule `A(next) - phi(A(previous))` with chord angles `A`, for a law `phi` other than `-lam*eta`.
-        """
+        """Collision rule `A(next) - phi(A(previous))` with chord angles `A`, for a law `phi` other than `-lam*eta`."""
         value = f[0] - (zero + law["phi"])
         if not order:
             return Terms(value, (zero, zero, zero), {}, {}, {})

@@ -29,8 +29,7 @@ Interval = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class CycleFamily:
-    """A branch of cycles, with the index of its parent family and the event of its birth (None if found from starts).
-    """
+    """A branch of cycles, its parent family's index and the event of its birth (None if found from starts)."""
 
     branch: Branch
     size: float
@@ -176,8 +175,7 @@ def closing(part: Chords, x: Array) -> int:
 
 
 def left(period: int) -> Callable[[CurvePoint], bool]:
-    """A `tick` that ends a path when the cycle has been unstable for some number of points, smaller for longer cycles.
-    """
+    """A `tick` that ends a path when the cycle has been unstable for a number of points, smaller for longer cycles."""
     patience = max(5, UNSTABLE // period)
     since = 0
 

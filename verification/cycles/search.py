@@ -156,8 +156,7 @@ class Catalogue:
         return spectrum(ring.terms(x, {"lam": self.lam}, 1), ring.closure)
 
     def _derivative(self, components: tuple[int, ...], parts: tuple[int, ...], x: Array) -> Matrix:
-        """The derivative of the return map for a cycle on joins, if its bounces are assigned to the components `parts`.
-        """
+        """Derivative of the return map for a cycle on joins, if its bounces are assigned to the components `parts`."""
         terms = Chords(self.table, parts, law=self.law).terms(x, {"lam": self.lam}, 1)
         return of_rows(terms.listed().rows, joins(self.table).slopes(components, parts))
 
@@ -272,8 +271,7 @@ Orbits = tuple[NDArray[np.int64], Array, Array]
 
 @dataclass(frozen=True)
 class Searched:
-    """The catalogue, the rounds of search, and for each period whether the index sums vanish (None if they need not).
-    """
+    """Catalogue, the rounds of search, and for each period whether the index sums vanish (None if they need not)."""
 
     catalogue: Catalogue
     longest: int
@@ -401,8 +399,7 @@ def _isolated(
 
 
 def _placed(corrector: Corrector, itinerary: tuple[int, ...], rows: Array) -> Iterator[tuple[tuple[int, ...], Array]]:
-    """The rows grouped by the components on which their bounces lie; Newton's method may have moved bounces over joins.
-    """
+    """Rows grouped by the components on which their bounces lie; Newton's method may have moved bounces over joins."""
     if closes_smoothly(corrector.table) or corrector.law.placed or not len(rows):
         yield itinerary, rows
         return

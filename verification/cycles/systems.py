@@ -96,8 +96,7 @@ def reflected(table: Table) -> bool:
 
 @cache
 def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
-    """The symmetries other than the identity, as `theta -> turn*theta + shift`; mirrors come first, if the law is odd.
-    """
+    """Symmetries other than the identity, as `theta -> turn*theta + shift`; mirrors come first, if the law is odd."""
     if law.placed:
         return ()
     k = rotations(table)

@@ -132,8 +132,7 @@ class ExactMap:
         return self.formula.exit(self.ops, eta, self.lam, *place)[0]
 
     def length(self, component: int, theta: Any) -> Any:
-        """The paper's arc length, to this map's precision; None on tables of several components without a closed form.
-        """
+        """Paper's arc length, to this map's precision; None on tables of several components without a closed form."""
         mp, map = self.context, self.map
         closed = closed_length(map, self.ops, self.shape, component, theta)
         if closed is not None:

@@ -298,8 +298,7 @@ Place = Callable[[arb], Frame]
 
 @dataclass(frozen=True)
 class BallBoundary:
-    """Closed chains of components: for each component a function to point and velocity, and the ends of its parameter.
-    """
+    """Closed chains of components: for each component a function to point and velocity, and its parameter's ends."""
 
     places: Sequence[Place]
     ends: Sequence[tuple[arb, arb]]

@@ -33,8 +33,7 @@ SIDES = 64  # at most, choices of the sides of a cycle's joins
 
 @dataclass(frozen=True)
 class Joins:
-    """For both ends of `m` components, in shape `(m, 2)`: parameter, next component, kind of contact, ratio of speeds.
-    """
+    """For both ends of `m` components, shape `(m, 2)`: parameter, next component, kind of contact, ratio of speeds."""
 
     ends: Array
     beyond: NDArray[np.int64]
@@ -103,8 +102,7 @@ class Joins:
         return [1.0 if part == other else float(self.ratio[part, 0]) for part, other in both]
 
     def sides(self, parts: Sequence[int], x: Array) -> list[tuple[tuple[int, ...], Array]]:
-        """The ways to assign bounces at joins where the curvature jumps to either side, as `(components, parameters)`.
-        """
+        """Ways to assign bounces at joins where the curvature jumps to either side, as `(components, parameters)`."""
         rows = []
         for part, at in zip(parts, x, strict=True):
             before = int(self.beyond[part, 0])

@@ -76,8 +76,7 @@ def _landed(particle: Particle) -> Any:
 
 
 def _bound(step: Any, *matrices: Any) -> float:
-    """The allowed error: units of rounding times the condition of the flight, from its derivatives and landing angle.
-    """
+    """Allowed error: units of rounding times the condition of the flight, from its derivatives and landing angle."""
     size = 1 + max(float(np.abs(matrix).max()) for matrix in matrices)
     return float(UNITS * EPS * size**2 / np.cos(step.eta))
 
@@ -229,8 +228,7 @@ def symmetry(tables: Any = None, **options: Any) -> Test:
 
 
 def time_reversal_at_lam_1(tables: Any = None, **options: Any) -> Test:
-    """Test that, where exit and incidence angles are equal, a particle that is turned around flies back to its start.
-    """
+    """Test that a particle that is turned around flies back to its start if exit and incidence angles are equal."""
 
     def a_classical_particle_that_is_turned_around_flies_back(particle: Particle) -> None:
         map = particle.map.uniform(lam=1.0)

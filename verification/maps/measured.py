@@ -53,8 +53,7 @@ class Lengths:
         return [here, Jet(self.of(here.c[0]), *(c / k for k, c in enumerate(steps.c[:-1], 1)))]
 
     def of(self, here: Any) -> Any:
-        """The arc length at a number; for a ball, enclosed by the length at its midpoint and the speed over the ball.
-        """
+        """Arc length at a number; for a ball, enclosed by the length at its midpoint and the speed over the ball."""
         if isinstance(here, arb):
             if ctx.prec not in self.enclosed:
                 self.enclosed[ctx.prec] = EnclosedMap(self.map, 1, ctx.prec)

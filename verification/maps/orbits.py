@@ -174,8 +174,7 @@ def _attempt(
 
 
 def _turns(map: PinballMap, start: Start) -> int:
-    """The number of turns by which a start on a closed curve is outside the range of its parameter; 0 on other tables.
-    """
+    """Number of turns by which a start on a closed curve is outside the range of its parameter; 0 on other tables."""
     low, high = map.states.ends[start[2]]
     return 0 if len(map.states.ends) > 1 else round((float(start[0]) - (low + high) / 2) / (high - low))
 

@@ -130,8 +130,7 @@ def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
 
 
 def _half(first: LinearRule, second: LinearRule) -> AffinePiece:
-    """The linear part of half a return, as a map of two successive displacements; the mirror image changes their sign.
-    """
+    """Linear part of half a return, as a map of two successive displacements; the mirror image changes their sign."""
     columns = []
     for before, here, lam in ((-1, 0, 0), (0, -1, 0), (0, 0, 1)):
         third = first.next(before, here, lam)

@@ -48,8 +48,7 @@ TURN = 6.283185307179586
 
 @dataclass(frozen=True)
 class Departures:
-    """A set of phase points: an interval on a component, exit angles, and the slap map's slope along the orbit so far.
-    """
+    """A set of phase points: interval on a component, exit angles, and the slap map's slope along the orbit so far."""
 
     component: int
     theta: arb
@@ -299,8 +298,7 @@ def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = sil
 
 
 def _towards(phi: float) -> float:
-    """The landing `theta1` of a particle that leaves the upper corner at the exit angle `phi`, by bisection in floats.
-    """
+    """Landing `theta1` of a particle that leaves the upper corner at the exit angle `phi`, by bisection in floats."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = (low + high) / 2

@@ -150,8 +150,7 @@ class Barrier:
         return holds(height)
 
     def between(self, boxes: Boxes) -> Mask:
-        """A mask: which boxes are proved to lie in the trapping region below the staircase and above its mirror image.
-        """
+        """Mask of the boxes proved to lie in the trapping region below the staircase and above its mirror image."""
         return self.below(boxes) & self.below(boxes.mirrored()) & self.mirrored
 
 

@@ -33,8 +33,7 @@ class ManifoldSeries(NamedTuple):
     map: Pinball
 
     def points(self, side: int, low: Sequence[float], high: Sequence[float]) -> list[tuple[arb, arb]]:
-        """Boxes of phase points on one side of the saddle, with `z` from `factor**(low - 1)` to `factor**(high - 1)`.
-        """
+        """Boxes of phase points on one side of a saddle, with `z` from `factor**(low - 1)` to `factor**(high - 1)`."""
         found = []
         with working(self.bits):
             map, error = self.map.over(balls(self.bits)), arb(0, self.error)

@@ -104,8 +104,7 @@ def _length(x: BallArray, y: BallArray) -> Array:
 
 
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turns: Sequence[Fraction]) -> bool:
-    """True if the orbit of a phase point, followed in balls, is proved to enter the disc or one of its rotated copies.
-    """
+    """True if the orbit of a phase point, followed in balls, is proved to enter the disc or a rotated copy of it."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, BITS)
     (a, b), (c, d) = disc.inverse
     for here in map.orbit(map.start(*start), MOST_BOUNCES):
@@ -121,8 +120,7 @@ def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turn
 
 
 def entered_around(found: "CommonBoundary", which: int, theta: Fraction, phi: Fraction) -> bool:
-    """True if all orbits from a small box around a phase point are proved to enter the disc `which` or a rotated copy.
-    """
+    """True if all orbits from a small box around a point are proved to enter the disc `which` or a rotated copy."""
     with working(BITS):
         x, y = (arb(fmpq(value.numerator, value.denominator)) + arb(0, SMALL) for value in (theta, phi))
     return enters(found.scene, found.lam, (x, y), found.discs[which], found.turns)

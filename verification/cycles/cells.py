@@ -307,8 +307,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Zeros:
-    """Numbers of fixed points with index 1 and -1, and of undecided (`open`) cells; with none the counts are complete.
-    """
+    """Numbers of fixed points of index 1 and -1, and of undecided (`open`) cells; if none, the counts are complete."""
 
     positive: int
     negative: int

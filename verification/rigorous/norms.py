@@ -1,4 +1,4 @@
-"""Contraction in a norm: derivatives in a frame, and weights for which they shrink vectors."""
+"""Contraction in a norm: derivatives in other coordinates, and weights for which derivatives shrink vectors."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,8 @@ SLACK = 1e-9  # relative; more than the rounding of a dozen operations
 
 
 def shrinkage(size: Array, target: NDArray[np.int64]) -> float:
-    """An upper bound `q` for which `size*v <= q*v'`, with a vector `v > 0` for each set and `v'` that of its target.
+    """An upper bound `q` for which `size*v <= q*v'`, where each set has a vector `v > 0`, and `v'` is the vector of the
+    set's target.
 
     `size` has shape `(2, 2, sets)` and bounds the derivative's entries in modulus over each set; set `i` is mapped to
     set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`.

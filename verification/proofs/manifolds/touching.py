@@ -227,7 +227,7 @@ class Touching:
         return made
 
     def clear(self, at: OrbitPoint) -> bool:
-        """True if every chord of the orbit, and of those near both saddles, is proved to meet nothing on its way."""
+        """True if all chords of the orbit, and of the orbits near both saddles, are proved to meet nothing between."""
         turn, runs = 2 * self.map.words.pi, [at.orbit[1:-1], *(made.tube for made in self.pairs)]
         placed = [[(0, x - turn * round(float(x.mid()) / (2 * math.pi))) for x in run] for run in runs]
         return isinstance(self.map, Pinball) and all(unobstructed(self.map.table, run) for run in placed)

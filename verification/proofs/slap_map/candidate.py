@@ -215,7 +215,7 @@ class Residual:
 
 @dataclass(frozen=True)
 class Judge:
-    """Rigorous bounds for a piecewise polynomial that is 0 at `pi/2`, sharp to about `digits` digits."""
+    """Rigorous bounds for a piecewise polynomial that is 0 at `pi/2`, in balls fit for about `digits` digits."""
 
     pieces: PiecewisePolynomial
     digits: int

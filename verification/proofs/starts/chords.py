@@ -31,7 +31,7 @@ class ChordFlights(Flights):
         return [piece for piece in (smooth, *parts) if piece.on.size]
 
     def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
-        """For each arc a double near the landing of the box's midpoint, as centre, and the boundary there."""
+        """For each arc, a double near the landing of the box's midpoint, as centre, and the boundary point there."""
         if self.kept is None or self.kept[0] is not arc:
             self.kept = arc, *self._near(on, chart, arc)
         return self.kept[1:]

@@ -74,7 +74,7 @@ def reduced(how: np.ufunc, size: int, at: Indices, values: Array) -> Array:
 
 
 def image_labels(map: CurveMap, boxes: Boxes, slopes: BallArray) -> Landed:
-    """The images of curves in any number of boxes, computed in blocks to save memory."""
+    """The images of curves in any number of boxes, computed in blocks."""
     rows = []
     for start in range(0, boxes.chart.size, BLOCK):
         some = slice(start, start + BLOCK)

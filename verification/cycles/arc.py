@@ -59,9 +59,7 @@ class CurveSystem(Protocol):
 
 @dataclass(frozen=True)
 class Steps:
-    """The step lengths in arc length (the first, the smallest, the largest), and the largest number of points of a
-    path.
-    """
+    """The step lengths in arc length (first, smallest, largest), and the largest number of points of a path."""
 
     first: float = 0.01
     smallest: float = 1e-8
@@ -130,9 +128,7 @@ def tangent_at(system: CurveSystem, z: Array, along: Array) -> Array:
 
 
 def arc(system: CurveSystem, start: CurvePoint, length: float) -> tuple[Array, int]:
-    """The point of the curve in the plane across the tangent, `length` ahead of `start`; and the number of Newton
-    steps.
-    """
+    """The point of the curve in the plane across the tangent, `length` ahead of `start`; and the Newton steps made."""
     row = start.tangent * system.weights
     guess = start.z + length * start.tangent
     return corrected(system, guess, row, float(row @ guess))

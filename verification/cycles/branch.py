@@ -225,9 +225,7 @@ def between(system: Cycles, a: CurvePoint, b: CurvePoint) -> list[Event]:
 
 
 def _located(system: Cycles, a: CurvePoint, b: CurvePoint, name: str, turns: bool) -> Event:
-    """The event at the zero of a test function; interpolated where Newton's method fails, for instance at a branch
-    point.
-    """
+    """The event at the zero of a test function; interpolated where Newton's method fails, as at a branch point."""
     try:
         return _named(system, name, arc.zero(system, a, b, name), turns)
     except ValueError:
@@ -369,9 +367,7 @@ def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None
 
 
 def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
-    """The cycle near `x` at the contraction `given`, followed to `lam`: the first one on its branch with this
-    contraction.
-    """
+    """The cycle near `x` at the contraction `given`, followed to `lam`: the first one on its branch with this `lam`."""
     if given == lam:
         return x
     found = branch(ring, x, "lam", given, (min(given, lam), max(given, lam)))

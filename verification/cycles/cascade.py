@@ -77,9 +77,7 @@ def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple
 
 
 def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: BifurcationKind) -> list[float]:
-    """The first flip (or fold) of the cycle near `theta`, as `[*theta, lam]`; it is followed from `lam` in steps of
-    `step`.
-    """
+    """First flip (or fold) of the cycle near `theta`, as `[*theta, lam]`; followed from `lam` in steps of `step`."""
     problem = Problem(table, (0,) * len(theta), kind, "lam")
     before: list[float] = []
     here = cycle_at(table, theta, lam)

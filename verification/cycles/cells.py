@@ -340,9 +340,7 @@ def fixed_points(map: PinballMap, n: int) -> Zeros:
 
 
 def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np.bool_]]:
-    """The displacement `v` at phase points, and whether `cos(theta_n - theta) > 0`, so that `sin` near 0 means a
-    return.
-    """
+    """The displacement `v` at phase points, and whether `cos(theta_n - theta) > 0`, as near a return."""
     theta, phi = np.mod(at[..., 0].ravel() + pi, 2 * pi) - pi, np.clip(at[..., 1].ravel(), -1.57, 1.57)
     place, out = theta, phi
     for _ in range(n):

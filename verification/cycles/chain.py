@@ -192,9 +192,7 @@ def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vecto
 
 
 class _Sides(NamedTuple):
-    """Parts of an eliminated matrix or its transpose: the solver of all rows but the last, the last row, the kernel
-    vector.
-    """
+    """Solver of all rows but the last, last row, and kernel vector, for an eliminated matrix or its transpose."""
 
     inner: Callable[[Sequence[Any]], Vector]
     far: Vector

@@ -80,9 +80,7 @@ class ChordAngles:
         return self.loaded[key]
 
     def _beyond_ends(self, here: int, there: int, order: int) -> Callable[..., Any]:
-        """The kernel, with the ends of a chord moved to the components on which they lie, and derivatives by the chain
-        rule.
-        """
+        """The kernel, with chord ends moved to the components on which they lie; derivatives by the chain rule."""
         assert self.joins is not None
         place, powers = self.joins.place, [[name[6:].count(end) for end in "01"] for name in _places(self.table, order)]
 
@@ -101,9 +99,7 @@ class ChordAngles:
         return angle
 
     def _hull(self, starts: Sequence[Place], ends: Sequence[Place], order: int) -> list[Any]:
-        """Balls that hold the chord angle, and its derivatives, for all components on which the ends of the chord may
-        lie.
-        """
+        """Balls that hold the chord angle and its derivatives, for all components on which the ends may lie."""
         powers = [[name[6:].count(end) for end in "01"] for name in _places(self.table, order)]
         found: list[Any] = []
         for (i, u, a), (j, v, b) in product(starts, ends):
@@ -290,9 +286,7 @@ class Chords:
         return rule
 
     def bounces(self, arithmetic: Arithmetic, padded: Sequence[Any], at: Mapping[str, Any], order: int) -> Terms[Any]:
-        """The rule at every bounce, with derivatives up to `order`; `padded` is the bounces with one neighbour at
-        either end.
-        """
+        """The rule at every bounce, with derivatives up to `order`; `padded` has one more bounce at either end."""
         angle = chord_angles(self.table, arithmetic).between(order, [at[name] for name in self.shapes])
         near = (padded[i : i + 3] for i in range(self.period))
         return Terms.along([self._at_bounce(arithmetic, angle, i, x, at, order) for i, x in enumerate(near)])

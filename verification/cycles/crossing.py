@@ -74,9 +74,7 @@ def beyond(system: Cycles, event: Event, rough: bool = False) -> Iterator[Start]
 
 
 def _inwards(system: Cycles, z: Array, inwards: dict[int, float]) -> Array | None:
-    """A cycle next to a border collision for which the bounces in `inwards` have left their joins; None if none is
-    found.
-    """
+    """A cycle next to a border collision for which the bounces in `inwards` have left their joins; or None."""
     bounce = next(iter(inwards))
     row = np.zeros(len(z))
     row[bounce] = 1.0
@@ -145,9 +143,7 @@ def _alike(one: Event, two: Event) -> bool:
 
 
 def _placed(found: Branch, way: int, s: float, z: Array) -> Branch:
-    """The piece `found`, which begins next to a collision, with its arc lengths counted from `s` in the direction
-    `way`.
-    """
+    """The piece `found` that begins next to a collision, with arc lengths counted from `s` in the direction `way`."""
     gap = found.points[0].z - z
     start = float(np.sqrt(gap @ (found.system.weights * gap)))
 

@@ -102,9 +102,7 @@ class CycleFamily:
 
     @property
     def start(self) -> Array:
-        """Bounces and parameter of the cycle with multipliers farthest from 1 and -1, stable if the family has stable
-        cycles.
-        """
+        """Bounces and parameter of the cycle with multipliers farthest from 1 and -1; of a stable one if possible."""
         best = [min(abs(p.tests["one"]), abs(p.tests["minus_one"])) * (2 if s else 1) for p, s in self._points]
         return np.asarray(self._points[int(np.argmax(best))][0].z)
 
@@ -130,9 +128,7 @@ class CycleFamily:
             yield self.marks[k] + share * step, CLOSE * self.size + float(np.max(np.abs(step))) / 2
 
     def holds(self, value: float, marks: Array) -> bool:
-        """Does the branch at this value have a cycle with these marks, attracting or not? The cycle is computed to
-        check.
-        """
+        """Is there a cycle with these marks on the branch at this value, attracting or not? It is computed to check."""
         if not any(np.max(np.abs(near - marks)) < 10 * wide for near, wide in self.near(value, False)):
             return False
         system = self.branch.system

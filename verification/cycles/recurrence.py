@@ -60,9 +60,7 @@ class BifurcationKind(Enum):
 
     @property
     def solved(self) -> "BifurcationKind | None":
-        """The kind whose equations are solved: for a pitchfork the flip of a part of the cycle; None if it has no
-        equations.
-        """
+        """The kind whose equations are solved: for a pitchfork the flip of a part; None if it has no equations."""
         return SOLVED.get(self)
 
     def bordering(self, rows: Sequence[tuple[Any, Any, Any]], turn: int) -> Any:
@@ -120,9 +118,7 @@ class Closure:
         return [self.turn * (x[-1] - angle), *x, self.turn * x[0] + angle]
 
     def carried(self, x: Any, angle: Any, rounds: int) -> Any:
-        """The image of `x` under `rounds` applications of the closing symmetry, or of its inverse if `rounds` is
-        negative.
-        """
+        """The image of `x` under `rounds` closing symmetries, or under their inverses if `rounds` is negative."""
         for _ in range(abs(rounds)):
             x = self.turn * x + angle if rounds > 0 else self.turn * (x - angle)
         return x

@@ -52,9 +52,7 @@ PARABOLIC = 1e-20  # from 2 of that |trace|: so near, the cycle is parabolic
 
 @dataclass(frozen=True)
 class Found:
-    """A cycle of minimal period, its multipliers, and the number of turns around the boundary in one period
-    (`winding`).
-    """
+    """A cycle of minimal period, its multipliers, and the number of turns around the boundary (`winding`)."""
 
     components: tuple[int, ...]
     theta: tuple[float, ...]
@@ -72,9 +70,7 @@ class Found:
         return len(self.theta)
 
     def index(self, n: int) -> int | None:
-        """The fixed-point index of `T**n` at a bounce: the sign of `det(1 - M**(n/period))`; None if the two sides of a
-        join give different signs.
-        """
+        """Fixed-point index of `T**n` at a bounce, the sign of `det(1 - M**(n/period))`; None if it is not unique."""
         one, two = self.spectrum.multipliers
         power = n // self.period
         if self.one_sided:
@@ -188,9 +184,7 @@ class Catalogue:
         return (cycle for cycle in self.cycles if n % cycle.period == 0)
 
     def rows(self, n: int) -> Array:
-        """The cycles that close after `n` bounces: one row of parameters for each cycle and each choice of first
-        bounce.
-        """
+        """The cycles that close after `n` bounces: a row of parameters for each cycle and choice of first bounce."""
         rows = [np.roll(np.tile(c.theta, n // c.period), -k) for c in self.of(n) for k in range(c.period)]
         return np.array(rows).reshape(len(rows), n)
 
@@ -248,9 +242,7 @@ def _point(table: Table, part: int) -> Callable[..., Any]:
 
 
 def _winding(table: Table, components: Sequence[int], x: Array) -> int:
-    """Turns around the boundary in one period, where a chord counts for the boundary to its right; 0 for a table with
-    holes.
-    """
+    """Turns around the boundary in one period, where a chord counts for the boundary to its right; 0 with holes."""
     if len(curves(table)) > 1:
         return 0
     parts = [table.components[i] for i in components]
@@ -332,9 +324,7 @@ def _inside(law: Law, lam: Expr) -> bool:
 
 
 def _orbits(map: PinballMap, rng: np.random.Generator, bounces: int) -> Orbits:
-    """Components, parameters and exit angles of random orbits, with bounces along the first axis; stopped orbits left
-    out.
-    """
+    """Components, parameters and exit angles of random orbits that do not stop, with bounces along the first axis."""
     ends = np.array(map.states.ends)
     parts = rng.integers(0, len(ends), PARTICLES)
     theta = ends[parts, 0] + (ends[parts, 1] - ends[parts, 0]) * rng.uniform(0, 1, PARTICLES)
@@ -452,9 +442,7 @@ def no_tangent(table: Table) -> tuple[tuple[int, float], ...]:
 
 
 def _file(catalogue: Catalogue, itinerary: tuple[int, ...], x: Array, out: Array) -> None:
-    """Adds a cycle and its images under the symmetries of the table; for an elastic law, also each of them run
-    backwards.
-    """
+    """Adds a cycle and its images under the table's symmetries; for an elastic law, also each run backwards."""
     if not catalogue.add(itinerary, x, out):
         return
     known = catalogue.cycles[-1].spectrum

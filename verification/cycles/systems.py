@@ -295,9 +295,7 @@ class CriticalCycles:
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the arc length: the bounces count by their mean square; a `unit` of a shape counts as much as all
-        of `lam`.
-        """
+        """Weights of the arc length: bounces count by their mean square; a `unit` of a shape counts as all of `lam`."""
         n = self.recurrence.period
         parameters = [(PARAMETER / (1 if name == "lam" else self.unit)) ** 2 for name in self.two]
         return np.append(np.full(n, 1.0 / n), parameters)
@@ -337,9 +335,7 @@ class CriticalCycles:
         return np.append(terms.value, g), matrix
 
     def tests(self, z: Array) -> dict[str, float]:
-        """The test functions: the coefficient of the normal form, `det M - 1`, and the other multiplier minus 1 and
-        plus 1.
-        """
+        """The test functions: coefficient of the normal form, `det M - 1`, and the other multiplier minus 1, plus 1."""
         terms = self.terms(z)
         v, w, _ = self.vectors(terms)
         found = spectrum(terms, self.recurrence.closure)

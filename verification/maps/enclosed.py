@@ -84,9 +84,7 @@ class EnclosedMap:
             return self._leaving(theta, phi, component, self._frame(component, theta))
 
     def _leaving(self, theta: arb, phi: arb, component: int, frame: Sequence[arb], eta: arb | None = None) -> Bounce:
-        """The bounce that leaves at the exit angle `phi` from a boundary point; `frame` is its point and velocity of
-        the curve.
-        """
+        """The bounce that leaves at exit angle `phi`, where `frame` is point and velocity of the boundary curve."""
         x, y, dx, dy = frame
         speed = (dx * dx + dy * dy).sqrt()
         c, s = self.ops.turned(phi)
@@ -131,9 +129,7 @@ class EnclosedMap:
             here = landed
 
     def curve(self, component: int, theta: arb) -> Sequence[arb]:
-        """Point, velocity and acceleration in the parameter, as six balls; beyond a smooth join, those of the next
-        component.
-        """
+        """Point, velocity and acceleration, as six balls; beyond a smooth join, those of the next component."""
         return self._along(self.curves, component, theta)
 
     def _frame(self, component: int, theta: arb) -> Sequence[arb]:
@@ -211,9 +207,7 @@ class EnclosedMap:
         return joined(found)
 
     def length(self, component: int, theta: arb, digits: int = 0) -> Any:
-        """The paper's arc length, in closed form or by rigorous integration of the speed; `digits` 0 means full
-        precision.
-        """
+        """The paper's arc length, in closed form or by rigorous integration; `digits` 0 means full precision."""
         whole = [self._length_on(part, at, digits) for part, at, _ in self._stretches(component, theta)]
         return None if any(one is None for one in whole) else joined(whole)
 

@@ -38,9 +38,7 @@ STEPS = 4  # Newton steps with all digits
 
 @dataclass(frozen=True)
 class Bounce:
-    """A bounce: component, parameter `theta`, exit angle, direction `v`, point, incidence angle, and code of its
-    `Status`.
-    """
+    """A bounce: component, parameter `theta`, exit angle, direction `v`, point, incidence angle, and `Status` code."""
 
     component: int
     theta: Any
@@ -153,9 +151,7 @@ class ExactMap:
             return ExactArcLength(part.curve, exact_balls(self.shape), (low, high), bits)
 
     def _guessed(self, here: Bounce) -> tuple[int, Any, int, Sequence[Any]] | None:
-        """Component, parameter, status code and curve at the landing near the kernel's guess; None if that is
-        unreliable.
-        """
+        """Component, parameter, status code and curve at the landing near the kernel's guess; None if unreliable."""
         guess = self.landings.guess(float(here.theta), float(here.phi), here.component)
         if guess is None:
             return None
@@ -208,9 +204,7 @@ class ExactMap:
         return bool(x * vx + y * vy < 0 and abs(x * vy - y * vx) < NEAR * NEAR)
 
     def _sharpened(self, here: Bounce, component: int, theta: Any) -> Any:
-        """The zero of the flight function that Newton's method reaches from `theta`; None if it is not close to
-        `theta`.
-        """
+        """The zero of the flight function that Newton's method reaches from `theta`; None if it is not near it."""
         mp, (vx, vy) = self.context, here.v
 
         def correction(at: Vector) -> Vector:
@@ -292,9 +286,7 @@ def exact_bounce(map: PinballMap, exact: ExactMap, fields: list[Any]) -> Bounce:
 
 
 def errors(map: PinballMap, exact: ExactMap, before: list[Array], after: list[Array]) -> tuple[Array, Array]:
-    """Errors of position and direction of a float64 step, in units of 2**-52; infinite if it lands on a wrong
-    component.
-    """
+    """Errors of position and direction of a float64 step, in units of 2**-52; infinite on a wrong component."""
     family, ops, at = map.family, exact.ops, len(map.family.position)
     position, direction = np.zeros(before[0].size), np.zeros(before[0].size)
     for i in range(before[0].size):

@@ -252,9 +252,7 @@ def _runs_on(table: Table, index: int, value: arb, shape: tuple[arb, ...], rough
 
 
 def minimal(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
-    """True if the period is proved minimal: for each proper divisor `k` of it, some bounce differs from the `k`-th next
-    one.
-    """
+    """True if the period is proved minimal: for each proper divisor `k`, some bounce differs from the `k`-th next."""
     n = len(components)
     for shift in (k for k in range(1, n) if n % k == 0):
         if not any(_apart(table, components, zero, i, (i + shift) % n) for i in range(n)):
@@ -306,9 +304,7 @@ class BallBoundary:
 
     @cached_property
     def closed(self) -> tuple[bool, ...]:
-        """For each component, whether its two ends coincide; in closed chains this holds exactly if their balls
-        overlap.
-        """
+        """For each component, whether its two ends coincide: in closed chains, exactly if their balls overlap."""
         if len(self.ends) == 1:
             return (True,)
         found = []
@@ -433,9 +429,7 @@ def free(boundary: BallBoundary, start: tuple[int, arb], end: tuple[int, arb]) -
 
 
 def _between(boundary: BallBoundary, index: int, at: arb, piece: arb) -> list[arb]:
-    """Balls of the parameters between a bounce and a piece of boundary, going through the ends of a closed curve if
-    shorter.
-    """
+    """Balls of the parameters between a bounce and a piece of boundary, the shorter way round on a closed curve."""
     low, high = boundary.ends[index]
     gap = piece.mid() - at.mid()
     if not boundary.closed[index] or abs(gap) < (high - low) / 2:

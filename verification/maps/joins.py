@@ -75,9 +75,7 @@ class Joins:
         return part, here, slope
 
     def canonical(self, component: Any, x: Any) -> tuple[Any, Any]:
-        """Components and parameters of bounces, where a bounce on a smooth join is put at the start of the next
-        component.
-        """
+        """Components and parameters of bounces, where a bounce on a smooth join is put on the next component."""
         part, at, _ = self.place(component, x)
         low, high, after = self.ends[part, 0], self.ends[part, 1], self.beyond[part, 1]
         last = (abs(at - high) < NEAR * (high - low)) & self.smooth[part, 1]
@@ -95,9 +93,7 @@ class Joins:
         return np.asarray(first | last)
 
     def slopes(self, parts: Sequence[int], others: Sequence[int]) -> list[float]:
-        """For each bounce, the speed of its parameter on the component in `others` when the one on the one in `parts`
-        has speed 1.
-        """
+        """Speeds of bounce parameters on the components `others`, when those on the components `parts` have speed 1."""
         both = zip(parts, others, strict=True)
         return [1.0 if part == other else float(self.ratio[part, 0]) for part, other in both]
 
@@ -112,9 +108,7 @@ class Joins:
         return [(tuple(part for part, _ in one), np.array([at for _, at in one])) for one in whole]
 
     def jumps(self, part: int, x: float) -> bool:
-        """True if this bounce is at the start of a component, at a join where the tangents but not the curvatures
-        agree.
-        """
+        """True if this bounce is at the start of a component, where tangents but not curvatures agree."""
         low, high = self.ends[part]
         return self.contact[part][0] is JoinKind.TANGENT and bool(abs(x - low) < NEAR * (high - low))
 

@@ -149,9 +149,7 @@ def _formula(table: Table, here: int, there: int) -> Matrix:
 def _slopes_of_law(
     law: Law, part: Component, in_balls: bool, digits: int
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Two functions: minus the derivatives of the exit angle by the incidence angle and by the arc length of the
-    landing.
-    """
+    """Minus the derivatives of the exit angle by the incidence angle and by the landing's arc length, as functions."""
     by_place = law.phi.diff(theta_letter) / geometry.speed(part) + law.phi.diff(s_letter)
     return _by_name(-law.phi.diff(eta_letter), in_balls, digits), _by_name(by_place, in_balls, digits)
 
@@ -244,9 +242,7 @@ def time_reversal_at_lam_1(tables: Any = None, **options: Any) -> Test:
 
 
 def first_hit(tables: Any = None, **options: Any) -> Test:
-    """Test that the float64 landing agrees with the landing that balls prove to be the first, in component and
-    position.
-    """
+    """Test that the float64 landing agrees with the landing that balls prove to be the first hit."""
 
     def the_landing_is_the_first_hit(particle: Particle) -> None:
         step = _landed(particle)

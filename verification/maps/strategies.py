@@ -147,9 +147,7 @@ def particles(
 
 @lru_cache(maxsize=64)
 def _with_ranges(given: Any) -> Any:
-    """A scene if the table has free shape parameters (with their ranges) or comes from a map; else the table or its
-    name.
-    """
+    """A scene for a map, or for a table with free shape parameters; else the table, or its name."""
     if isinstance(scene := getattr(given, "scene", None), Scene):  # of a map
         return scene
     table, _ = given_table(given, POINTS, {})

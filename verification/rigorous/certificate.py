@@ -44,9 +44,7 @@ Metadata = dict[str, "Entry"]
 
 
 class Entry(NamedTuple):
-    """How a field is read from an entry (given the fields before) and written; `name` is the entry's name, or "" if
-    equal.
-    """
+    """How a field is read from an entry (given the fields before) and written; an empty `name` means the field's."""
 
     read: Callable[[Any, Mapping[str, Any]], Any]
     write: Callable[[Any], Any]

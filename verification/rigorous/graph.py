@@ -114,9 +114,7 @@ class Grid:
         return Rectangles(images.source, boxes.chart, left, right, bottom, top, out)
 
     def to_array(self, cells: Cells, values: Indices | Mask, empty: int = 0) -> NDArray[np.int32]:
-        """An array over all cells, of shape `(charts, columns, rows)`, with the value of each block at the block's
-        cells.
-        """
+        """An array over all cells, of shape `(charts, columns, rows)`, with the value of each block at its cells."""
         picture = np.full((len(self.charts), self.columns, self.rows), empty, dtype=np.int32)
         for size in np.unique(cells.size):
             on = np.flatnonzero(cells.size == size)
@@ -230,9 +228,7 @@ class Transitions:
         return found
 
     def reached(self, start: Mask, backward: bool = False) -> Mask:
-        """The vertices to which walks lead from `start`, or, if `backward`, from which they lead to `start`; it is
-        included.
-        """
+        """The vertices to which walks lead from `start`, itself included; from which they lead to it, if `backward`."""
         graph = self.condensed[1 if backward else 0]
         size = graph.shape[0]
         first = np.unique(self.components[start])
@@ -263,9 +259,7 @@ def arrows(
     parts: int,
     told: Callable[[float], None] | None,
 ) -> Arrows:
-    """Edges from the blocks `new` to the blocks `leaves`, as indices in `cells`; images are those of `parts` by `parts`
-    pieces.
-    """
+    """Edges from the blocks `new` (cut into `parts` by `parts`) to the blocks `leaves`, as indices in `cells`."""
     some = Cells(*(field[new] for field in cells))
     if not new.size:
         return np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32)

@@ -195,9 +195,7 @@ def holds(polygon: Polygon, point: Row) -> bool:
 
 @dataclass(frozen=True)
 class ConeExpansion:
-    """A cone of vectors `(u, v)`, by their ratios `u/v`, that both pieces map into itself; and bounds of the growth of
-    `|v|`.
-    """
+    """A cone of vectors `(u, v)`, by the `ratio` `u/v`, that both pieces map into itself; bounds of growth of `|v|`."""
 
     ratio: arb
     least: arb

@@ -245,9 +245,7 @@ def following(
 
 
 def on_arc(previous: BoundaryPoint, here: BoundaryPoint, near: float, lam: Quantity, spread: Spread) -> BoundaryPoint:
-    """The bounce after `here` on the arc, as by `following`; `ArithmeticError` unless proved to lie between the
-    corners.
-    """
+    """The bounce after `here` on the arc; `ArithmeticError` unless it is proved to lie between the corners."""
     found = following(previous, here, ARC, near, lam, spread)
     if not abs(found.at.whole) < corner_parameters()[ARC]:
         raise ArithmeticError("a landing on the arc is not enclosed")
@@ -305,9 +303,7 @@ def _polished(here: BoundaryPoint, component: int, value: float, near: float) ->
 
 
 def _root(plain: Angle, angle: Angle, here: arb, value: arb, near: float, radius: float) -> arb:
-    """The position where the chord angle from `here` is `value`, by an interval Newton step; `plain` has no
-    derivatives.
-    """
+    """The position where the chord angle from `here` is `value`, by an interval Newton step from `near`."""
     gap = plain(here, arb(near))[0] - value
     for _ in range(10):
         box = arb(near, radius)

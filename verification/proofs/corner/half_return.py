@@ -216,9 +216,7 @@ class ChaosAboveLambdaStar(Theorem):
 
     @hypothesis
     def trapped(self) -> bool:
-        """The steps reach `last`; in each the map takes the polygon into its interior, and a cone into itself,
-        stretching it.
-        """
+        """Steps reach `last`; each proves that the polygon is trapping and that a cone is invariant and stretched."""
         return bool(self.steps) and self.steps[-1].e[1] >= self.end
 
     @property

@@ -164,9 +164,7 @@ SETTLED, HALVED = 1e-8, 1e-15  # the last correction of Newton's method (the nex
 
 
 def _falling_root(near: Angle, start: float, phi: float, low: float, high: float) -> float:
-    """The position where the chord angle, which decreases along the boundary, is `phi`, by Newton's method or
-    bisection.
-    """
+    """The position where the chord angle, which falls along the boundary, is `phi`, by Newton steps or bisection."""
     here = (low + high) / 2
     for _ in range(60):
         value, _, slope = near(start, here)
@@ -330,9 +328,7 @@ def exit_angle(theta1: arb) -> arb:
 
 @dataclass(frozen=True)
 class Kink:
-    """The kink of `s4` over a range of contractions: its `theta1`, the `value` of `s4` there, and its derivative by
-    `lam`.
-    """
+    """The kink of `s4` over a range of contractions: `theta1`, the `value` of `s4`, and its derivative by `lam`."""
 
     lam: arb
     theta1: arb

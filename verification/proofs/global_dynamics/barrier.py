@@ -53,9 +53,7 @@ class Barrier:
 
     @cached_property
     def map(self) -> PinballImages:
-        """The enclosing map on boxes; `ValueError` unless it is proved to be a homeomorphism of the strip onto its
-        image.
-        """
+        """The map on boxes; `ValueError` unless it is proved to be a homeomorphism of the strip onto its image."""
         map = PinballImages(self.scene, self.lam)
         if not (map.closed and map.law is None and self.lam[0] > 0):
             raise ValueError(f"barrier: {map.label}; accepted: one smooth closed curve, the paper's law and lam > 0")
@@ -94,9 +92,7 @@ class Barrier:
         return heights
 
     def _raised(self, heights: Array, changed: Mask, proved: bool) -> Array | None:
-        """The staircase, raised to `ABOVE` over the images of `changed` steps and borders; None if an image is not
-        enclosed.
-        """
+        """The staircase, raised to `ABOVE` over the images of `changed` steps; None if an image is not enclosed."""
         boxes, raised = self._pieces(heights, changed | np.roll(changed, 1)), heights.copy()
         for start in range(0, boxes.chart.size, BLOCK):
             some = boxes.chosen(slice(start, start + BLOCK))

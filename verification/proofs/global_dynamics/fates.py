@@ -172,9 +172,7 @@ def _contraction(s: Slopes, where: Indices, walks: csr_matrix) -> float:
 
 
 def _staying(found: Derivatives, walks: csr_matrix, chart: Indices) -> tuple[float | None, float | None]:
-    """The largest sum of inverse stretches over walks of `WALKS` clusters, and the least mean of the logarithms of
-    stretches.
-    """
+    """The largest sum of inverse stretches over walks of `WALKS` clusters, and the least mean of log stretches."""
     cones, entered = grown_cones(found, walks, chart)
     with np.errstate(all="ignore"):
         sign = np.sign(push_slopes(found.slopes, hull(*cones)[found.source])[0].m)

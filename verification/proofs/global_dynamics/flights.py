@@ -81,9 +81,7 @@ class Flights:
         self.last: tuple[BallArray, list[BallArray], BallArray] | None = None  # an arc, the boundary, and incidences
 
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
-        """Values at the start of a flight: boundary point, velocity, acceleration, speed, bend, and the direction of
-        flight.
-        """
+        """Values at the start of flights: boundary point, velocity, acceleration, speed, bend, and direction."""
         place = self.map.place(self.chart, theta)
         return dict(zip((*CURVE, "v", "w", "cos", "speed", "bend"), (*place, *departing(*place, phi)), strict=True))
 
@@ -92,9 +90,7 @@ class Flights:
         return [places[name] for name in names] if on.size == self.chart.size else [places[name][on] for name in names]
 
     def sides(self, end: End, on: Indices) -> BallArray:
-        """The cross product `v x w` of the direction `v` and the vector `w` to the point `end`: positive if left of the
-        flights.
-        """
+        """The product `v x w` of flight direction and vector to the point `end`: positive if left of the flights."""
         x, y, *_ = self.map.place(end[0], BallArray(end[1]))
         at, all_of = self.among(self.centre, SIDES[:4], on), self.among(self.whole, SIDES, on)
         return aside(x, y, *at, *all_of, self.reach[0][on], self.reach[1][on])[0]
@@ -121,9 +117,7 @@ class Flights:
         return found[0], found[1]
 
     def guess(self) -> tuple[Indices, Array, Array, Array]:
-        """The landings of the midpoints in float64, and guesses of how far the box's landings extend before and after
-        them.
-        """
+        """The landings of midpoints in float64, and guesses of how far a box's landings extend before and after."""
         ends = self.map.map.states.ends
         low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
         theta = self.theta.m if self.map.closed else np.clip(self.theta.m, low, high)
@@ -143,9 +137,7 @@ class Flights:
         return chart, landed, width, width
 
     def _moved(self, chart: Indices, theta: Array, by: Array) -> End:
-        """Boundary points, with their parameters moved `by` an amount; beyond a join, by the same length on the next
-        component.
-        """
+        """Boundary points with parameters moved by `by`; beyond a join, by the same length on the next component."""
         if self.map.closed:
             return chart, theta + by
         count = len(self.map.ends)
@@ -211,9 +203,7 @@ class Flights:
     def mean_value(
         self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
     ) -> tuple[BallArray, BallArray, BallArray | None]:
-        """Landing, incidence and exit angle by the mean-value theorem; no exit angle if the law does not depend on the
-        place.
-        """
+        """Landing, incidence and (for a law that depends on the place) exit angle, by the mean-value theorem."""
         by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
         middle = self.midpoint(on, chart, arc)
@@ -265,9 +255,7 @@ class Flights:
     def across(
         self, on: Indices, chart: Indices, arc: BallArray
     ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
-        """Values at the boxes `on`; and over an arc, the boundary's velocity, the distance, and the speed across the
-        flights.
-        """
+        """Values at the boxes `on`; and, over an arc, boundary velocity, distance, and speed across the flights."""
         at = {name: value[on] for name, value in self.whole.items()}
         (x, y, *velocity), _ = self.over(on, chart, arc)
         along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])

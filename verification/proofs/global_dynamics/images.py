@@ -210,9 +210,7 @@ class PinballImages:
         return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
 
     def derivatives(self, boxes: Boxes) -> list[tuple[LandingArcs, Slopes]]:
-        """The derivatives over whole boxes, for each piece of their arcs; an infinite radius means that nothing is
-        proved.
-        """
+        """The derivatives over boxes, for each piece of their arcs; an infinite radius means that nothing is proved."""
         with np.errstate(all="ignore"):
             pieces = (flights := self.flights(boxes)).pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]

@@ -186,9 +186,7 @@ WIDENED = 1.02  # by which a cone that grows is widened, so that fewer rounds ar
 
 
 class Derivatives(NamedTuple):
-    """Derivatives over boxes, in rows of the box, the chart of the landing, and the slopes; a box may have several
-    rows.
-    """
+    """Derivatives over boxes, as rows of box, chart of the landing, and slopes; a box may have several rows."""
 
     source: Indices
     chart: Indices

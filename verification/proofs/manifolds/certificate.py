@@ -98,9 +98,7 @@ class Tangency(Certified):
 
     @property
     def evidence(self) -> dict[str, Any]:
-        """The checklist and, if the theorem is proved, the orbit bounce by bounce, for a checker that has no power
-        series.
-        """
+        """The checklist and, if proved, the orbit bounce by bounce, for a checker without power-series arithmetic."""
         chain = ContactChain(self.contact, self.map, self.near, self.digits).entries() if self.proved else {}
         return chain | {"checks": self.checks}
 

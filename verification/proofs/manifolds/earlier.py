@@ -186,18 +186,14 @@ class BranchImages:
 
     @cached_property
     def ends(self) -> tuple[float, float, float]:
-        """The least and greatest first coordinate on the local stable manifold relative to the saddle, and the saddle's
-        own.
-        """
+        """Range of the first coordinate on the local stable manifold, relative to the saddle's, and the saddle's."""
         here, following = self.into.points(np.linspace(-self.end, self.end, 201))
         x = np.asarray(self.map.plane(here, following)[0])
         middle = float(x[100])
         return float(np.min(x)) - middle, float(np.max(x)) - middle, middle
 
     def extrema(self, side: int, bounces: int, spacing: float) -> Iterator[Extrema]:
-        """Extrema of the gap after 1 to `bounces` bounces, for `z` of the sign `side`; stops when there are `POINTS`
-        points.
-        """
+        """Extrema of the gap after 1 to `bounces` bounces, for `z` of the sign `side`; stops at `POINTS` points."""
         z = side * elementary.exp(np.linspace(-math.log(abs(float(self.out.factor))), 0, START))
         x, y = self.at(z, 0)
         for count in range(1, bounces + 1):
@@ -212,9 +208,7 @@ class BranchImages:
                 return
 
     def filled(self, z: Array, x: Array, y: Array, count: int, spacing: float) -> tuple[Array, Array, Array]:
-        """The arrays `z`, `x`, `y` with points inserted wherever images under `count` bounces are more than `spacing`
-        apart.
-        """
+        """The arrays `z`, `x`, `y` with points inserted where images under `count` bounces are over `spacing` apart."""
         away = np.diff(x)
         if self.map.turn:
             away = np.remainder(away + np.pi, 2 * np.pi) - np.pi

@@ -102,9 +102,7 @@ def size(x: Any) -> arb:
 
 
 def enclosed_saddle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> Saddle:
-    """Enclosure of the unique saddle near the start for all parameters in a ball, with real multipliers; else
-    `TooWideError`.
-    """
+    """Enclosure of the saddle near the start for all parameters in a ball; `TooWideError` unless it is proved."""
     found = enclosed_cycle(orbit, map, parameter)
     stable, unstable = multipliers_of(orbit, map, found, parameter)
     if not (abs(stable) < 1 and abs(unstable) > 1):

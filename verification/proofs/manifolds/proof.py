@@ -89,9 +89,7 @@ class ManifoldsTouch(Theorem):
 
     @cached_property
     def enclosed(self) -> EnclosedContact:
-        """The enclosed manifolds and their contact, by an interval Newton step; a long flight is first tried in two
-        halves.
-        """
+        """Enclosed manifolds and their contact, by an interval Newton step; long flights are solved by halves first."""
         with working(self.precision.bits):
             parameter = arb(self.near).mid()
             try:

@@ -76,9 +76,7 @@ class Precision:
 
 @dataclass(frozen=True)
 class Near:
-    """A bounce near a saddle: its boundary parameter, with derivatives by `z` (first, second), by the parameter, and
-    mixed.
-    """
+    """A bounce near a saddle: its `place`, and derivatives by `z` (two), by the parameter, and mixed."""
 
     place: arb
     first: arb
@@ -120,9 +118,7 @@ class Coefficients:
     tube: list[arb]
 
     def at(self, i: int, z: arb, away: arb) -> Near:
-        """Enclosure of bounce `i` (0 or 1) at `z`, for parameters in a ball that lies `away` from the parameter of
-        `places`.
-        """
+        """Enclosure of bounce `i` (0 or 1) at `z`, for parameters that differ by `away` from that of `places`."""
         if not abs(z) < 0.5:
             raise TooWideError("exists", "the parameter leaves the disc of radius 1/2")
         slopes, e = self.slopes[i], self.error
@@ -193,9 +189,7 @@ def multipliers_at(parameter: arb, around: Saddle, map: PlaneMap, precision: Pre
 
 
 def pair(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Coefficients:
-    """Two bounces on a local manifold near an exact parameter; the saddle and remainder are proved on the disc about
-    it.
-    """
+    """Two bounces on a local manifold near an exact parameter; saddle and remainder are proved over a disc."""
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc
     if not disc > 2 * step:

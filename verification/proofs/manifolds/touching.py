@@ -202,9 +202,7 @@ class Touching:
         self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 
     def _from(self, flight: Flight) -> tuple[int, OrbitPoint]:
-        """The rotation of the table between the end of an orbit and the stable manifold, and a start for Newton's
-        method.
-        """
+        """The rotation between the end of an orbit and the stable manifold, and a start for Newton's method."""
         map, units = self.map, [made.scale.unit for made in self.pairs]
         apart = self.sign * flight.bounces[-2] - bounce(self.pairs[1].scale.rough, 0, flight.w)
         turns = round(apart.c[0] * map.turn / (2 * math.pi))

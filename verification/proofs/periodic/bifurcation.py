@@ -121,9 +121,7 @@ SMALLEST = 2.0**-40  # above it halves are exact in floats
 
 @dataclass(frozen=True)
 class Sign:
-    """Result: `supercritical` is True if proved for all contractions, None if the budget ended; `balls` is their
-    number.
-    """
+    """Result: `supercritical` is True if proved for all contractions, else None; `balls` is the number of balls."""
 
     supercritical: bool | None
     balls: int
@@ -174,9 +172,7 @@ class Stability(Enum):
 
 @dataclass(frozen=True)
 class OverInterval:
-    """Result over an interval: the proof `reached` this contraction from the first end; `proved` if it is the other
-    end.
-    """
+    """Result: contractions from the first end to `reached` are done; `proved` is True if that is the other end."""
 
     proved: bool
     reached: float

@@ -196,9 +196,7 @@ class BoundaryChart:
             yield part, meets, self.start[part] + (own - low) * self.scale[part]
 
     def angle(self, here: BallArray, there: BallArray) -> list[BallArray]:
-        """The angle of a chord and its slopes by both parameters, as the hull over all components that the ends may lie
-        on.
-        """
+        """The angle of a chord and its slopes by both parameters, as hulls over the components the ends may lie on."""
         both = np.broadcast(np.atleast_1d(here.m), here.r, there.m, there.r)
         here, there = (spread(x, np.empty(both.shape)) for x in (here, there))
         low, high = np.full((3, *both.shape), np.inf), np.full((3, *both.shape), -np.inf)

@@ -260,9 +260,7 @@ class UniqueCycle(SolutionInBox):
         return bool(above and (high.is_infinite or self.value <= real_ball(high)))
 
     def reflects(self) -> bool:
-        """True if the law is proved to map `[-pi/2, pi/2]` into itself for all values of the free parameter in its
-        ball.
-        """
+        """True if the law is proved to map `[-pi/2, pi/2]` into itself, for all values of the free parameter."""
         problem, law, free = self.problem, self.problem.law, self.value
         if law.uniform:
             return True

@@ -123,17 +123,13 @@ class Rotation:
 
     @property
     def turn(self) -> Any:
-        """The derivative of the bordering function by the multiplier; it is not 0 if and only if the multiplier is
-        simple.
-        """
+        """The derivative of the bordering function by the multiplier, not 0 exactly if the multiplier is simple."""
         lower, _, upper = self.terms.slope
         v, w, back = self.critical.right, self.critical.left, self.mu.conjugate()
         return self.closure.turn * (w[-1] * upper[-1] * v[0] - back * back * w[0] * lower[0] * v[-1])
 
     def speeds(self, names: Sequence[str]) -> tuple[Vector, list[tuple[Vector, Any]]]:
-        """Derivatives of the bordering function: by the bounces, and by each parameter along the cycle, with its
-        motion.
-        """
+        """Derivatives of the bordering function: by the bounces; and by each parameter, with the cycle's motion."""
         by_bounce, by = bordering_slopes(self.terms, self.closure, self.critical.right, self.critical.left, self.mu)
         found = []
         for name in names:
@@ -176,9 +172,7 @@ class Rotation:
         return -mu.conjugate() * dot(self.critical.left, harmonic(phases, third, 1)) / self.turn
 
     def expanded(self, phase: Any, bent: Sequence[tuple[Any, Any]]) -> Vector:
-        """The coefficients of `e**2` in the rules along `z = e*phase`; or of `e**3`, given `h20` and `h11` of each
-        bounce.
-        """
+        """The coefficients of `e**2` in the rules along `z = e*phase`; or of `e**3`, given pairs `(h20, h11)`."""
         rule, order = self.ring.over(jets(self.arithmetic)), 3 if bent else 2
 
         def at(i: int, phase: Any) -> Jet:

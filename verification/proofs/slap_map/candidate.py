@@ -150,9 +150,7 @@ def candidate(digits: int) -> PiecewisePolynomial:
 
 
 def _carried(ends: list[arb], points: list[arb], size: int, bits: int) -> list[list[tuple[int, list[arb]]]]:
-    """The terms of `L` at each collocation point: the index of a piece's first coefficient, and the factors of all of
-    them.
-    """
+    """The terms of `L` at each collocation point: index of a piece's first coefficient, and all its factors."""
     at, quarter = Branches(bits), arb.pi() / 4
     floats = [float(end) for end in ends]
     rows = []

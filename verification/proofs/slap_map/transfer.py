@@ -123,9 +123,7 @@ class Branches:
         return launch, rate
 
     def landing(self, launch: arb, bits: int) -> arb:
-        """The landing half angle of a particle launched at an exact half angle, by Newton's method; without an error
-        bound.
-        """
+        """The landing half angle of a particle launched at an exact half angle, by Newton's method; not proved."""
         point = arb(landed(float(launch)))
         for _ in range(2 + bits.bit_length()):
             found, rate = self(point)
@@ -170,9 +168,7 @@ class Inverted:
 
 
 def launching_points(cells: int) -> tuple[Matrix, Matrix]:
-    """The launching points `g(-x)` and `g(x)` at the ends of cells, in units of a cell, rounded to multiples of
-    `1/GRAIN`.
-    """
+    """Launching points `g(-x)` and `g(x)` at the ends of cells, in units of a cell, rounded to the grid `1/GRAIN`."""
     if cells not in range(2, 4097, 2):
         raise ValueError(f"ulam: cells = {cells}; an even number of at most 4096 is needed")
     at = Branches(BITS)

@@ -127,9 +127,7 @@ class Alternating(Theorem):
         return False
 
     def _comes(self, start: float, inside: Callable[[Bounce, Bounce], bool]) -> bool:
-        """True if the orbit from a start is proved to come `inside`, where all landings are first hits and off the
-        joins.
-        """
+        """True if the orbit from a start is proved to come `inside`, by first hits off the joins only."""
         if self.branch is None or not self.saddle:
             return False
         (point,) = self.branch.points(self.side, [start], [start])

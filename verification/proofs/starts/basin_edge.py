@@ -155,9 +155,7 @@ class BasinEdge(Theorem):
         return np.array_equal(graph.connected(some), some) and self._inside(boxes.chosen(some[:-1]))
 
     def _absorbed(self, boxes: Boxes) -> Mask:
-        """A mask of the cells that lie below the barrier, or (by all corners) in the convex disc or a rotated copy of
-        it.
-        """
+        """A mask of the cells that lie below the barrier, or in the convex disc or a rotated copy of it."""
         (a, b), (c, d) = self.disc.inverse
         det, held = a * d - b * c, np.ones(boxes.chart.size, dtype=bool)
         for theta in boxes.x:

@@ -301,9 +301,7 @@ def hulls(depth: arb) -> dict[int, Hull]:
 
 
 def inner(hull: dict[int, Hull], depth: arb) -> bool:
-    """True if the inequalities of the module docstring hold for images of inner states; the second variable is
-    `abs(V)`.
-    """
+    """True if the module docstring's inequalities for inner states hold; the second variable is `abs(V)`."""
     steps = []
     for component, sign in ((ARC, -1), (WALL, 1)):
         (a, b, c), (f, g, h) = hull[component]

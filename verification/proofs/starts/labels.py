@@ -184,9 +184,7 @@ class Labels:
         return found[0], found[1]
 
     def across(self, chart: Indices, theta: Range) -> tuple[Indices, Indices, Indices]:
-        """All columns in which landings may lie, as arrays of landing, chart and column; after a full turn, past the
-        last column.
-        """
+        """All columns in which landings may lie, as landing, chart and column; after a turn, columns count on."""
         first, last = ((end - self.left[chart]) / self.wide[chart] for end in theta)
         low, high = np.floor(first - PAD).astype(np.int64), np.floor(last + PAD).astype(np.int64)
         if not self.map.closed:

@@ -39,9 +39,7 @@ SLACK = 1 + 2.0**-40
 
 @dataclass(frozen=True)
 class Average:
-    """The bound of the mean: `checks` of the steps of the proof, `share` of undecided starts, bound `mean`, `strips`
-    used.
-    """
+    """The bound `mean`, with the `checks` of each step of its proof, and the bound `share` of undecided starts."""
 
     checks: dict[str, bool]
     share: float

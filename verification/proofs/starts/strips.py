@@ -154,9 +154,7 @@ def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
 
 
 def seems_to_enter_tube(map: PinballMap, core: AbsorbingTube, given: Strips) -> tuple[Mask, Mask]:
-    """Masks of the strips that seem to enter the tube, and of those to cut across; guesses from float64 orbits of
-    corners.
-    """
+    """Masks of the strips that seem to enter the tube, and of those to cut across, from float64 orbits of corners."""
     lam, count, corners = float(np.max(map.lam)), given.left.size, len(CORNERS[0])
     across, along = (np.array(side)[:, None] for side in CORNERS)
     u = along * given.half
@@ -261,9 +259,7 @@ def _steepest(
     found: Array,
     norm: tuple[Array, float],
 ) -> None:
-    """Adds to `found` the bounds for orbits that have reached `boxes`; `product` is the derivative of the bounces so
-    far.
-    """
+    """Adds to `found` the bounds for orbits that have reached `boxes`; `product` is the derivative up to there."""
     if not owner.size:
         return
     with np.errstate(all="ignore"):

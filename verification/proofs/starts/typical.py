@@ -135,9 +135,7 @@ class Balance:
 
     @staticmethod
     def _mean(values: Array, turn: Array) -> Array:
-        """The largest mean over a column of a function with bounds `values` on its parts, for densities that vary by
-        `turn`.
-        """
+        """The largest mean over a column of a function with these bounds on its parts; densities vary by `turn`."""
         steps, total = values[:, :-1] - values[:, 1:], values[:, -1].copy()
         for k in range(steps.shape[1]):
             share = (k + 1) / values.shape[1]
@@ -172,9 +170,7 @@ class Balance:
         return mass, end
 
     def excess(self, gain: int, y: Array, high: float) -> Array:
-        """For each label the largest excess of the gain of pieces that do not cross their column over `y + high`, at
-        least 0.
-        """
+        """For each label, by how much the gain off whole columns exceeds `y + high`; 0 if it does not."""
         found: Array = np.maximum(self.gains[gain][1] + self.best(y) - y - high, 0.0)
         return found
 

@@ -130,9 +130,7 @@ def continuous(map: JoinedMap) -> bool:
 
 
 def crossing(region: ConeField, at: SaddleRectangle) -> NDArray[np.bool_]:
-    """A mask of the cells such that each unstable curve from the cell across its column gets an image across the
-    rectangle.
-    """
+    """A mask of the cells such that unstable curves from there across the column reach and cross the rectangle."""
     course = SpanMap(region)
     spans = course.columns()
     done = np.zeros(region.cells.chart.size, dtype=bool)

@@ -74,9 +74,7 @@ class SpanMap:
 
     @cached_property
     def rows(self) -> tuple[Array, Array]:
-        """The lowest and the highest `phi` of the region in each column of each chart; infinite in columns without
-        cells.
-        """
+        """The lowest and the highest `phi` of the region in each column of each chart; infinite if it is empty."""
         boxes = self.cover.grid.boxes(self.cover.cells)
         bottom = np.full(self.cover.shape[:2], np.inf)
         top = np.full(self.cover.shape[:2], -np.inf)

@@ -166,7 +166,7 @@ def spread(value: Any, like: Array) -> BallArray:
 
 
 class Compiled:
-    """A function from ball arrays to ball arrays, compiled to one loop of machine code.
+    """A function from ball arrays to ball arrays, compiled to a single loop of machine code.
 
     >>> (square,) = Compiled(lambda x: [x * x])(BallArray(np.array([1.0, 3.0]), 0.5))
     >>> bool((square.m == [1, 9]).all()), bool((square.upper() >= [2.25, 12.25]).all())

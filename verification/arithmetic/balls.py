@@ -329,7 +329,7 @@ def bisected(box: Box, side: int | None = None) -> list[Box]:
 
 
 def cuts(low: float, high: float, longest: float) -> list[arb]:
-    """The interval from `low` to `high` as touching balls, none of them much longer than `longest`.
+    """The interval from `low` to `high` as touching balls, each not much longer than `longest`.
 
     >>> len(cuts(0.0, 1.0, 0.3))
     4
@@ -346,7 +346,7 @@ def halves(x: arb) -> list[arb]:
 
 
 def joined(values: Iterable[arb]) -> arb:
-    """A ball that holds all the balls given, at least one.
+    """A ball that holds all the given balls, of which there must be at least one.
 
     >>> joined([arb(1), arb(3)]).contains(arb(2))
     True

@@ -1,4 +1,4 @@
-"""Newton's method and other iterations, with one stopping rule; and progress of long proofs.
+"""Newton's method and other iterations, with a common stopping rule; and progress reports of long proofs.
 
 The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square of
 the one before, until rounding takes over. So an iteration has converged when a correction is as small as is wanted, or
@@ -131,7 +131,7 @@ def bracketed(f: Callable[[float], float], start: float, end: float, small: floa
 def in_rows(
     correction: "Callable[[NDArray[np.float64]], NDArray[np.float64]]", start: "NDArray[np.float64]", stop: Stop
 ) -> "tuple[NDArray[np.float64], NDArray[np.bool_]]":
-    """Iterates each row of `start` in float64, shape `(rows, unknowns)`; returns the rows and which of them converged.
+    """Iterates each row of `start` in float64, shape `(rows, unknowns)`; returns the rows and a mask of converged ones.
 
     >>> import numpy as np
     >>> x, settled = in_rows(lambda x: (x * x - 2) / (2 * x), np.array([[1.0], [0.0]]), Stop(enough=1e-11))

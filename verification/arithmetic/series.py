@@ -213,7 +213,7 @@ def coefficients(series: Any, count: int) -> list[Any]:
 
 @dataclass(frozen=True)
 class TaylorModel:
-    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last enclosed on all of it."""
+    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last one enclosed on all of it."""
 
     low: arb
     high: arb
@@ -224,7 +224,7 @@ class TaylorModel:
         return self._upper(self.terms)
 
     def slope(self) -> arb:
-        """An upper bound of the absolute value of its derivative."""
+        """An upper bound of the absolute value of the function's derivative."""
         return self._upper([k * c for k, c in enumerate(self.terms)][1:])
 
     def integral(self) -> arb:

@@ -45,7 +45,7 @@ class CurveSystem(Protocol):
         """The weight of each unknown in the length of the curve."""
 
     def linear(self, z: Array) -> tuple[Array, Any]:
-        """The values of the equations and their matrix of derivatives, one column more than rows."""
+        """The values of the equations, and their matrix of derivatives, which has one column more than rows."""
 
     def tests(self, z: Array) -> dict[str, float]:
         """Values of the test functions, whose zeros on the curve are events."""
@@ -69,7 +69,7 @@ class Steps:
 
 @dataclass(frozen=True)
 class CurvePoint:
-    """A solution with its tangent, the arc length so far, and the test functions there."""
+    """A solution with its tangent, the arc length up to it, and the values of the test functions at it."""
 
     z: Array = field(repr=False)
     tangent: Array = field(repr=False)
@@ -88,7 +88,7 @@ class Path:
 
 
 class LostError(ValueError):
-    """Newton's method did not converge to a point of the curve, or the curve has no tangent there."""
+    """Raised if Newton's method does not converge to a point of the curve, or if the curve has no tangent there."""
 
 
 def corrected(system: CurveSystem, guess: Array, row: Array, level: float) -> tuple[Array, int]:

@@ -168,7 +168,7 @@ def through(
     tick: Callable[[CurvePoint], object] | None = None,
     ways: tuple[int, ...] = (-1, 1),
 ) -> Branch:
-    """The branch through the cycle `z`, followed along `direction` and against it (`ways`), with its events."""
+    """Branch through the cycle `z`, followed along `direction` and against it (`ways` 1 and -1), with its events."""
     limits = {len(z) - 1: interval}
     tangent = arc.tangent_at(system, z, direction)
     ring = system.recurrence

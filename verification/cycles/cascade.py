@@ -1,5 +1,4 @@
-"""Period-doubling cascades in float64: an attracting cycle is followed to its flip, then the cycle born there, and so
-on.
+"""Period-doubling cascades in float64: an attracting cycle is followed to its flip, then the cycle born there, etc.
 
 Nothing here is proved: each flip is a start for Newton's method. The cascade of the paper (section 6.6, `alpha = 0.08`)
 is the egg's, `lambda_n`, where period `2**(n-1)` becomes `2**n`. `lambda_2`, where it exists, is the flip of the

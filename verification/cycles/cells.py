@@ -262,7 +262,7 @@ class Corrector:
         return np.asarray(step[:, :, 0], dtype=np.float64)
 
     def exits(self, components: tuple[int, ...], x: Array) -> Array:
-        """The exit angles at each bounce of each row."""
+        """The exit angle at each bounce of each row."""
         n, angle = len(components), chord_angles(self.table, ARRAYS)
         with np.errstate(all="ignore"):  # where bounces meet
             ahead = [angle(components[i], components[(i + 1) % n], 0)(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]

@@ -66,7 +66,7 @@ class ChordAngles:
         self.in_parts: dict[tuple[int, int, int], tuple[Callable[..., Any], ...]] = {}
 
     def __call__(self, here: int, there: int, order: int) -> Callable[..., Any]:
-        """The kernel from component `here` to `there`, with derivatives up to `order`; loaded once.
+        """The kernel from component `here` to `there`, with derivatives up to `order`; it is loaded only once.
 
         In float64 a parameter beyond the end of its component means a point on the next one, if the curvatures of both
         agree at the join (`verification.maps.joins`).
@@ -268,7 +268,7 @@ class Chords:
         return Terms(value, (-(slope * b[2]), f[1] - (slope * b[1] + place), f[2]), by, bend, slope_by)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The collision rule at single bounces, as a function in this arithmetic.
+        """The collision rule at single bounces, as a function in the given arithmetic.
 
         >>> from symbolic.tables import ellipse
         >>> from verification.arithmetic.balls import FLOAT64
@@ -317,7 +317,7 @@ class Chords:
         return replace(self, components=tuple(parts.tolist())), at
 
     def _joins(self) -> Joins | None:
-        """The joins of the table; None for one smooth curve, a free shape, or a law that depends on the place."""
+        """The joins of the table; None for a single smooth curve, a free shape, or a law that depends on the place."""
         if self.table.shapes or self.law.placed or self.closure != IDENTITY or closes_smoothly(self.table):
             return None
         return joins(self.table)
@@ -333,7 +333,7 @@ class Chords:
         return out[0], into[0]
 
     def obstacle(self, x: Array, at: Parameters) -> str:
-        """Why `x` is no cycle at values `at`: a bounce off its component, an obstructed chord; empty if it is one."""
+        """Reason why `x` is no cycle, such as a bounce off its component or an obstructed chord; empty if it is one."""
         ring, x = self.placed(x)
         return ring._obstacle(x, at)
 
@@ -353,7 +353,7 @@ class Chords:
         return "" if _convex_throughout(self.table) else self._obstructed(x, at)
 
     def _obstructed(self, x: Array, at: Parameters) -> str:
-        """A sentence on the first chord that meets the boundary on its way, in any table; empty without one."""
+        """A sentence on the first chord that meets the boundary on its way; empty if there is none."""
         from numeric import PinballMap
 
         out, _ = self.angles(x, at)

@@ -95,7 +95,7 @@ class CycleFamily:
         return float(z[-1]), marks_along(ring, z[None])[0]
 
     def attracts_next_to(self, event: Event) -> bool:
-        """Does the cycle attract on at least one side of one of its events?"""
+        """Does the cycle attract next to this event, on at least one side of it?"""
         s = np.array([point.s for point in self.branch.points])
         k = int(np.clip(np.searchsorted(s, event.point.s), 1, len(s) - 1))
         return bool(np.any(self.stable[max(0, k - 2) : k + 2]))

@@ -223,7 +223,7 @@ class Solution:
 
 
 class UnsettledError(ValueError):
-    """Newton's method in float64 did not converge; `last` is its last iterate."""
+    """Raised if Newton's method in float64 does not converge; `last` is the last iterate."""
 
     def __init__(self, message: str, last: Solution) -> None:
         super().__init__(message)

@@ -76,7 +76,7 @@ class Problem:
 
     @cached_property
     def ring(self) -> Chords:
-        """The chord system that its bounces obey."""
+        """The chord system that the bounces obey."""
         return Chords(self.table, self.components, self.closure, self.law)
 
     def at(self, arithmetic: Arithmetic, z: Vector) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Periodic orbits as rings of three-term rules, over any numbers; their bifurcations, each with its equation.
+"""Periodic orbits as rings of three-term rules, over any kind of number; and the bifurcations, with their equations.
 
     fold                 det(M - 1) = 0 and the branch turns in the parameter
     pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
@@ -11,14 +11,14 @@
 `M` is the monodromy matrix. A bifurcating cycle solves one equation more than it has bounces, for one parameter more:
 `bordering` is 0. `verification.cycles.critical` solves for any of them, and for several at once.
 
-A periodic orbit is a ring: at each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the
-ring closes by the identity or by a symmetry that carries a part of the orbit to the next. The derivatives of the
-rules by the three neighbours are the linearised map, so the multipliers come from three diagonals, and no derivative
-of the map itself is needed. Billiards are such rings (`verification.cycles.chords`).
+A periodic orbit is a ring: at each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the ring
+closes by the identity or by a symmetry that carries a part of the orbit to the next. The derivatives of the rules by
+the three neighbours are the linearised map, so the multipliers come from three diagonals, and no derivative of the map
+itself is needed. Billiards are such rings (`verification.cycles.chords`).
 
 So are maps whose bifurcations are published, with which the engine is tested: the logistic map, `x -> r*x*(1 - x)`
-[May1976]; Henon's, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three successive `x` [Henon1976]; and the
-delayed logistic map, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
+[May1976]; Henon's, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three successive `x` [Henon1976]; and the delayed
+logistic map, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
 """
 
 from collections.abc import Mapping, Sequence
@@ -227,7 +227,7 @@ class Recurrence(Protocol):
         """The rule at all bounces and its derivatives up to `order`, in float64."""
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The rule at single bounces, as a function in this arithmetic."""
+        """The rule at single bounces, as a function in the given arithmetic."""
 
     def doubled(self) -> "Recurrence":
         """The recurrence of the cycle run through twice."""

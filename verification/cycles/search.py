@@ -343,9 +343,7 @@ def _harvest(
     n: int,
     deflated: bool,
 ) -> int:
-    """Adds the cycles found from orbit segments of `n` bounces, with known cycles excluded if `deflated`; returns how
-    many.
-    """
+    """Adds cycles found from orbit segments of `n` bounces, away from known ones if `deflated`; returns how many."""
     parts, theta, phi = orbits
     starts = theta.shape[0] - n
     gap = np.abs(np.sin((theta[n:] - theta[:starts]) / 2)) * 2

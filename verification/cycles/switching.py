@@ -99,7 +99,7 @@ def _repeated(part: Chords, v: Array, n: int) -> Array:
 def _leaving(
     system: Cycles, z: Array, away: Array, interval: Interval, steps: Steps | None, tick: Tick | None
 ) -> Branch:
-    """The branch that leaves `z` along `away`; `z` itself is its first point."""
+    """The branch that leaves `z` in the direction `away`; the first point of the branch is `z` itself."""
     crossing = CurvePoint(z, away, 0.0, system.tests(z))
     size = AMPLITUDE
     for _ in range(8):

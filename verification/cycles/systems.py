@@ -244,7 +244,7 @@ class Cycles:
         return {"one": found.at_one, "minus_one": found.at_minus_one, "volume": volume}
 
     def obstacle(self, z: Array) -> str:
-        """Reason why these bounces are not a cycle; empty if they are."""
+        """The reason why the bounces at `z` do not form a cycle; empty if they do."""
         return self.recurrence.obstacle(z[:-1], self.at(z))
 
     def renewed(self, z: Array) -> "Cycles":
@@ -345,7 +345,7 @@ class CriticalCycles:
         return {"bend": bend, "volume": found.determinant - 1, "other_one": other - 1, "other_minus_one": other + 1}
 
     def obstacle(self, z: Array) -> str:
-        """Reason why these bounces are not a cycle; empty if they are."""
+        """The reason why the bounces at `z` do not form a cycle; empty if they do."""
         return self.recurrence.obstacle(z[:-2], self.at(z))
 
     def renewed(self, z: Array) -> "CriticalCycles":

@@ -115,7 +115,7 @@ def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
 
 
 def _all_within(shape: tuple[arb, ...], ranges: Iterable[Interval]) -> bool:
-    """Do the enclosed shape parameters lie in their ranges, so that a proof over the ranges holds for them?"""
+    """Do the enclosed shape parameters lie in their ranges, so that a proof for the ranges applies to them?"""
     return not shape or all(isinstance(r, Interval) and _within(x, r) for x, r in zip(shape, ranges, strict=True))
 
 
@@ -156,13 +156,13 @@ def _over(range: Interval) -> arb:
 
 @cache
 def _joined(table: Table) -> bool:
-    """Do all joins bend inwards, by less than a right angle?"""
+    """Do all joins bend inwards, and by less than a right angle?"""
     return all(across.is_nonnegative and along.is_positive for across, along in tangents(table))
 
 
 @cache
 def _turned(table: Table) -> bool:
-    """Do all joins bend inwards, by less than half a turn?"""
+    """Do all joins bend inwards, and by less than half a turn?"""
     return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in tangents(table))
 
 
@@ -185,7 +185,7 @@ def tangents(table: Table) -> Iterator[tuple[Expr, Expr]]:
 
 @cache
 def closes_smoothly(table: Table) -> bool:
-    """Has the table one component, whose formulas have period 2*pi?
+    """Does the table have a single component, whose formulas have period 2*pi?
 
     >>> from symbolic.tables import cuspless, egg
     >>> closes_smoothly(egg(3)), closes_smoothly(cuspless)

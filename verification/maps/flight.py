@@ -144,7 +144,7 @@ class Landings:
 
 
 class Obstacles:
-    """Proofs that a flight on a map's table meets nothing before it lands.
+    """Proofs that a flight on the table of a map meets nothing before it lands.
 
     >>> flower = Obstacles(PinballMap("circle"))
     >>> flower.convex

@@ -181,7 +181,7 @@ def determinant(tables: Any = None, **options: Any) -> Test:
 
 
 def _slopes(particle: Particle, orbit: Any) -> Any:
-    """Minus the slope of the law at each bounce."""
+    """Minus the derivative of the law by the incidence angle, at each bounce."""
     eta, theta, component = (np.ravel(field) for field in (orbit.eta, orbit.theta, orbit.component))
     return particle.map.slopes(eta, theta, component)[0]
 

@@ -1,4 +1,4 @@
-"""The paper's arc length where it is an integral, for every kind of number in which a law is evaluated."""
+"""The paper's arc length, for curves where it is an integral, in every kind of number in which a law is evaluated."""
 
 from functools import cache, lru_cache
 from typing import Any

@@ -98,7 +98,7 @@ def verdict(matrices: Sequence[Matrix]) -> OneSided:
 
 
 def _frame(matrices: Sequence[Matrix]) -> Matrix:
-    """A triangular frame in whose norm the derivatives are small; the proof does not depend on how it was found."""
+    """A triangular frame in whose norm the derivatives are small; proofs do not depend on how the frame was found."""
     floats = np.array([[[float(x) for x in row] for row in m] for m in matrices])
     gram = np.eye(2)
     for _ in range(ROUNDS):
@@ -120,7 +120,7 @@ def _within(frame: Matrix, m: Matrix) -> Matrix:
 
 
 def _shrinks(m: Matrix) -> bool:
-    """Are both singular values below 1?"""
+    """Are both singular values of the matrix below 1?"""
     (a, b), (c, d) = m
     squares, det = a * a + b * b + c * c + d * d, a * d - b * c
     return bool(det * det < 1 and squares < 1 + det * det)

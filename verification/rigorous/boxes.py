@@ -76,7 +76,7 @@ class BoxMap(Protocol):
 
     @property
     def label(self) -> str:
-        """The map and its parameters, in words."""
+        """The map and its parameters, as a text for messages."""
 
     def images(self, boxes: Boxes) -> Images:
         """Rectangles that hold the image of each box, including any part outside of the charts."""
@@ -107,7 +107,8 @@ class Turned:
 
 @dataclass(frozen=True)
 class PlaneImages:
-    """A map of a rectangle of the plane, from `formula(x, y)` and the entries `derivative(x, y)`, both of balls.
+    """A map of a rectangle of the plane, from `formula(x, y)` and the matrix entries `derivative(x, y)`, evaluated in
+    balls.
 
     >>> half = PlaneImages("halving", Chart("plane", (-1, 1), (-1, 1)), lambda x, y: (x / 2, y / 2),
     ...     lambda x, y: ((0.5, 0), (0, 0.5)))

@@ -111,7 +111,7 @@ class Certified(Theorem):
 
     @property
     def name(self) -> str:
-        """The statement with its data, in one line."""
+        """The title of the theorem: the statement with its data, in one line."""
         raise NotImplementedError
 
     @property

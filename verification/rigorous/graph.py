@@ -317,7 +317,7 @@ def lookup(grid: Grid, blocks: Cells, names: Indices) -> Callable[[Indices], NDA
 
 
 def joined(grid: Grid, cells: Cells, leaf: Mask, edges: Arrows) -> Transitions:
-    """The transition graph with these edges, and the edges of the outside added."""
+    """The transition graph with the given edges, to which the edges of the outside are added."""
     count = leaf.size
     source = np.concatenate([edges[0], np.full(count + 1, count, dtype=np.int32)])
     target = np.concatenate([edges[1], np.arange(count + 1, dtype=np.int32)])
@@ -382,7 +382,7 @@ class MorseGraph:
         return tuple(i for i in range(len(self.sets)) if not np.any(np.delete(self.below[i], i)))
 
     def trapping(self, index: int) -> Mask:
-        """The leaves that walks from a Morse set reach: a trapping region, unless the outside is among them."""
+        """The leaves that walks from a Morse set reach, a trapping region unless the outside is among them."""
         return self.transitions.reached(self._set(index))
 
     def basin(self, block: Mask) -> Mask:

@@ -39,7 +39,7 @@ def times(first: Matrix, second: Matrix) -> Matrix:
 
 
 def in_frame(frame: tuple[tuple[float, float], tuple[float, float]], matrix: Matrix) -> Matrix:
-    """The product of the inverse of a 2 by 2 `frame`, given by its rows, and a matrix."""
+    """The product of the inverse of `frame`, a 2 by 2 matrix given by its rows, and a matrix."""
     (a, b), (c, d) = ([BallArray(x) for x in row] for row in frame)
     det = a * d - b * c
     return times([[d / det, -b / det], [-c / det, a / det]], matrix)

@@ -51,7 +51,7 @@ def hypothesis(method: Callable[[Any], object], /) -> Hypothesis:
 
 @overload
 def hypothesis(*, name: str = "", refutable: bool = False) -> Callable[[Callable[[Any], object]], Hypothesis]:
-    """A decorator that makes a hypothesis with these settings."""
+    """A decorator that makes a hypothesis with this name and this refutability."""
 
 
 def hypothesis(
@@ -67,7 +67,7 @@ def hypothesis(
 
 
 class Theorem:
-    """A statement about its data, proved when all its hypotheses are; the base class of frozen dataclasses."""
+    """A statement about data, proved if all its hypotheses are; theorems are frozen dataclasses derived from it."""
 
     @classmethod
     def hypotheses(cls) -> dict[str, Hypothesis]:

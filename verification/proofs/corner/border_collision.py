@@ -175,7 +175,7 @@ def _vertices(piece: AffinePiece, point: Point) -> list[Point]:
 
 
 def trapped(pieces: Pieces, polygon: Polygon) -> bool | None:
-    """True when the image of the polygon is proved to lie in its interior; None when that is not proved.
+    """True when the image of the polygon is proved to lie in its interior; None if it is not proved.
 
     On each side of the border the map is affine, so the image is the hull of the images of the corners.
     """
@@ -287,7 +287,7 @@ def homoclinic(left: AffinePiece, right: AffinePiece) -> arb:
 
 
 def less(a: arb, b: arb) -> bool | None:
-    """`a < b` for balls: True or False when it is proved, else None."""
+    """The verdict on `a < b` for balls: True or False if proved, else None."""
     return True if a < b else False if a >= b else None
 
 
@@ -330,7 +330,7 @@ def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 1
 
 
 def strips(pieces: Pieces, region: Polygon) -> tuple[tuple[float, float], ...]:
-    """Length and width of the images of the two sides of a trapping region, in whose union its attractor lies."""
+    """Length and width of the images of the two sides of a trapping region; the union holds the region's attractor."""
     return tuple(_strip(_image(piece, part(region, component))) for component, piece in pieces.items())
 
 

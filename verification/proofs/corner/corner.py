@@ -89,7 +89,7 @@ class LinearRule:
     eta: Any
 
     def next(self, before: Any, here: Any, lam: Any) -> Any:
-        """The derivative of the next parameter, from those of the two parameters before it and of `lam`."""
+        """The derivative of the next boundary parameter, from those of the two parameters before it and of `lam`."""
         return -(self.lower * before + self.diagonal * here + self.eta * lam) / self.upper
 
 
@@ -207,7 +207,7 @@ def corner_parameters() -> tuple[arb, arb]:
 
 
 def angle(here: BoundaryPoint, there: BoundaryPoint) -> tuple[arb, arb, arb]:
-    """The angle of the chord from `here` to `there` with the normal, and its derivatives by the two ends."""
+    """The angle of the chord from `here` to `there` with the normal at `here`, and its derivatives by the two ends."""
     return _angles()[here.component, there.component](here.at.whole, there.at.whole)
 
 

@@ -174,7 +174,8 @@ class ProvedRange:
 
 @dataclass(frozen=True)
 class ChaosAboveLambdaStar(Theorem):
-    """For `lambda-star < lam <= last` a polygon around the corner orbit is trapping, with positive exponents in it.
+    """For `lambda-star < lam <= last` a polygon around the corner orbit is trapping, and all orbits in it have positive
+    exponents.
 
     It is proved in at most `budget` steps of `e = lam - lambda-star`.
 
@@ -194,7 +195,7 @@ class ChaosAboveLambdaStar(Theorem):
 
     @cached_property
     def steps(self) -> tuple[ProvedRange, ...]:
-        """The steps of the proof, which cover `e` from 0 up to `end` or as far as they succeed."""
+        """The steps of the proof; they cover `e` from 0 to `end`, or as far as the proof succeeds."""
         made: list[ProvedRange] = []
         with working(BITS):
             near, reached, length = limit(), 0.0, FIRST

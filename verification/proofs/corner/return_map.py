@@ -82,7 +82,7 @@ class CusplessMap:
         return all(mirrored(part) for part in cuspless.components)
 
     def iterated(self, pieces: list[Departures], n: int) -> list[Departures] | None:
-        """The images of pieces under `n` flights; None when one could not be enclosed."""
+        """The images of pieces under `n` flights; None if an image could not be enclosed."""
         for _ in range(n):
             following: list[Departures] = []
             for piece in pieces:
@@ -268,7 +268,7 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
 
 
 def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = silent) -> bool | None:
-    """True if for `|phi| <= most` and all contractions of the range `s4` has one kink, its minimum; else None.
+    """True if, for `|phi| <= most` and all contractions in the range, the only kink of `s4` is its minimum; else None.
 
     Once `s4` is proved monotone on both sides, it remains to show that the second bounce is on the wall at one end of
     the range and on the arc at the other; this is shown at angles just within `most`.

@@ -71,7 +71,7 @@ class Barrier:
 
     @cached_property
     def grid(self) -> Grid:
-        """The columns around the whole boundary, as a grid of one row."""
+        """The columns around the whole boundary, as a grid with one row."""
         return Grid(self.map.charts, self.columns * self.turns, 1)
 
     @cached_property

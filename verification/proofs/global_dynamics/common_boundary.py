@@ -61,7 +61,7 @@ class Disc:
 
 
 def disc(map: PinballImages, centre: tuple[float, float], radius: float) -> Disc:
-    """A disc in a norm adapted to the derivative at `centre`, so that an attracting map may contract it; not proved."""
+    """A disc in a norm adapted to the derivative at `centre`, so that an attracting map is likely to contract it."""
     x, y = (np.array([value]) for value in centre)
     at = Boxes(np.array([0]), (x, x), (y, y))
     (a, b), (c, d) = ((float(np.ravel(x.m)[0]) for x in row) for row in matrix(map.derivatives(at)[0][1]))

@@ -175,7 +175,7 @@ class BoundaryCrisis(Certified):
 
     @property
     def map(self) -> Pinball:
-        """The map given by its collision rule, composed with the rotation by which the saddle repeats."""
+        """The map, given by its collision rule and composed with the rotation by which the saddle repeats."""
         return Pinball(self.scene.table, turn=self.saddle.closure.shift[1], law=self.scene.law)
 
     @cached_property

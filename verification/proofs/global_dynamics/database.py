@@ -234,8 +234,7 @@ def common(
 
 
 def same_order(met: NDArray[np.bool_], here: NDArray[np.int8], there: NDArray[np.int8]) -> bool:
-    """True if the sets that meet (by the matrix `met`) match one to one, and walks connect matched sets in the same
-    way.
+    """True if the sets that meet (by the matrix `met`) match one to one, and walks connect them in the same way.
 
     `here` and `there` are matrices that say which set of a graph leads to which.
 

@@ -130,7 +130,7 @@ def clusters(
 
 
 def _named(graph: Transitions, cells: Cells, near: int) -> Indices:
-    """The index of the cluster of each box."""
+    """The index of the cluster to which each box belongs."""
     member = graph.grid.to_array(cells, np.ones(cells.chart.size, dtype=bool)).astype(bool)
     labels, count = np.zeros(member.shape, dtype=np.int64), 0
     for chart, mask in enumerate(member):
@@ -240,7 +240,7 @@ class FewAttractingCycles(RecurrentClusters):
 
     @hypothesis
     def repelling(self) -> bool:
-        """In the other components vectors of a cone grow."""
+        """In the components that are not sinks, vectors of a cone grow."""
         return all((part.growth or 0) > 0 for part in self.saddle_parts)
 
 
@@ -269,7 +269,7 @@ class AlmostEveryOrbit(RecurrentClusters):
 
     @cached_property
     def parts(self) -> list[Cluster] | None:
-        """The components of clusters; None where they are not proved or the map may not be invertible."""
+        """The components of clusters; None if they are not proved or if the map may not be invertible."""
         return clusters(self.map, self.graph, self.near, self.staying) if invertible(self.map) else None
 
     @hypothesis
@@ -291,7 +291,7 @@ class AlmostEveryOrbit(RecurrentClusters):
 
     @hypothesis
     def saddles(self) -> bool:
-        """In the other components the points that stay for ever have measure 0."""
+        """In the components that are not sinks, the points that stay for ever have measure 0."""
         return all(part.factor is not None and part.factor < 1 for part in self.saddle_parts)
 
 

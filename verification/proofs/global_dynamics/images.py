@@ -141,7 +141,7 @@ class PinballImages:
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of components: the end of the first is the start of the second; none on a single closed curve."""
+        """Pairs of components: the end of the first is the start of the second; none for a single closed curve."""
         count = len(self.ends)
         return () if self.closed else tuple((i, (i + 1) % count) for i in range(count))
 
@@ -183,7 +183,7 @@ class PinballImages:
 
     @cached_property
     def curves(self) -> list[Compiled]:
-        """For each component the function that gives point, velocity and acceleration from parameter and shape."""
+        """For each component, the function that gives point, velocity and acceleration from parameter and shape."""
         return [compiled_curve(part.curve) for part in self.map.ir.parts]
 
     def flights(self, boxes: Boxes) -> Flights:

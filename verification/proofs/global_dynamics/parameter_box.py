@@ -124,7 +124,7 @@ class BoxLandings:
         self.known = np.empty((6, 0))  # ends of the arc; midpoints and radii of landing and incidence
 
     def of(self, boxes: Boxes, find: Callable[[Boxes], Landing]) -> Landing:
-        """The landings of the boxes, where `find` computes those that are new."""
+        """The landings of the boxes; `find` computes those that are not in the cache yet."""
         keys = np.stack([*boxes.x, *boxes.y], axis=-1).view("V32").ravel().tolist()
         new = {key: i for i, key in enumerate(keys) if key not in self.index}  # equal boxes once
         if new:

@@ -214,7 +214,7 @@ class SmoothMap(BoxMap, Protocol):
 
 
 def derivatives(map: SmoothMap, grid: Grid, cells: Cells, parts: int) -> Derivatives:
-    """The derivatives over blocks, each cut into `parts` by `parts`."""
+    """The derivatives over blocks of cells, each block cut into `parts` by `parts`."""
     rows: list[list[NDArray[Any]]] = []
     step = max(1, BLOCK // parts**2)
     for start in range(0, cells.chart.size, step):

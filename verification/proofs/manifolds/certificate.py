@@ -88,7 +88,7 @@ class Tangency(Certified):
 
     @property
     def follows(self) -> dict[str, Theorem]:
-        """The theorem that strange attractors exist nearby, under its name."""
+        """The theorem that strange attractors exist nearby, as a dictionary."""
         return {"strange_attractors": self.strange}
 
     @property
@@ -148,7 +148,7 @@ def contact_of(given: Mapping[str, Any]) -> Contact:
 
 
 def orbit_said(orbit: SaddleCycle) -> dict[str, Any]:
-    """A cycle as entries of a certificate: its name, starts for Newton's method, and how it repeats."""
+    """A cycle as entries of a certificate: name, starts for Newton's method, and the symmetry by which it repeats."""
     return {"name": orbit.name, "start": orbit.start, "sign": orbit.closure.turn, "shift": orbit.closure.shift}
 
 

@@ -151,7 +151,7 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
 
 
 def tried(middle: Sequence[acb], steps: Sequence[acb]) -> list[acb]:
-    """A box around the points `middle` that may hold a zero: four times as wide as Newton's method moves them."""
+    """A box around the points `middle` that may hold a zero: four times as wide as the Newton steps `steps`."""
     least = arb(2) ** (-ctx.prec + 8)
     return [x + around_zero(4 * size(step) + least) for x, step in zip(middle, steps, strict=True)]
 

@@ -188,7 +188,7 @@ def candidates(
 
 
 def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterator[tuple[Array, int, Array, Array]]:
-    """A fundamental domain of each branch of an unstable manifold, mapped bounce by bounce.
+    """The images of a fundamental domain of each branch of an unstable manifold, bounce by bounce.
 
     It yields the parameters on the manifold, the number of bounces made, and the points with their next bounces.
     """

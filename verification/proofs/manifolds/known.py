@@ -141,7 +141,7 @@ def log_stay(distance: float, stable: float, unstable: float) -> float:
 
 
 def exponent(distances: Array, unit: float, stable: float, unstable: float) -> float:
-    """The slope of a straight line fitted to `log_stay` against the logarithms of these distances."""
+    """The slope of a straight line fitted to `log_stay` against the logarithms of the given distances."""
     logs = [log_stay(float(d) / unit, stable, unstable) for d in distances]
     return -float(np.polyfit(elementary.log(distances), logs, 1)[0])
 

@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 
 
 class PlaneMap(Protocol):
-    """A map of the plane over one kind of number, given by its rule."""
+    """A map of the plane over one kind of number, given by a rule for three successive points."""
 
     @property
     def words(self) -> Arithmetic:
@@ -89,7 +89,7 @@ class PlaneMap(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Bound(ABC):
-    """A plane map from a recurrence with one rule, over one kind of number."""
+    """A plane map from a recurrence with a single rule, over one kind of number."""
 
     words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
     free: ClassVar = "lam"  # the name of the parameter in the recurrence

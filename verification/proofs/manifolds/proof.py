@@ -275,7 +275,7 @@ class StrangeAttractors(Theorem):
 
     @property
     def sizes(self) -> tuple[arb, ...]:
-        """Absolute values of the multipliers; `ArithmeticError` where they are not enclosed."""
+        """Absolute values of the multipliers; `ArithmeticError` if they are not enclosed."""
         if not self.multipliers:
             raise ArithmeticError("no multipliers are enclosed")
         return tuple(abs(x) for x in self.multipliers)

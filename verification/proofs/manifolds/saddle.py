@@ -76,7 +76,7 @@ def matrix(orbit: SaddleCycle, rows: Sequence[tuple[Any, Any, Any]], factor: Any
 
 
 def saddle(orbit: SaddleCycle, map: PlaneMap, parameter: Any) -> Saddle:
-    """The saddle near `orbit.start` at this value of the parameter, by Newton's method in the numbers of the map.
+    """The saddle near `orbit.start` at a value of the parameter, by Newton's method in the map's kind of number.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
@@ -100,7 +100,7 @@ def saddle(orbit: SaddleCycle, map: PlaneMap, parameter: Any) -> Saddle:
 
 
 def multipliers(orbit: SaddleCycle, map: PlaneMap, points: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
-    """The smaller and the larger multiplier in absolute value; `ValueError` where they are complex."""
+    """The smaller and the larger multiplier in absolute value; `ValueError` if they are complex."""
     trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
     square = trace * trace - 4 * determinant
     if not square > 0:

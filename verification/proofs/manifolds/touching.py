@@ -211,7 +211,7 @@ class Touching:
         return turns, OrbitPoint([arb(x) for x in orbit], [arb(x) for x in along], self.parameter)
 
     def linear(self, at: OrbitPoint) -> Linear:
-        """The equations at a point with the middle parameter, or over a box around it."""
+        """The equations and their derivatives, at a point with the middle parameter or over a box around it."""
         out, into = ([made.at(i, z, at.parameter - self.parameter) for i in (0, 1)] for made, z in self._ends(at))
         m = len(at.orbit)
         made = Linear([], [], [], [], [], [], self.halves)
@@ -251,7 +251,7 @@ def _ended(made: Linear, at: OrbitPoint, here: int, end: int, sign: int, shift: 
 
 
 def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_parameter: Sequence[arb]) -> None:
-    """Adds one equation for the orbit, and its linearisation for the vector."""
+    """Adds one equation for the orbit, and its linearisation as an equation for the tangent vector."""
     for column, x in zip((made.values, made.along), values, strict=True):
         column.append(x)
     for matrix, row in zip((made.rows, made.bent), rows, strict=True):

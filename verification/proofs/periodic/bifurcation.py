@@ -62,7 +62,7 @@ class Twist:
 
 
 def twist(points: Table, components: Sequence[int], bounces: Sequence[arb], bits: int) -> Twist:
-    """The twist of the elastic cycle through enclosed boundary parameters on these components.
+    """The twist of an elastic cycle whose bounces are enclosed boundary parameters on the given components.
 
     >>> from symbolic.tables import ellipse
     >>> axis = twist(ellipse.at(a=3), (0, 0), [-arb.pi() / 2, arb.pi() / 2], 100)  # trace 4*(1 - 2/9)^2 - 2

@@ -81,7 +81,7 @@ class SolutionInBox(UniqueZero):
         return STATEMENTS[said["kind"]].format(scene=scene, n=count, free=said["free"])
 
     def to_dict(self) -> dict[str, Any]:
-        """The statement as a JSON document; `ValueError` where it exceeds the limits of certificate checkers."""
+        """The statement as a JSON document; `ValueError` if it exceeds the limits of certificate checkers."""
         said = self.subject
         if self.bits > LARGEST_BITS or self.digits > LARGEST_DIGITS or len(said["components"]) > LONGEST:
             given = f"{self.digits} digits, {self.bits} bits or {len(said['components'])} bounces"
@@ -104,7 +104,7 @@ class SolutionInBox(UniqueZero):
 
     @classmethod
     def read(cls, given: Mapping[str, Any]) -> Self:
-        """The theorem that a document of this version states; `ValueError` where an entry is out of range."""
+        """The theorem that a document of this version states; `ValueError` if an entry is out of range."""
         bits, digits = int(given["bits"]), int(given["digits"])
         if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
             wanted = f"bits from 16 and digits from 1, both up to {LARGEST_BITS}"

@@ -103,7 +103,7 @@ class UniqueZero(Certified):
 
     @property
     def found(self) -> bool:
-        """True if exactly one solution is proved."""
+        """True if it is proved that the box has exactly one solution."""
         return self.enclosure.status is ZeroStatus.UNIQUE
 
     @hypothesis(refutable=True)

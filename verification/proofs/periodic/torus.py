@@ -188,7 +188,7 @@ class Rotation:
 
 
 def complex_number(real: Any, imaginary: Any) -> Any:
-    """A complex number of the same kind as its parts.
+    """A complex number of the same kind as its real and imaginary part.
 
     >>> complex_number(1.0, 2.0)
     (1+2j)

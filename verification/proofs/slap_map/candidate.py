@@ -76,7 +76,7 @@ class PiecewisePolynomial:
         return total
 
     def grounded(self) -> "PiecewisePolynomial":
-        """The function with a constant added to the last piece, so that it is 0 at `pi/2`."""
+        """The function with a constant added on the last piece, such that the value at `pi/2` is 0."""
         last = list(self.polynomials[-1])
         last[0] -= self.value(len(self.polynomials) - 1, arb.pi() / 2)
         return PiecewisePolynomial(self.ends, [*self.polynomials[:-1], last])
@@ -226,12 +226,12 @@ class Judge:
 
     @cached_property
     def branches(self) -> Branches:
-        """The function `g` and its derivative."""
+        """The launching point `g` and its derivative, as functions of the landing."""
         return Branches(self.bits)
 
     @cached_property
     def stretches(self) -> list[tuple[arb, arb]]:
-        """The stretches, from 0 to beyond `pi/2`; their ends are exact, and the last one is the tail at the cusp."""
+        """Stretches, from 0 to beyond `pi/2`; their ends are exact, and the last stretch is the tail at the cusp."""
         ends, half_pi = self.pieces.ends, arb.pi() / 2
         if not ends[0] == 0 or not ends[-2] < half_pi < ends[-1]:
             raise ValueError(f"density: pieces from {ends[0]} to {ends[-1]}; they must reach from 0 to beyond pi/2")
@@ -335,7 +335,7 @@ class Judge:
 
 
 def _parted(low: arb, high: arb, longest: Callable[[arb], float]) -> Iterator[tuple[arb, arb]]:
-    """A stretch cut into parts, each at most `longest(start)` long."""
+    """A stretch cut into parts; a part from `start` on is at most `longest(start)` long."""
     while low < high:
         end = min(high, (low + longest(low)).mid())  # equals `high` unless the other is surely less
         yield low, end

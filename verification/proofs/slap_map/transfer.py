@@ -155,8 +155,7 @@ BLANKET = 1 + 1e-9  # over the rounding of a sum of at most 1e5 positive doubles
 
 @dataclass(frozen=True)
 class Inverted:
-    """A bound `||u|| <= bound*||(I - Q)u||` for Ulam's matrix `Q`; `bound` is None if the approximate inverse is too
-    bad.
+    """A bound `||u|| <= bound*||(I - Q)u||` for Ulam's matrix `Q`; `bound` is None if the inverse is bad.
 
     The bound holds for vectors of sum 0 if the `sign` of the first summand is 1, and for all vectors if it is -1.
     """

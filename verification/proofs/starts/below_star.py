@@ -210,7 +210,7 @@ class ConvergenceBelowLambdaStar(Theorem):
 
 @dataclass(frozen=True)
 class AlmostEveryOrbitBesideLambdaStar(AlmostEveryOrbit):
-    """Almost every orbit converges to one of the cycles, for each contraction of a range that is below `lambda*`."""
+    """Almost every orbit converges to one of the cycles, for each contraction of a range that lies below `lambda*`."""
 
     @cached_property
     def depth(self) -> arb:
@@ -221,7 +221,7 @@ class AlmostEveryOrbitBesideLambdaStar(AlmostEveryOrbit):
 
     @cached_property
     def beside(self) -> Mask:
-        """The vertices of components whose leaves all lie next to the corner orbit, in its cyclic order."""
+        """Vertices of components whose leaves all lie next to the corner orbit, in the cyclic order of its bounces."""
         graph, found = self.graph, np.zeros_like(self.graph.recurrent)
         chosen = np.flatnonzero(graph.recurrent[:-1] & graph.leaf)
         boxes = graph.grid.boxes(Cells(*(field[chosen] for field in graph.cells)))
@@ -333,7 +333,7 @@ def first_hull(depth: arb) -> list[arb]:
 
 
 def begins(hull: list[arb], depth: arb) -> bool:
-    """True if each state `(U, V1)` with `abs(U) <= BESIDE` is proved to be inner or an exit."""
+    """True if each state `(U, V1)` with `abs(U) <= BESIDE` is proved to be an inner state or an exit."""
     r, c = hull[0], -hull[1]
     steps = [
         r > 0 and c > 0,

@@ -38,8 +38,7 @@ UNMOVED = np.zeros(1)
 
 @dataclass(frozen=True)
 class AbsorbingTube:
-    """The set `|theta| <= outer`, `|phi - p(theta)| <= width` of one component, with `p = slope*theta +
-    cubic*theta**3`.
+    """The set `|theta| <= outer`, `|phi - p(theta)| <= width` on a component; `p = slope*theta + cubic*theta**3`.
 
     `inner` and `cells` are those of the module docstring; `entry_tubes` are pairs `(outer, width)` of entry tubes.
     """
@@ -80,7 +79,7 @@ class AbsorbingTube:
         return self.holds(sets, self.bounds, *self.entry_tubes)
 
     def parts(self, aside: Array = UNMOVED) -> Parallelograms:
-        """Parallelograms that cover the half `theta >= 0`, from 0 outwards, shifted in `phi` by each of `aside`."""
+        """Parallelograms that cover the half `theta >= 0` of the tube, from 0 outwards, shifted in `phi` by `aside`."""
         edges = np.linspace(0, self.outer, self.cells + 1)
         middle, half = (edges[1:] + edges[:-1]) / 2, (edges[1:] - edges[:-1]) / 2 * (1 + 1e-9)
         aside, middle, half = (x.ravel() for x in np.broadcast_arrays(aside[:, None], middle, half))
@@ -140,7 +139,7 @@ def _converges(map: PinballImages, core: AbsorbingTube) -> bool:
 
 
 def derivative(map: PinballImages, boxes: Boxes) -> Matrix | None:
-    """The derivative matrix of two bounces over boxes; None where one lands on both sides of a join."""
+    """The derivative matrix of two bounces over boxes; None if a box lands on both sides of a join."""
     total = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
     sets = Parallelograms.about(boxes)
     for _ in range(ROUND):

@@ -55,7 +55,7 @@ class ExpandingAnnulus:
             raise ValueError(f"{self}: accepted: 0 <= low < high, width > 0 and cone > 0")
 
     def part(self, chart: int, side: int) -> Boxes:
-        """Boxes that cover the part on one side (1 or -1)."""
+        """Boxes that cover the part of the annulus on one side (1 or -1)."""
         edges = np.linspace(self.low, self.high, PARTS + 1)
         middle = self.slope * edges + self.offset
         low = np.minimum(middle[:-1], middle[1:]) - self.width
@@ -67,7 +67,7 @@ class ExpandingAnnulus:
         return Boxes(np.full(PARTS, chart), *wide)
 
     def sides(self, boxes: Boxes, chart: int) -> NDArray[np.int64]:
-        """The part in which each box lies: 1, -1, or 0 for neither."""
+        """For each box, the part of the annulus in which it lies: 1, -1, or 0 for neither."""
         found = np.zeros(boxes.chart.size, dtype=np.int64)
         for side in (1, -1):
             (left, right), (low, high) = (boxes.x, boxes.y) if side > 0 else (boxes.mirrored().x, boxes.mirrored().y)
@@ -79,7 +79,7 @@ class ExpandingAnnulus:
         return found
 
     def stretches(self, map: PinballImages, chart: int) -> bool:
-        """True if the derivative of two bounces is proved to keep the cone and stretch its vectors, over both parts."""
+        """True if the derivative of two bounces is proved to keep the cone and stretch its vectors on the annulus."""
         slopes = hull(self.slope - self.cone, self.slope + self.cone)
         for side in (1, -1):
             entries = derivative(map, self.part(chart, side))

@@ -66,7 +66,7 @@ def pushed(value: BallArray, source: Indices, to: Indices, count: int) -> BallAr
 
 
 def kept(start: Range, step: Callable[[Range], Range]) -> Range:
-    """Ranges that hold `start` and are mapped into themselves by `step`; `ValueError` if they grow without end."""
+    """Ranges that hold `start` and that `step` maps into themselves; `ValueError` if they grow without end."""
     low, high = start
     for _ in range(5 * ROUNDS):
         more = (high - low) * WIDER / 5 + 1e-9

@@ -170,7 +170,7 @@ class Balance:
         return mass, end
 
     def excess(self, gain: int, y: Array, high: float) -> Array:
-        """For each label, by how much the gain off whole columns exceeds `y + high`; 0 if it does not."""
+        """For each label, how far the gain of pieces that do not cross their column exceeds `y + high`; at least 0."""
         found: Array = np.maximum(self.gains[gain][1] + self.best(y) - y - high, 0.0)
         return found
 

@@ -39,7 +39,7 @@ CUTS = 6  # a box is cut into CUTS by CUTS parts before it is mapped
 
 @dataclass(frozen=True)
 class SaddleRectangle:
-    """The rectangle that holds the part of a region over an interval `low <= theta <= high` of one chart."""
+    """A rectangle around a saddle that holds the part of a region over `low <= theta <= high` in one chart."""
 
     chart: int
     low: float

@@ -80,7 +80,7 @@ class AtMostOneAttractor(RangeTheorem, Certified):
 
     @cached_property
     def proof(self) -> NoTwoAttractors:
-        """The theorem on the map; `ValueError` for a point outside of its component or the strip."""
+        """Theorem about the map; `ValueError` for a point outside its component or outside the strip of exit angles."""
         for chart, x, y in (*self.points, self.saddle):
             (left, right), (bottom, top) = self.map.charts[chart].x, self.map.charts[chart].y
             if not (left <= x <= right and bottom <= y <= top):

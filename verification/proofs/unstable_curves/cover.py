@@ -37,11 +37,11 @@ class JoinedMap(SmoothMap, Protocol):
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of charts: the end of the first is the start of the second."""
+        """Pairs of charts such that the end of the first is the start of the second."""
 
     @property
     def homeomorphism(self) -> bool:
-        """Pairs of charts such that the end of the first is the start of the second."""
+        """True if the map is proved continuous across joins and one-to-one, with nonzero determinant where smooth."""
 
 
 @dataclass(frozen=True)

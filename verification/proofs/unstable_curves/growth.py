@@ -53,7 +53,7 @@ class CurveGrowth:
 
 
 def growth(cover: ConeField, longest: int = LONGEST) -> CurveGrowth:
-    """The bounds of the sum of inverse stretches, up to the first number of bounces for which they are below 1."""
+    """The bounds of the sum of inverse stretches, up to the first number of bounces for which they are all below 1."""
     reach = _reach(cover)
     weight = _about(cover, elementary.exp(-cover.least) * UP, reach)
     value, sums, starts = np.ones(weight.size), list[float](), cover.inner.indptr[:-1]

@@ -119,7 +119,7 @@ class NoTwoAttractors(Theorem):
 
 
 def continuous(map: JoinedMap) -> bool:
-    """True if the map is proved continuous and one-to-one, with a determinant that is not 0 where it is smooth.
+    """True if the map is proved continuous and one-to-one, with nonzero determinant where it is smooth.
 
     Each chart must be joined to the next one, with the same range of `phi`.
     """

@@ -47,13 +47,13 @@ class Spans(NamedTuple):
 
 @dataclass(frozen=True)
 class SpanMap:
-    """The map of spans; charts are laid out in one row, one after the other."""
+    """The map of spans; the charts are laid out in one row, one after another."""
 
     cover: ConeField
 
     @cached_property
     def starts(self) -> Array:
-        """The position in the row at which each chart begins, and at which the last one ends."""
+        """The positions in the row at which each chart begins, and the position at which the last one ends."""
         lengths = [chart.x[1] - chart.x[0] for chart in self.cover.grid.charts]
         return np.concatenate([[0.0], np.cumsum(lengths)])
 
@@ -74,7 +74,7 @@ class SpanMap:
 
     @cached_property
     def rows(self) -> tuple[Array, Array]:
-        """The lowest and the highest `phi` of the region in each column of each chart; infinite if it is empty."""
+        """The lowest and the highest `phi` of the region in each column of each chart; infinite in an empty one."""
         boxes = self.cover.grid.boxes(self.cover.cells)
         bottom = np.full(self.cover.shape[:2], np.inf)
         top = np.full(self.cover.shape[:2], -np.inf)
@@ -199,7 +199,7 @@ class SpanMap:
 
 
 def longest(spans: Spans, kept: int) -> Spans:
-    """The `kept` longest spans of each origin."""
+    """The `kept` longest spans among those of each origin."""
     order = np.lexsort((spans.low - spans.high, spans.origin))
     origin = spans.origin[order]
     rank = np.arange(origin.size) - np.searchsorted(origin, origin)

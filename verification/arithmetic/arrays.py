@@ -3,10 +3,10 @@
 A ball with midpoint `m` and radius `r` holds every real number within `r` of `m`. Two facts about float64 are used: the
 sum, difference, product, quotient and square root are the doubles nearest to the true ones, and adding two doubles
 never gets the sign wrong. So an operation on midpoints errs by at most `ROUNDING` times its result, and by `TINY` where
-that underflows; the few roundings in the radius itself are covered by `GROWTH`. Sine, cosine and exponential are our
-own polynomials, since nobody proves a bound for those of a library: `UNIT_ERROR` and `EXPONENTIAL_ERROR` bound
+the result underflows; the few roundings in the radius itself are covered by `GROWTH`. Sine, cosine and exponential are
+our own polynomials, since nobody proves a bound for those of a library: `UNIT_ERROR` and `EXPONENTIAL_ERROR` bound
 reduction, Taylor remainder and rounding together (docs/global.md has the count). A radius of infinity or nan means that
-nothing is known; every test here is for what is certain, and nan gives False.
+nothing is known; every comparison is True only where it is certain, and False for nan.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -97,13 +97,13 @@ class BallArray:
         return BallArray(m[index], r[index])
 
     def upper(self) -> Array:
-        """Doubles above every number of each ball."""
+        """Upper bounds of the balls, as doubles."""
         m = self.m + self.r
         found: Array = m + (np.abs(m) * ROUNDING + TINY)
         return found
 
     def lower(self) -> Array:
-        """Doubles below every number of each ball."""
+        """Lower bounds of the balls, as doubles."""
         m = self.m - self.r
         found: Array = m - (np.abs(m) * ROUNDING + TINY)
         return found
@@ -119,13 +119,13 @@ class BallArray:
         return known
 
     def magnitude(self) -> Array:
-        """Doubles above the absolute value of every number of each ball."""
+        """Upper bounds of the absolute values of the numbers in each ball, as doubles."""
         found: Array = (np.abs(self.m) + self.r) * GROWTH
         return found
 
 
 def ball(x: Any) -> BallArray:
-    """The number as a ball array; a float, or whole numbers below 2**53, become balls of radius 0."""
+    """The number as a ball array; floats, and integers below 2**53 in absolute value, become balls of radius 0."""
     return x if isinstance(x, BallArray) else BallArray(x)
 
 
@@ -159,14 +159,14 @@ def common_part(x: BallArray, y: BallArray) -> BallArray:
 
 
 def spread(value: Any, like: Array) -> BallArray:
-    """The ball array `value` in the shape of `like`; a program returns a single ball for a constant coordinate."""
+    """The ball array `value` broadcast to the shape of `like`, as a formula returns a single ball for a constant."""
     value = value if isinstance(value, BallArray) else BallArray(value)
     m, r = np.broadcast_arrays(value.m, value.r, like)[:2]
     return BallArray(m, r)
 
 
 class Compiled:
-    """A function from ball arrays to ball arrays, compiled to one loop of machine code.
+    """A function from ball arrays to ball arrays, compiled to a single loop of machine code.
 
     >>> (square,) = Compiled(lambda x: [x * x])(BallArray(np.array([1.0, 3.0]), 0.5))
     >>> bool((square.m == [1, 9]).all()), bool((square.upper() >= [2.25, 12.25]).all())
@@ -208,7 +208,7 @@ class ArrayOps:
         return BallArray(np.pi, 2.0**-51)
 
     def sqrt(self, x: BallArray) -> BallArray:
-        """The square root; the radius is infinite where the ball does not lie above zero."""
+        """The square root; the radius is infinite where the ball is not known to be positive."""
         with np.errstate(all="ignore"):
             m = np.sqrt(x.m)
             r = (x.r / m + ROUNDING * m) * GROWTH
@@ -223,7 +223,7 @@ class ArrayOps:
         return self.turned(x)[0]
 
     def turned(self, x: BallArray) -> tuple[BallArray, BallArray]:
-        """Cosine and sine, at the cost of one."""
+        """Cosine and sine, at the cost of computing one of the two."""
         return turned(x)
 
     def exp(self, x: BallArray) -> BallArray:
@@ -247,7 +247,7 @@ class ArrayOps:
         return BallArray(w + 0 * size, np.where(size <= 0.5, size**2 * GROWTH, np.inf)) + gap
 
     def atan(self, x: BallArray) -> BallArray:
-        """The arc tangent, as the angle of the vector `(1, x)`."""
+        """The arc tangent, computed as the angle of the vector `(1, x)`."""
         return direction(BallArray(np.ones_like(x.m)), x)
 
     def sinh(self, x: BallArray) -> BallArray:
@@ -271,7 +271,7 @@ class ArrayOps:
     def root(self, x: BallArray, n: int) -> BallArray:
         """The root as `w*(1 + d/n)`, where `w` is a guess and `1 + d = x/w**n`.
 
-        The error of the bracket is at most `d**2` where `abs(d) <= 1/2`; elsewhere the radius is infinite.
+        The number `1 + d/n` errs by at most `d**2` where `abs(d) <= 1/2`; elsewhere the radius is infinite.
         """
         with np.errstate(all="ignore"):
             w = power = BallArray(elementary.root(x.m, n))
@@ -283,7 +283,7 @@ class ArrayOps:
 
 
 class WideOps(ArrayOps):
-    """The operations of `ArrayOps`, sharper where balls are wide, at twice the cost.
+    """The operations of `ArrayOps` with sharper bounds for wide balls, at twice the cost.
 
     >>> bool(WideOps().cos(BallArray(0.0, 0.1)).r < 0.006), bool(WideOps().atan(BallArray(3.0, 1.0)).r < 0.12)
     (True, True)
@@ -296,7 +296,7 @@ class WideOps(ArrayOps):
         return tuple(BallArray(at.m, (at.r + by) * GROWTH) for at, by in zip((c, s), moved, strict=True))  # type: ignore[return-value]
 
     def atan(self, x: BallArray) -> BallArray:
-        """The arc tangent: it increases, so that the ends of a ball give the ends of its image."""
+        """The arc tangent: as the function increases, the ends of a ball give the ends of its image."""
         low, high = (direction(BallArray(np.ones_like(x.m)), BallArray(end)) for end in (x.lower(), x.upper()))
         return hull(low.lower(), high.upper())
 

@@ -42,12 +42,12 @@ from symbolic.tables.definition import exact
 
 
 def ball_of(*parts: Any) -> arb:
-    """The ball of a midpoint and a radius, each `(mantissa, exponent)`; or of a text, where the ball is not finite."""
+    """The ball of a midpoint and a radius, each `(mantissa, exponent)`, or of a text if the ball is not finite."""
     return arb(*parts)
 
 
 def _parts(ball: arb) -> tuple[Callable[..., arb], tuple[Any, ...]]:
-    """Function and arguments by which pickle restores a ball bit for bit; python-flint cannot pickle one."""
+    """Function and the arguments by which pickle restores a ball bit for bit; python-flint's balls do not pickle."""
     if not ball.is_finite():
         return ball_of, (str(ball),)
     return ball_of, tuple(tuple(map(int, half.man_exp())) for half in (ball.mid(), ball.rad()))
@@ -61,7 +61,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class BallWords(Generic[T]):
-    """An arithmetic: constants and functions of the formulas' closed vocabulary over numbers of type `T`."""
+    """An arithmetic over numbers of type `T`: the constants and functions that the generated formulas may call."""
 
     pi: T
     q: Callable[[int, int], T]
@@ -150,7 +150,7 @@ def mpmath_arithmetic(digits: int) -> tuple[Arithmetic, Callable[..., Any]]:
 
 
 def ball_arithmetic(digits: int) -> tuple[BallWords[arb], Callable[..., Any]]:
-    """Arithmetic of balls of `digits` digits, and its `run`, as for mpmath; text is the exact number that it shows."""
+    """Arithmetic of balls of `digits` digits, and its function `run`; a decimal text is read as an exact number."""
     bits = bits_of(digits, 10)
 
     def run(function: Callable[..., Any], arguments: Sequence[Any], shape: Sequence[int] | None) -> Any:
@@ -162,7 +162,7 @@ def ball_arithmetic(digits: int) -> tuple[BallWords[arb], Callable[..., Any]]:
 
 
 def _as_given(x: Any) -> arb:
-    """A number as a ball: a float is its exact value, text the number that it shows."""
+    """A number as a ball: a float stands for its exact value, a text for the decimal number that it shows."""
     if isinstance(x, str):
         found = exact("argument", x)
         return _as_given(found) if isinstance(found, Fraction) else real_ball(found)
@@ -178,8 +178,8 @@ def _rows(values: Sequence[Any], shape: Sequence[int]) -> list[list[Any]]:
 def working(bits: int) -> Iterator[None]:
     """Context in which ball arithmetic rounds to `bits` bits; the old precision is restored afterwards.
 
-    The precision of `flint` is one for the whole process, so other threads wait until this one leaves. Proofs that are
-    to run at the same time need a process each.
+    The precision of `flint` is one for the whole process, so other threads wait until this one leaves the context.
+    Proofs that run at the same time need a process each.
 
     >>> before = ctx.prec
     >>> with working(333):
@@ -329,7 +329,7 @@ def bisected(box: Box, side: int | None = None) -> list[Box]:
 
 
 def cuts(low: float, high: float, longest: float) -> list[arb]:
-    """The interval from `low` to `high` as touching balls, none of them much longer than `longest`.
+    """The interval from `low` to `high` as touching balls, each not much longer than `longest`.
 
     >>> len(cuts(0.0, 1.0, 0.3))
     4
@@ -346,7 +346,7 @@ def halves(x: arb) -> list[arb]:
 
 
 def joined(values: Iterable[arb]) -> arb:
-    """A ball that holds all the balls given, at least one.
+    """A ball that holds all the given balls, of which there must be at least one.
 
     >>> joined([arb(1), arb(3)]).contains(arb(2))
     True

@@ -1,4 +1,4 @@
-"""Newton's method and other iterations, with one stopping rule; and progress of long proofs.
+"""Newton's method and other iterations, with a common stopping rule; and progress reports of long proofs.
 
 The unknowns are a list of numbers of any kind, or of arrays. Near a simple zero each correction is about the square of
 the one before, until rounding takes over. So an iteration has converged when a correction is as small as is wanted, or
@@ -42,7 +42,7 @@ class Stop:
     reach: float = inf
 
     def rounding(self, size: Any, before: Any) -> bool:
-        """True if a correction of size `size`, after one of size `before`, is nothing but rounding."""
+        """True if a correction of size `size`, after one of size `before`, is due to rounding alone."""
         return bool(size < self.small and not size < SHRINKS * before)
 
 
@@ -92,10 +92,9 @@ def iterated(
 
 
 def bracketed(f: Callable[[float], float], start: float, end: float, small: float, relative: float) -> float:
-    """A zero between two values of opposite signs, by Brent's method.
+    """A zero between two values of opposite signs, by Brent's method, to within `small + relative*abs(zero)`.
 
-    To `small + relative*abs(zero)`, with the steps of SciPy's `brentq`, whose import takes half a second.
-    `ValueError` where the signs agree.
+    The steps are those of SciPy's `brentq`, whose import takes half a second. `ValueError` where the signs agree.
 
     >>> round(bracketed(lambda x: x * x - 2, 0.0, 2.0, 1e-12, 1e-12), 11)
     1.41421356237
@@ -132,7 +131,7 @@ def bracketed(f: Callable[[float], float], start: float, end: float, small: floa
 def in_rows(
     correction: "Callable[[NDArray[np.float64]], NDArray[np.float64]]", start: "NDArray[np.float64]", stop: Stop
 ) -> "tuple[NDArray[np.float64], NDArray[np.bool_]]":
-    """Iterates each row of `start` in float64, shape `(rows, unknowns)`; returns the rows and which of them converged.
+    """Iterates each row of `start` in float64, shape `(rows, unknowns)`; returns the rows and a mask of converged ones.
 
     >>> import numpy as np
     >>> x, settled = in_rows(lambda x: (x * x - 2) / (2 * x), np.array([[1.0], [0.0]]), Stop(enough=1e-11))
@@ -155,7 +154,7 @@ def in_rows(
 
 
 def largest(parts: Sequence[Any]) -> float:
-    """The largest finite entry of numbers, arrays and Taylor series of either, in absolute value."""
+    """The largest absolute value among finite entries of numbers, arrays, and Taylor series of either."""
     import numpy as np
 
     sizes = [0.0]
@@ -188,7 +187,7 @@ def heard(by: Hearer) -> Iterator[None]:
 
 
 def silent(share: float) -> None:
-    """A `tick` that does nothing, for proofs whose progress is not shown."""
+    """A `tick` that does nothing, for proofs that do not report their progress."""
 
 
 def telling(about: str) -> Tick:

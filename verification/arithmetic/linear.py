@@ -47,7 +47,7 @@ def solved(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> lis
 
 
 def approximated(rows: Sequence[Sequence[arb]], right: Sequence[Sequence[arb]]) -> list[list[arb]]:
-    """The solution in float64, as balls of radius 0: nothing is proved. `ZeroDivisionError` for a singular matrix."""
+    """The solution in float64, as balls of radius 0, without proof. `ZeroDivisionError` for a singular matrix."""
     matrix, sides = (np.array([[_middle(x) for x in row] for row in part]) for part in (rows, right))
     try:
         found = np.linalg.solve(matrix, sides)
@@ -66,7 +66,7 @@ def _inverse(matrix: Floats) -> Floats:
 
 
 def _column(sparse: Sparse, inverse: Floats, off: Floats, blanket: float, right: Sequence[arb]) -> list[arb]:
-    """One column of the solution: corrected twice in float64, then a ball with a bound of the remaining error."""
+    """One column of the solution: corrected twice in float64, then enclosed with a bound of the remaining error."""
     x = [arb(0)] * len(sparse)
     for _ in range(2):
         left = np.array([_middle(r) for r in _residual(sparse, x, right)])

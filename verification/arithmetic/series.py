@@ -74,7 +74,7 @@ class Jet:
 
 
 def jets(base: Arithmetic) -> Arithmetic:
-    """Arithmetic of jets over the numbers of `base`: the constants and functions that kernels call.
+    """Arithmetic of jets over the numbers of `base`: the constants and functions that generated formulas call.
 
     >>> from verification.arithmetic.balls import FLOAT64
     >>> jets(FLOAT64).atan(Jet(0.0, 1.0, 0.0, 0.0)).c[3] * 3
@@ -194,7 +194,7 @@ def in_series(base: Arithmetic, made: Any) -> Arithmetic:
 
 
 def along(near: Sequence[Jet], function: Callable[[list[Any]], Sequence[Any]]) -> list[Jet]:
-    """Values, as jets, of a function of FLINT's series at jets over balls."""
+    """The Taylor coefficients, as jets, of a function of FLINT's series along the curve `near`."""
     count = len(near[0].c)
     with taylor(count):
         made = SERIES[type(near[0].c[0])]
@@ -213,7 +213,7 @@ def coefficients(series: Any, count: int) -> list[Any]:
 
 @dataclass(frozen=True)
 class TaylorModel:
-    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last enclosed on all of it."""
+    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last one enclosed on all of it."""
 
     low: arb
     high: arb
@@ -224,7 +224,7 @@ class TaylorModel:
         return self._upper(self.terms)
 
     def slope(self) -> arb:
-        """An upper bound of the absolute value of its derivative."""
+        """An upper bound of the absolute value of the function's derivative."""
         return self._upper([k * c for k, c in enumerate(self.terms)][1:])
 
     def integral(self) -> arb:

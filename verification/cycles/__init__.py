@@ -1,4 +1,4 @@
-"""Periodic orbits: what one is, search, Newton iteration, continuation, normal forms, cascades."""
+"""Periodic orbits: their definition, search, Newton iteration, continuation, normal forms, cascades."""
 
 import lazy_loader
 

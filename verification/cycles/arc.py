@@ -45,7 +45,7 @@ class CurveSystem(Protocol):
         """The weight of each unknown in the length of the curve."""
 
     def linear(self, z: Array) -> tuple[Array, Any]:
-        """The values of the equations and their matrix of derivatives, one column more than rows."""
+        """The values of the equations, and their matrix of derivatives, which has one column more than rows."""
 
     def tests(self, z: Array) -> dict[str, float]:
         """Values of the test functions, whose zeros on the curve are events."""
@@ -59,7 +59,7 @@ class CurveSystem(Protocol):
 
 @dataclass(frozen=True)
 class Steps:
-    """Lengths of arc of a step (the first, the smallest, the largest), and the most points of a path."""
+    """The step lengths in arc length (first, smallest, largest), and the largest number of points of a path."""
 
     first: float = 0.01
     smallest: float = 1e-8
@@ -69,7 +69,7 @@ class Steps:
 
 @dataclass(frozen=True)
 class CurvePoint:
-    """A solution with its tangent, the arc length so far, and the test functions there."""
+    """A solution with its tangent, the arc length up to it, and the values of the test functions at it."""
 
     z: Array = field(repr=False)
     tangent: Array = field(repr=False)
@@ -88,11 +88,11 @@ class Path:
 
 
 class LostError(ValueError):
-    """Newton's method did not converge to a point of the curve, or the curve has no tangent there."""
+    """Raised if Newton's method does not converge to a point of the curve, or if the curve has no tangent there."""
 
 
 def corrected(system: CurveSystem, guess: Array, row: Array, level: float) -> tuple[Array, int]:
-    """The solution near `guess` with `row . z = level`, and the number of Newton steps; `LostError` without one."""
+    """Solution near `guess` with `row . z = level`, and the number of Newton steps; `LostError` if there is none."""
     lost = LostError(f"{system.label}: Newton's method no longer converges")
 
     def correction(unknowns: list[Array]) -> list[Array]:
@@ -118,7 +118,7 @@ def corrected(system: CurveSystem, guess: Array, row: Array, level: float) -> tu
 
 
 def tangent_at(system: CurveSystem, z: Array, along: Array) -> Array:
-    """The unit tangent at `z` that points the way of `along`."""
+    """The unit tangent at `z` that makes an acute angle with `along`."""
     _, matrix = system.linear(z)
     found = solved(above(matrix, along * system.weights), np.append(np.zeros(len(z) - 1), 1.0))
     length = float(np.sqrt(found @ (system.weights * found)))
@@ -128,14 +128,14 @@ def tangent_at(system: CurveSystem, z: Array, along: Array) -> Array:
 
 
 def arc(system: CurveSystem, start: CurvePoint, length: float) -> tuple[Array, int]:
-    """The point of the curve in the plane across the tangent, `length` ahead of `start`; Newton steps."""
+    """The point of the curve in the plane across the tangent, `length` ahead of `start`; and the Newton steps made."""
     row = start.tangent * system.weights
     guess = start.z + length * start.tangent
     return corrected(system, guess, row, float(row @ guess))
 
 
 def started(system: CurveSystem, z: Array, direction: Array) -> CurvePoint:
-    """The first point of a path: on the curve, in the plane across `direction`."""
+    """The first point of a path, corrected to lie on the curve, in the plane across `direction`."""
     weighted = direction * system.weights
     place, _ = corrected(system, z, weighted, float(weighted @ z))
     return CurvePoint(place, tangent_at(system, place, direction), 0.0, system.tests(place))
@@ -151,7 +151,8 @@ def follow(
 ) -> Path:
     """The path from `first` along its tangent, until it ends; `limits` are the ranges of unknowns, by their index.
 
-    `tick` is called with each point, and ends the path when it returns True. No point is taken where `other` is True.
+    `tick` is called with each point, and ends the path when it returns True. A step to a point where `other` is True
+    (another branch) is refused and shortened.
     """
     steps = steps or Steps()
     points, step = [first], steps.first
@@ -190,7 +191,7 @@ def follow(
 
 
 def passing(system: CurveSystem, points: Sequence[CurvePoint], index: int, value: float) -> list[Array]:
-    """The solutions on a path at which the unknown `index` has this value, each solved for."""
+    """The solutions on a path at which the unknown `index` has this value, each corrected by Newton's method."""
     found = []
     for a, b in pairwise(points):
         if (a.z[index] - value) * (b.z[index] - value) < 0 or b.z[index] == value:
@@ -219,7 +220,7 @@ def zero(system: CurveSystem, start: CurvePoint, end: CurvePoint, name: str) -> 
 
 
 def zero_near(system: CurveSystem, first: Array, last: Array, name: str) -> CurvePoint | None:
-    """The point where a test function vanishes between the solutions near two guesses; None if its sign is the same."""
+    """Point where a test function vanishes between the solutions near two guesses; None if its signs there agree."""
     row = np.append(np.zeros(len(first) - 1), 1.0 if last[-1] > first[-1] else -1.0)
     try:
         start, end = (started(system, z, row) for z in (first, last))
@@ -235,7 +236,7 @@ def leaves(point: CurvePoint, interval: tuple[float, float]) -> bool:
 
 
 def _beyond(here: Array, z: Array, limits: Mapping[int, tuple[float, float]]) -> list[tuple[int, float]]:
-    """The sides (index, value) of the box that are crossed on the way from `here` to `z`, the first one first."""
+    """The sides (index, value) of the box crossed on the way from `here` to `z`, in the order of crossing."""
     crossed = []
     for index, (low, high) in limits.items():
         if not low <= z[index] <= high:
@@ -251,7 +252,7 @@ def _landed(
     sides: list[tuple[int, float]],
     limits: Mapping[int, tuple[float, float]],
 ) -> CurvePoint:
-    """The point of the curve on the side by which it leaves the box."""
+    """The point of the curve on the side by which the curve leaves the box."""
     for index, side in sides:
         last = _at_side(system, here, z, index, side)
         if not _beyond(here.z, last.z, limits):

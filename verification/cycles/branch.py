@@ -1,7 +1,7 @@
 """A branch of cycles in one parameter: its start, its events (bifurcations), and its points as a table.
 
-It is followed both ways. Each event is a zero of a test function between two points, located on the curve
-(`verification.cycles.recurrence` names them).
+A branch is followed in both directions. Each event is a zero of a test function between two points, located on the
+curve; `verification.cycles.recurrence` lists the kinds of events.
 
 The table is an xarray Dataset or a record for JSON. Points and events stand in one order, by arc length along the
 branch; `event` is empty at an ordinary point.
@@ -43,7 +43,7 @@ Interval = tuple[float, float]
 
 
 class Collision(Enum):
-    """What becomes of a cycle whose bounce meets a join where the tangents agree."""
+    """The effect of a border collision on a cycle, where a bounce meets a join at which the tangents agree."""
 
     PERSISTENCE = "persistence: the cycle goes on over the join"
     FOLD = "nonsmooth fold: two cycles meet on the join, and exist on one side of this value alone"
@@ -52,11 +52,11 @@ class Collision(Enum):
 
 @dataclass(frozen=True)
 class Event:
-    """An event on a branch: its kind, its place, and the coefficients of its normal form where there is one.
+    """An event on a branch: its kind, its point, and the coefficients of its normal form if it has one.
 
-    `ring` and `x` are the cycle, or the part of it that flips where a symmetry breaks. When it is not `located` its
-    place is interpolated between two points. At its `birth` a branch turns, and `ring` is the cycle from which it is
-    born.
+    `ring` and `x` are the cycle or, where a symmetry breaks, the part of the cycle that flips. If an event is not
+    `located`, its point is interpolated between two points of the branch. At a `birth` the branch turns back, and
+    `ring` is the cycle from which the branch is born.
     """
 
     kind: BifurcationKind
@@ -70,16 +70,16 @@ class Event:
 
     @property
     def value(self) -> float:
-        """The value of the parameter at the event."""
+        """The value of the parameter at which the event occurs."""
         return float(self.point.z[-1])
 
 
 @dataclass(frozen=True)
 class Branch:
-    """A branch of cycles: points and events in order of arc length, and the reason of either end.
+    """A branch of cycles: points and events in order of arc length, and the reason why it ends at either end.
 
-    At `births` the branch turns: they are events of the cycles from which it is born, and not its own. A family that
-    goes on over joins has `pieces`, each with its own equations; `system` is that of the piece with which it begins.
+    At `births` the branch turns back: these are bifurcations of the cycles from which the branch is born. A family that
+    goes on over joins has `pieces`, each with its own equations; `system` is that of the first piece.
     """
 
     system: Cycles
@@ -91,16 +91,16 @@ class Branch:
 
     @property
     def each(self) -> "tuple[Branch, ...]":
-        """The pieces: itself where it crosses no join."""
+        """The pieces of the branch; the branch itself if it crosses no join."""
         return self.pieces or (self,)
 
     @property
     def along(self) -> list[Event]:
-        """The events and the births, in order along the branch."""
+        """The events and the births, in order of arc length along the branch."""
         return sorted((*self.events, *self.births), key=lambda event: event.point.s)
 
     def spectra(self) -> list[MonodromyDeterminants]:
-        """The multipliers at each point."""
+        """The determinants that give the multipliers, at each point of the branch."""
         return [spectrum_of(point) for point in self.points]
 
     @property
@@ -109,12 +109,12 @@ class Branch:
         return np.array([point.z[-1] for point in self.points])
 
     def at(self, value: float) -> list[Array]:
-        """The cycles (bounces, then parameter) where the branch passes `value`, each solved for."""
+        """The cycles (bounces, then parameter) where the branch passes `value`, each corrected by Newton's method."""
         return [z for piece in self.each for z in arc.passing(piece.system, piece.points, -1, value)]
 
 
 def spectrum_of(point: CurvePoint) -> MonodromyDeterminants:
-    """The multipliers at a point of a branch."""
+    """The determinants that give the multipliers at a point of a branch."""
     return MonodromyDeterminants(point.tests["one"], point.tests["minus_one"], point.tests["volume"] + 1)
 
 
@@ -128,7 +128,7 @@ def branch(
     steps: Steps | None = None,
     tick: Callable[[CurvePoint], object] | None = None,
 ) -> Branch:
-    """The branch through the cycle near `x` at `parameter = value`, both ways, inside `interval`.
+    """The branch through the cycle near `x` at `parameter = value`, followed in both directions inside `interval`.
 
     >>> from sympy import Symbol
     >>> from verification.cycles.recurrence import logistic
@@ -168,7 +168,7 @@ def through(
     tick: Callable[[CurvePoint], object] | None = None,
     ways: tuple[int, ...] = (-1, 1),
 ) -> Branch:
-    """The branch through the cycle `z`, followed along `direction` and against it (`ways`), with its events."""
+    """Branch through the cycle `z`, followed along `direction` and against it (`ways` 1 and -1), with its events."""
     limits = {len(z) - 1: interval}
     tangent = arc.tangent_at(system, z, direction)
     ring = system.recurrence
@@ -197,7 +197,7 @@ def through(
 
 
 def _each_once(ring: Recurrence, events: Sequence[Event]) -> list[Event]:
-    """Events without repetition: a branch may meet one again at an image of its own cycle."""
+    """The events without repetitions: a branch may meet an event again at an image of its cycle under a symmetry."""
     found: list[Event] = []
     for event in events:
         z = event.point.z
@@ -225,7 +225,7 @@ def between(system: Cycles, a: CurvePoint, b: CurvePoint) -> list[Event]:
 
 
 def _located(system: Cycles, a: CurvePoint, b: CurvePoint, name: str, turns: bool) -> Event:
-    """The event at the zero of a test function; interpolated where the corrector fails, as where branches cross."""
+    """The event at the zero of a test function; interpolated where Newton's method fails, as at a branch point."""
     try:
         return _named(system, name, arc.zero(system, a, b, name), turns)
     except ValueError:
@@ -236,7 +236,7 @@ def _located(system: Cycles, a: CurvePoint, b: CurvePoint, name: str, turns: boo
 
 
 def _broken(system: Cycles, a: CurvePoint, b: CurvePoint) -> Event | None:
-    """The pitchfork between two neighbouring points, on the part of the cycle that flips there; None without one."""
+    """The pitchfork between two neighbouring points, computed on the part of the cycle that flips; None without one."""
     ring = system.recurrence
     for part, _ in parts(ring, a.z[:-1]) if isinstance(ring, Chords) else []:
         first, last = (np.append(p.z[: part.period], p.z[-1]) for p in (a, b))
@@ -247,7 +247,7 @@ def _broken(system: Cycles, a: CurvePoint, b: CurvePoint) -> Event | None:
 
 
 def _birth(system: Cycles, a: CurvePoint, b: CurvePoint) -> list[Event]:
-    """The birth between two neighbouring points, if any: a flip of the cycle from which the branch starts."""
+    """The birth between two neighbouring points, if any: a flip of the cycle from which the branch is born."""
     for part, x, share in crossed(system.recurrence, a.z[:-1], b.z[:-1]):
         for wide in WIDTHS:
             first, last = (np.append(x, a.z[-1] + side * wide) for side in (-1, 1))
@@ -258,7 +258,7 @@ def _birth(system: Cycles, a: CurvePoint, b: CurvePoint) -> list[Event]:
 
 
 def _parted(system: Cycles, part: Chords, there: CurvePoint, a: CurvePoint, b: CurvePoint, share: float) -> Event:
-    """The event where `part` flips, put at `share` of the way from point `a` to point `b`."""
+    """The event where `part` flips, placed at the fraction `share` of the way from point `a` to point `b`."""
     kind = BifurcationKind.FLIP if part.closure == IDENTITY else BifurcationKind.PITCHFORK
     x = there.z[:-1]
     form = _form(
@@ -281,7 +281,7 @@ def _named(system: Cycles, name: str, point: CurvePoint, turns: bool) -> Event:
 
 
 def _placed(ring: Recurrence, x: Array) -> tuple[Recurrence, Array]:
-    """The cycle with each bounce on its component, which a branch may have left over a smooth join."""
+    """The cycle with each bounce assigned to the component on which it lies; a branch may cross a smooth join."""
     return ring.placed(x) if isinstance(ring, Chords) else (ring, x)
 
 
@@ -295,8 +295,8 @@ def _form(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, par
 def border(system: Cycles, last: CurvePoint) -> Event | None:
     """The border collision next to the last point of a path, where a bounce lies on the join itself.
 
-    In a corner that two bounces reach, and where a flight touches the boundary on its way, the equations have no
-    solution beyond: then the last point is the place, not located.
+    Where two bounces reach a corner, or a flight touches the boundary on its way, the event is put at the last point
+    and marked as not located, as the equations have no solution beyond.
     """
     ring, z = system.recurrence, last.z
     if not isinstance(ring, Chords):
@@ -333,7 +333,7 @@ NAMED: dict[str, tuple[Callable[[], Cycle], str, float | None]] = {
 
 
 def named(name: str, table: Table) -> tuple[Chords, Array, float | None]:
-    """The chord system of a cycle with a name, its bounces, and its contraction (None: any).
+    """The chord system of the named cycle, its bounces, and its contraction (None if it exists for any).
 
     >>> from symbolic.tables import cuspless
     >>> named("horizontal", cuspless)[0].components
@@ -350,7 +350,7 @@ def named(name: str, table: Table) -> tuple[Chords, Array, float | None]:
 
 
 def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None = None) -> tuple[Chords, Array]:
-    """The chord system of bounces at the parameters `theta` on the named components (None: the first), and `theta`."""
+    """Chord system of bounces at the parameters `theta` on the named components (None: the first one), and `theta`."""
     names = [component.name for component in table.components]
     if len(theta) < 2:
         raise ValueError(f"--start has {len(theta)} bounce; a cycle has at least 2, such as 0.1,3.0")
@@ -367,7 +367,7 @@ def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None
 
 
 def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
-    """The cycle near `x` at the contraction `given`, followed to `lam`: the first that its branch meets there."""
+    """The cycle near `x` at the contraction `given`, followed to `lam`: the first one on its branch with this `lam`."""
     if given == lam:
         return x
     found = branch(ring, x, "lam", given, (min(given, lam), max(given, lam)))
@@ -446,7 +446,7 @@ def record(branch: Branch) -> dict[str, Any]:
 
 
 def sides_at(system: Cycles, point: CurvePoint) -> OneSided | None:
-    """What the one-sided derivatives of a cycle say that stays on joins; None where it has one derivative."""
+    """The one-sided derivatives of a cycle that stays on joins, and its stability; None if its derivative is unique."""
     ring = system.recurrence
     if not isinstance(ring, Chords) or ring.shapes or len(ring.table.components) == 1:
         return None

@@ -1,8 +1,8 @@
-"""Period-doubling cascades in float64: an attracting cycle is followed to its flip, onto the cycle born there, and on.
+"""Period-doubling cascades in float64: an attracting cycle is followed to its flip, then the cycle born there, etc.
 
-Nothing here is proved: each flip is a start for Newton's method. The cascade of the paper (section
-6.6, `alpha = 0.08`) is the egg's, `lambda_n`, where period `2**(n-1)` becomes `2**n`. `lambda_2`, where it exists, is
-the flip of the diameter; from `lambda_3` on the cycles are followed from an attractor of period 4.
+Nothing here is proved: each flip is a start for Newton's method. The cascade of the paper (section 6.6, `alpha = 0.08`)
+is the egg's, `lambda_n`, where period `2**(n-1)` becomes `2**n`. `lambda_2`, where it exists, is the flip of the
+diameter; from `lambda_3` on the cycles are followed from an attractor of period 4.
 """
 
 import math
@@ -30,7 +30,8 @@ SAME = 1e-7  # radians: an orbit that returns this close counts as a cycle
 
 
 def attractor(table: Table, lam: float, start: tuple[float, float], longest: int = 64) -> list[float]:
-    """The cycle that a particle settles on, as bounce parameters; empty when it has more than `longest` bounces.
+    """The attracting cycle that a particle approaches, as bounce parameters; empty if it has more than `longest`
+    bounces.
 
     For tables of one convex component; `start` are two successive bounces.
 
@@ -70,12 +71,12 @@ def characteristic(
 
 
 def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple[int, ...] = ()) -> list[float]:
-    """The cycle near `theta` at contraction `lam`, in float64; without `components`, on the first one."""
+    """The cycle near `theta` at contraction `lam`, in float64; without `components`, on the first component."""
     return floats(Problem(table, components or (0,) * len(theta), lam=Rational(lam)), theta)
 
 
 def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: BifurcationKind) -> list[float]:
-    """`[*theta, lam]` where the cycle has the multiplier -1 (or 1), followed from `lam` in steps of `step`."""
+    """First flip (or fold) of the cycle near `theta`, as `[*theta, lam]`; followed from `lam` in steps of `step`."""
     problem = Problem(table, (0,) * len(theta), kind, "lam")
     before: list[float] = []
     here = cycle_at(table, theta, lam)
@@ -110,7 +111,7 @@ def next_critical(table: Table, theta: Sequence[float], lam: float, step: float,
 def doubled(problem: Problem, critical: Sequence[float], distance: float) -> tuple[list[float], float]:
     """The cycle of twice the period that is born at a flip, near `lam + distance`, and its `lam`.
 
-    The branch is `lam + c*e**2`, with `c` from the third-order terms; it may lie on either side.
+    The branch is `lam + c*e**2`, with `c` from the third-order terms; the branch may lie on either side of the flip.
     """
     at = Linearised(problem, FLOAT64, list(critical))
     c, vector = float(at.normal_form(FLOAT64).branch), at.critical.right
@@ -151,7 +152,7 @@ class Doubling:
 
 
 def doublings(table: Table, theta: Sequence[float], lam: float, step: float) -> Iterator[Doubling]:
-    """The flips of an attracting cycle at `lam` and of the cycles born at each, sought first in steps of `step`."""
+    """The flips of an attracting cycle and of the cycles born at each, in turn; the first search starts at `lam`."""
     critical = next_critical(table, theta, lam, step, BifurcationKind.FLIP)
     gap = (critical[-1] - lam) / 4
     while True:
@@ -176,7 +177,7 @@ def cascade(alpha: Expr) -> Iterator[Doubling]:
 
 
 def _back_after_four(table: Table) -> list[float]:
-    """The contractions of `GRID` at which a particle near a diameter is back after four bounces, in float64."""
+    """The contractions in `GRID` for which a particle near a diameter repeats after four bounces, in float64."""
     from numeric import PinballMap
 
     theta = np.full(len(GRID), START[1])
@@ -202,8 +203,8 @@ def stable_four(table: Table) -> tuple[float, list[float]]:
 def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
     """Problem and start for the pitchfork of the mirror-symmetric cycle of period 4: a flip of half the cycle.
 
-    A symmetric cycle cannot double its period: half of it would need the multipliers `i` and `-i`,
-    whose product is 1. It loses its symmetry first, and what is born there doubles.
+    A symmetric cycle cannot double its period: half of the cycle would need the multipliers `i` and `-i`, whose product
+    is 1. It loses its symmetry first, and the asymmetric cycle born there doubles its period.
     """
     table = tables.egg(3).at(alpha=alpha)
     problem = Problem(table, (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR)
@@ -221,7 +222,7 @@ def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
 
 
 def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
-    """The problem that `lambda_n` solves, and a start for its solution."""
+    """The system of equations for `lambda_n`, and a starting point for its solution."""
     if not 2 <= n <= HIGHEST:
         raise ValueError(f"locate doubling: n = {n} is out of range; accepted: 2 to {HIGHEST}")
     if n == 2:
@@ -231,7 +232,7 @@ def critical_cycle(alpha: Expr, n: int) -> tuple[Problem, list[float]]:
 
 
 def doubling(alpha: Expr, n: int) -> Doubling:
-    """The flip `lambda_n` of the egg in float64; those before it are computed once and kept."""
+    """The flip `lambda_n` of the egg in float64; earlier flips are computed once and kept."""
     known, more = _known(alpha)
     tick = telling("doublings in float64")
     while len(known) < n - 2:

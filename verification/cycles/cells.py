@@ -1,18 +1,18 @@
 """Cycles in float64: the matrices of a ring, Newton's method on thousands of rings, and a count of cycles by cells.
 
-Elimination along the chain (`verification.cycles.chain`) does not pivot: right for one cycle in any
-arithmetic, but a branch passes superstable cycles, where a pivot vanishes. Here float64 matrices are
-factored with pivoting, densely while they are small and by sparse elimination, linear in the period, beyond.
+Elimination along the chain (`verification.cycles.chain`) does not pivot. This suits a single cycle in any arithmetic,
+but a branch passes superstable cycles, where a pivot vanishes. Here float64 matrices are factored with pivoting,
+densely while they are small and by sparse elimination, linear in the period, beyond.
 
-A seed is a row of bounce parameters, an orbit that almost closes. All rows that visit the same components are
-corrected together: one call of the chord kernel, one batch of small linear systems.
+A seed is the row of bounce parameters of an orbit that almost closes. All rows that visit the same components are
+corrected together, by one call of the chord kernel and one batch of small linear systems.
 
-The count by cells checks the search that is built on this. Cells of phase space are quartered until `T**n` is affine
-on them. The displacement `v = (sin(theta_n - theta), phi_n - phi)` is continuous on a smooth convex table. On a cell
-where its values at the corners and the centre are affine up to a small deviation, the zero of the affine map is
-in the cell or is not; where the deviation is too large the cell is quartered. The index is the sign of the
-determinant of the affine part. Sampled in float64, so no proof; but it has no seeds, no chord system and no
-symmetry in common with the search.
+The count by cells checks the search, which uses this Newton's method. Cells of phase space are quartered until `T**n`
+is affine on them. The displacement `v = (sin(theta_n - theta), phi_n - phi)` is continuous on a smooth convex table. On
+a cell where its values at the corners and the centre are affine up to a small deviation, the zero of the affine map is
+in the cell or is not; where the deviation is too large the cell is quartered. The index is the sign of the determinant
+of the affine part. The count is sampled in float64 and so is no proof, but it shares no seeds, chord system or symmetry
+with the search.
 """
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ def solved(matrix: Any, right: Array) -> Array:
 
 
 def _factors(matrix: Any) -> Any:
-    """The LU factors of a sparse matrix. SciPy's sparse part is imported only here: most cycles do without."""
+    """The LU factors of a sparse matrix. SciPy's sparse module is imported here, as most cycles do not need it."""
     from scipy import sparse
     from scipy.sparse.linalg import splu
 
@@ -56,7 +56,7 @@ def _factors(matrix: Any) -> Any:
 
 
 def ring_matrix(terms: Terms[Array], closure: Closure, sign: int = 1) -> Any:
-    """The matrix of the linearised rules on vectors that close with a factor `sign`; sparse when it is large.
+    """The matrix of the linearised rules on vectors that close with a factor `sign`; sparse if the ring is long.
 
     >>> one = np.ones(3)
     >>> t = Terms(one, (one, 2 * one, 3 * one), {}, {}, {})
@@ -104,7 +104,7 @@ def dense(matrix: Any) -> Array:
 
 @dataclass(frozen=True)
 class MonodromyDeterminants:
-    """`det(M - 1)`, `det(M + 1)` and `det M` of a cycle's monodromy matrix `M`."""
+    """The determinants `det(M - 1)`, `det(M + 1)` and `det M` of a cycle's monodromy matrix `M`."""
 
     at_one: float
     at_minus_one: float
@@ -169,7 +169,7 @@ def spectrum(terms: Terms[Array], closure: Closure) -> MonodromyDeterminants:
 
 
 def _determinant(matrix: Any) -> tuple[float, float]:
-    """Sign and logarithm of a determinant."""
+    """Sign of a determinant, and logarithm of its absolute value."""
     if matrix.shape[0] <= DENSE:
         sign, log = np.linalg.slogdet(matrix)
         return float(sign), float(log)
@@ -230,7 +230,7 @@ class Corrector:
         return kept
 
     def diagonals(self, components: tuple[int, ...], x: Array) -> tuple[Array, Array, Array, Array]:
-        """Values of the rule at each bounce, and derivatives by the bounce before, the bounce, and the one after."""
+        """The rule's value at each bounce, and its derivatives with respect to the bounces before, here and after."""
         n, rule = len(components), Chords(self.table, components, law=self.law).over(ARRAYS)
         value, lower, middle, upper = (np.empty_like(x) for _ in range(4))
         for i in range(n):
@@ -240,7 +240,7 @@ class Corrector:
         return value, lower, middle, upper
 
     def at_one(self, components: tuple[int, ...], x: Array) -> Array:
-        """The modulus of `det(1 - M)`, with the monodromy matrix `M` of the cycle in each row."""
+        """The absolute value of `det(1 - M)`, with the monodromy matrix `M` of the cycle in each row."""
         _, *bands = self.diagonals(components, x)
         with np.errstate(all="ignore"):
             log = np.linalg.slogdet(_rings(*bands))[1] - np.sum(elementary.log(np.abs(bands[2])), axis=1)
@@ -262,7 +262,7 @@ class Corrector:
         return np.asarray(step[:, :, 0], dtype=np.float64)
 
     def exits(self, components: tuple[int, ...], x: Array) -> Array:
-        """The exit angles at each bounce of each row."""
+        """The exit angle at each bounce of each row."""
         n, angle = len(components), chord_angles(self.table, ARRAYS)
         with np.errstate(all="ignore"):  # where bounces meet
             ahead = [angle(components[i], components[(i + 1) % n], 0)(x[:, i], x[:, (i + 1) % n])[0] for i in range(n)]
@@ -270,7 +270,7 @@ class Corrector:
 
 
 def _rings(lower: Array, middle: Array, upper: Array) -> Array:
-    """The cyclic tridiagonal matrix of each row of diagonals."""
+    """The cyclic tridiagonal matrices, one for each row of the three diagonals."""
     count, n = middle.shape
     matrix = np.zeros((count, n, n))
     for i in range(n):
@@ -283,8 +283,8 @@ def _rings(lower: Array, middle: Array, upper: Array) -> Array:
 def deflation(x: Array, step: Array, known: Array) -> Array:
     """The factor of each Newton step, when the known zeros on a closed boundary are divided out.
 
-    Half way to a zero that is known, Newton's own step would get there; the deflated one turns back. Sines and cosines
-    of differences are products of matrices, of all rows with all known ones.
+    Half way to a known zero, a plain Newton step would reach it, while the deflated step turns back. Distances between
+    all rows and all known zeros come from two matrix products.
 
     >>> bool(deflation(np.array([[0.1, 0.1]]), np.array([[0.1, 0.1]]), np.zeros((1, 2)))[0] < 0)
     True
@@ -307,7 +307,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Zeros:
-    """Numbers of fixed points with index 1 and -1, and of cells left open: the counts are complete when none is."""
+    """Numbers of fixed points of index 1 and -1, and of undecided (`open`) cells; if none, the counts are complete."""
 
     positive: int
     negative: int
@@ -315,7 +315,7 @@ class Zeros:
 
 
 def fixed_points(map: PinballMap, n: int) -> Zeros:
-    """Numbers of fixed points of `T**n` on a smooth convex table of one component, by their index.
+    """Numbers of fixed points of `T**n` on a smooth convex table of one component, by index.
 
     >>> fixed_points(PinballMap("ellipse", lam=0.5, a=1.5), 2)
     Zeros(positive=2, negative=2, open=0)
@@ -340,7 +340,7 @@ def fixed_points(map: PinballMap, n: int) -> Zeros:
 
 
 def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np.bool_]]:
-    """The displacement `v` at phase points, and whether the return is near the start rather than opposite."""
+    """The displacement `v` at phase points, and whether `cos(theta_n - theta) > 0`, as near a return."""
     theta, phi = np.mod(at[..., 0].ravel() + pi, 2 * pi) - pi, np.clip(at[..., 1].ravel(), -1.57, 1.57)
     place, out = theta, phi
     for _ in range(n):
@@ -351,7 +351,7 @@ def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np
 
 
 def _examined(map: PinballMap, cells: Array, half: Array, n: int) -> tuple[Array, Array]:
-    """The zeros in cells that are decided, and the cells that are not."""
+    """The indices of the zeros in the cells that are decided, and the cells that are not."""
     points = np.array([[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
     v, near = _displacement(map, cells[:, None, :] + points[None] * half, n)
     centre, corners = v[:, 0], v[:, 1:]
@@ -390,7 +390,7 @@ def _examined(map: PinballMap, cells: Array, half: Array, n: int) -> tuple[Array
 
 
 def _each_once(map: PinballMap, zeros: Array, n: int) -> Array:
-    """The index of each distinct zero, after Newton's method on the map itself."""
+    """The index of each distinct zero, after refinement by Newton's method on the map itself."""
     if not len(zeros):
         return np.zeros(0)
     h, at = 1e-7, zeros
@@ -414,7 +414,7 @@ def _each_once(map: PinballMap, zeros: Array, n: int) -> Array:
 def _on_the_circle(map: PinballMap, n: int) -> Zeros:
     """The count at `lam = 0`, where every exit is normal: sign changes along the boundary of `T0**n` less the identity.
 
-    The transverse multiplier is 0, so the index of a sign change is 1 where this falls.
+    The transverse multiplier is 0, so the index of a sign change is 1 where the function falls.
     """
     theta = -pi + (np.arange(POINTS) + 0.123) * 2 * pi / POINTS
     place = theta

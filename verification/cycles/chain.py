@@ -1,11 +1,10 @@
 """Cyclic tridiagonal systems, solved in linear time over any kind of number.
 
-Row `i` of a chain says `lower[i]*x[i-1] + diagonal[i]*x[i] + upper[i]*x[i+1] = r[i]`; around the end
-`x[n] = sign*x[0]`, with `sign = -1` for vectors that come back negated, or a complex number of modulus 1 for
-vectors that come back multiplied by it. The last unknown is set apart; the others are eliminated in order, without
-pivoting. The pivots follow the direction that the cycle's derivative attracts, so in a dissipative map rounding errors
-(and the radii of balls) die out along the chain instead of multiplying. A pivot that may be 0 ends in `nan` balls:
-nothing proved.
+Row `i` of a chain says `lower[i]*x[i-1] + diagonal[i]*x[i] + upper[i]*x[i+1] = r[i]`; the chain closes by `x[n] =
+sign*x[0]`, with `sign = -1` for vectors that come back negated, or a complex number of modulus 1 for vectors that come
+back multiplied by it. The last unknown is set apart; the others are eliminated in order, without pivoting. The pivots
+follow the direction that the cycle's derivative attracts, so in a dissipative map rounding errors (and the radii of
+balls) die out along the chain instead of multiplying. A pivot that may be 0 gives `nan` balls, which prove nothing.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -37,7 +36,7 @@ class Chain:
 
     @property
     def rows(self) -> list[tuple[Any, Any, Any]]:
-        """The three entries of each row, as tuples."""
+        """The three entries of each row of the matrix, as tuples."""
         return list(zip(self.lower, self.diagonal, self.upper, strict=True))
 
     def times(self, x: Sequence[Any]) -> Vector:
@@ -74,8 +73,8 @@ def trace_and_determinant(rows: Iterable[tuple[Any, Any, Any]], turn: int = 1) -
 class Elimination:
     """A chain in which all unknowns but the last are eliminated; the pivot of the last one is called `bordering`.
 
-    `right` and `left` are the vectors with last entry 1 that the matrix, from either side, maps to
-    `(0, ..., 0, bordering)`. The matrix is singular exactly when that is 0; they span its kernels then.
+    `right` and `left` are the vectors with last entry 1 that the matrix, from either side, maps to `(0, ..., 0,
+    bordering)`. The matrix is singular exactly when `bordering` is 0; then `right` and `left` span its kernels.
     """
 
     def __init__(self, chain: Chain) -> None:
@@ -130,8 +129,8 @@ class Elimination:
     def bordered(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
         """The solution of the chain with one more unknown and one more equation.
 
-        `column` are the coefficients of the new unknown in the chain's rows, `row` and `corner` the
-        new equation. With an empty `column` there is neither. `r` is the right side.
+        `column` has the coefficients of the new unknown in the chain's rows; `row` and `corner` form the new equation.
+        If `column` is empty, neither is added. `r` is the right side.
 
         >>> from fractions import Fraction
         >>> one = Elimination(Chain(*[[Fraction(1)] * 3, [Fraction(4)] * 3, [Fraction(1)] * 3]))
@@ -142,7 +141,8 @@ class Elimination:
         return self._bordered(sides, column, row, corner, r)
 
     def transposed(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
-        """As `bordered`, for the transposed system with the same `column`, `row` and `corner`, by the same factors.
+        """As `bordered`, for the transposed system with the same `column`, `row` and `corner`, from the same
+        factorisation.
 
         >>> from fractions import Fraction
         >>> one = Elimination(Chain(*[[Fraction(n)] * 3 for n in (1, 4, 2)]))
@@ -174,8 +174,8 @@ class Elimination:
 def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vector | None:
     """The solution of a chain of two rows whose first pivot is small, or may be 0; None for any other chain.
 
-    This occurs at a diameter whose two ends are each other's centres of curvature, as the ellipse's minor axis at `a =
-    sqrt(2)`: the diagonal is 0, and yet the matrix is regular.
+    This occurs at a diameter whose two ends are each other's centres of curvature, such as the ellipse's minor axis at
+    `a = sqrt(2)`, where the diagonal is 0 and yet the matrix is regular.
 
     >>> by_cramer(Chain([1, 2], [0, 0], [1, 2]), [4, 6]), by_cramer(Chain([1, 2], [3, 0], [1, 2]), [4, 6])
     ([1.5, 2.0], None)
@@ -192,7 +192,7 @@ def by_cramer(chain: Chain, r: Sequence[Any], transposed: bool = False) -> Vecto
 
 
 class _Sides(NamedTuple):
-    """For a matrix or its transpose: the solver of all rows but the last, the last row, and the kernel's vector."""
+    """Solver of all rows but the last, last row, and kernel vector, for an eliminated matrix or its transpose."""
 
     inner: Callable[[Sequence[Any]], Vector]
     far: Vector
@@ -200,7 +200,7 @@ class _Sides(NamedTuple):
 
 
 def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
-    """The sum of products of two vectors; further entries of the longer one are ignored."""
+    """The inner product of two vectors; further entries of the longer one are ignored."""
     total: Any = 0
     for p, r in zip(x, y, strict=False):
         total = total + p * r

@@ -35,7 +35,7 @@ End = tuple[int, int, Any]  # end of a chord: component, number of the bounce, p
 
 @cache
 def kept_chord_kernel(table: Table, here: int, there: int, order: int) -> Kernel:
-    """`chord_kernel`, kept between runs: SymPy takes as long to differentiate as to be imported."""
+    """The kernel `chord_kernel`, cached on disk: differentiating in SymPy takes as long as importing SymPy."""
 
     def read(text: str) -> Kernel:
         name, arguments, results, words, body = json.loads(text)
@@ -47,7 +47,7 @@ def kept_chord_kernel(table: Table, here: int, there: int, order: int) -> Kernel
 
 
 class ChordAngles:
-    """Angle of a chord with the normal at its start, between any two components, in one arithmetic.
+    """Angle of a chord with the normal at its start, for any two components, in one arithmetic.
 
     >>> from symbolic.tables import circle
     >>> from verification.arithmetic.balls import FLOAT64
@@ -66,7 +66,7 @@ class ChordAngles:
         self.in_parts: dict[tuple[int, int, int], tuple[Callable[..., Any], ...]] = {}
 
     def __call__(self, here: int, there: int, order: int) -> Callable[..., Any]:
-        """The kernel from component `here` to `there`, with derivatives up to `order`; loaded once.
+        """The kernel from component `here` to `there`, with derivatives up to `order`; it is loaded only once.
 
         In float64 a parameter beyond the end of its component means a point on the next one, if the curvatures of both
         agree at the join (`verification.maps.joins`).
@@ -80,7 +80,7 @@ class ChordAngles:
         return self.loaded[key]
 
     def _beyond_ends(self, here: int, there: int, order: int) -> Callable[..., Any]:
-        """The kernel with each end of a chord moved to the component on which its parameter lies; by the chain rule."""
+        """The kernel, with chord ends moved to the components on which they lie; derivatives by the chain rule."""
         assert self.joins is not None
         place, powers = self.joins.place, [[name[6:].count(end) for end in "01"] for name in _places(self.table, order)]
 
@@ -99,7 +99,7 @@ class ChordAngles:
         return angle
 
     def _hull(self, starts: Sequence[Place], ends: Sequence[Place], order: int) -> list[Any]:
-        """Balls of the values on all components on which the ends of a chord may lie; slopes by the chain rule."""
+        """Balls that hold the chord angle and its derivatives, for all components on which the ends may lie."""
         powers = [[name[6:].count(end) for end in "01"] for name in _places(self.table, order)]
         found: list[Any] = []
         for (i, u, a), (j, v, b) in product(starts, ends):
@@ -108,10 +108,10 @@ class ChordAngles:
         return found
 
     def between(self, order: int, shape: Sequence[Any]) -> Callable[[End, End], Sequence[Any]]:
-        """A function for the angle of a chord from one end to another; for the chords of one orbit.
+        """A function for the angle of a chord from one bounce of an orbit to another.
 
-        What depends on one end alone is computed once and kept by the number of its bounce, which must stay the same
-        end.
+        What depends on one end alone is computed once and kept under the number of the bounce, so the numbers must not
+        be used again for other bounces.
         """
         known: dict[tuple[int, int, int, int], Any] = {}
         names = tuple(p.symbol.name for p in self.table.shapes)
@@ -143,7 +143,7 @@ def _places(table: Table, order: int) -> dict[str, int]:
 
 
 def chord_angles(table: Table, arithmetic: Arithmetic) -> ChordAngles:
-    """The chord angles of a table; in float64, where they are needed most often, the same object each time."""
+    """Chord angles of a table; in float64, where they are needed most often, the same object is returned each time."""
     kept = arithmetic is ARRAYS or arithmetic is FLOAT64
     return _in_float64(table, arithmetic is ARRAYS) if kept else ChordAngles(table, arithmetic)
 
@@ -155,7 +155,7 @@ def _in_float64(table: Table, arrays: bool) -> ChordAngles:
 
 @dataclass(frozen=True)
 class Chords:
-    """Cycles of a billiard by the collision rule; its parameters are `lam`, free shapes, and the law's own."""
+    """Cycles of a billiard by the collision rule; parameters are `lam`, free shape parameters, and the law's own."""
 
     table: Table
     components: tuple[int, ...]
@@ -174,7 +174,7 @@ class Chords:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The names of the parameters: `lam`, the free shapes, and the law's own."""
+        """The names of the parameters: `lam`, the free shape parameters, and the law's own."""
         return tuple(dict.fromkeys(("lam", *self.shapes, *self.law.parameters)))
 
     @property
@@ -196,7 +196,7 @@ class Chords:
         return self._terms(ahead, back, at["lam"], order, self._all_reflected(back[0], ring[1:-1], at, order))
 
     def _all_reflected(self, eta: Array, here: Array, at: Parameters, order: int) -> Slopes:
-        """The exit angles by the law at all bounces; a law in arc length has a formula for each component."""
+        """Exit angles by the law at all bounces, and derivatives; a law in arc length has a formula per component."""
         if not self.law.measured:
             return self._reflected(ARRAYS, 0, eta, here, at, order)
         found: dict[str, Array] = {}
@@ -222,7 +222,7 @@ class Chords:
         return dict(zip(made.results, load(made, arithmetic)(eta, at["lam"], *place, *own), strict=True))
 
     def _terms(self, f: Sequence[X], b: Sequence[X], lam: Any, order: int, law: Slopes) -> Terms[X]:
-        """The rule from the angles of the chords ahead and back, with derivatives as the kernels return them."""
+        """Collision rule and its derivatives, from the angles of the chords ahead and back and their derivatives."""
         zero: Any = 0 * f[0]  # type: ignore[operator]  # of the same kind
         if law:
             return self._bent(f, b, order, law, zero)
@@ -242,7 +242,7 @@ class Chords:
         return Terms(f[0] + lam * b[0], (lam * b[2], f[1] + lam * b[1], f[2]), by, bend, slope_by)
 
     def _bent(self, f: Sequence[Any], b: Sequence[Any], order: int, law: Slopes, zero: Any) -> Terms[Any]:
-        """The rule `A(next) - phi(A(previous))` with chord angles `A`; derivatives of `phi` by the chain rule."""
+        """Collision rule `A(next) - phi(A(previous))` with chord angles `A`, for a law `phi` other than `-lam*eta`."""
         value = f[0] - (zero + law["phi"])
         if not order:
             return Terms(value, (zero, zero, zero), {}, {}, {})
@@ -268,7 +268,7 @@ class Chords:
         return Terms(value, (-(slope * b[2]), f[1] - (slope * b[1] + place), f[2]), by, bend, slope_by)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The collision rule at single bounces, as a function in this arithmetic.
+        """The collision rule at single bounces, as a function in the given arithmetic.
 
         >>> from symbolic.tables import ellipse
         >>> from verification.arithmetic.balls import FLOAT64
@@ -286,7 +286,7 @@ class Chords:
         return rule
 
     def bounces(self, arithmetic: Arithmetic, padded: Sequence[Any], at: Mapping[str, Any], order: int) -> Terms[Any]:
-        """The rule at every bounce, with derivatives up to `order`; `padded` has one bounce more at either end."""
+        """The rule at every bounce, with derivatives up to `order`; `padded` has one more bounce at either end."""
         angle = chord_angles(self.table, arithmetic).between(order, [at[name] for name in self.shapes])
         near = (padded[i : i + 3] for i in range(self.period))
         return Terms.along([self._at_bounce(arithmetic, angle, i, x, at, order) for i, x in enumerate(near)])
@@ -302,7 +302,8 @@ class Chords:
         return self._terms(f, b, at["lam"], order, self._reflected(arithmetic, parts[i], b[0], here, at, order))
 
     def placed(self, x: "Sequence[float] | Array") -> "tuple[Chords, Array]":
-        """The cycle with each bounce on the component where it lies; one on a smooth join is at the start of the next.
+        """The cycle with each bounce assigned to the component on which it lies; at a smooth join, to the following
+        one.
 
         >>> from symbolic.tables import cuspless
         >>> ring, x = Chords(cuspless, (1, 0)).placed([0.0, 0.0])
@@ -316,7 +317,7 @@ class Chords:
         return replace(self, components=tuple(parts.tolist())), at
 
     def _joins(self) -> Joins | None:
-        """The joins of the table; None for one smooth curve, a free shape, or a law that depends on the place."""
+        """The joins of the table; None for a single smooth curve, a free shape, or a law that depends on the place."""
         if self.table.shapes or self.law.placed or self.closure != IDENTITY or closes_smoothly(self.table):
             return None
         return joins(self.table)
@@ -326,13 +327,13 @@ class Chords:
         return replace(self, components=self.components * 2, closure=self.closure.twice())
 
     def angles(self, x: Array, at: Parameters) -> tuple[Array, Array]:
-        """Exit and incidence angles at each bounce, in radians."""
+        """The exit angle and the angle of incidence at each bounce, in radians."""
         ring, shape = around(self.closure, x), [at[name] for name in self.shapes]
         out, into = (self._angles(way, ring[1:-1], end, shape, 0) for way, end in ((1, ring[2:]), (-1, ring[:-2])))
         return out[0], into[0]
 
     def obstacle(self, x: Array, at: Parameters) -> str:
-        """Why `x` is no cycle at values `at`: a bounce off its component, an obstructed chord; empty if it is one."""
+        """Reason why `x` is no cycle, such as a bounce off its component or an obstructed chord; empty if it is one."""
         ring, x = self.placed(x)
         return ring._obstacle(x, at)
 
@@ -352,7 +353,7 @@ class Chords:
         return "" if _convex_throughout(self.table) else self._obstructed(x, at)
 
     def _obstructed(self, x: Array, at: Parameters) -> str:
-        """A sentence on the first chord that meets the boundary on its way, in any table; empty without one."""
+        """A sentence on the first chord that meets the boundary on its way; empty if there is none."""
         from numeric import PinballMap
 
         out, _ = self.angles(x, at)
@@ -383,7 +384,7 @@ class Chords:
         return list(zip(map(float, found[::2]), map(float, found[1::2]), strict=True))
 
     def nearest_joins(self, x: Array, at: Parameters) -> list[float | None]:
-        """For each bounce the nearer end of its component at which a branch would end; None without one."""
+        """For each bounce the nearer end of its component at which a branch would end; None if there is no such end."""
         if len(self.table.components) == 1:
             return [None] * self.period
         known, runs_on = self.ends(at), joins(self.table).runs_on

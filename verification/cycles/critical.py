@@ -75,11 +75,11 @@ def _middle(x: Any) -> Any:
 
 
 def corner() -> Small:
-    """System for the period-4 orbit through both corners of the cuspless cardioid: unknowns `theta1`, `lam`.
+    """System for the period-4 orbit through both corners of the cuspless cardioid; its unknowns are `theta1` and `lam`.
 
-    It leaves the upper corner (`theta = 2*pi/3`), meets the arc at `theta1`, the lower corner, the arc
-    at `-theta1`, and returns. By the mirror symmetry two collision rules are enough: at the corner,
-    where the normal exists because the joins are C1, and at `theta1`. Paper: section 5.2.
+    It leaves the upper corner (`theta = 2*pi/3`), meets the arc at `theta1`, the lower corner, the arc at `-theta1`,
+    and returns. By the mirror symmetry two collision rules are enough: at the corner, where the normal exists because
+    the joins are C1, and at `theta1`. Paper: section 5.2.
     """
 
     def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
@@ -105,9 +105,10 @@ def corner_angle(arithmetic: Arithmetic, theta1: Any) -> Any:
 
 
 def focus(lam: Expr, K: int = 3) -> Small:
-    """System for the `alpha` at which the multipliers of the egg's diameter become complex: two bounces and `alpha`.
+    """System for the `alpha` at which the multipliers of the egg's diameter become complex.
 
-    The third equation is `trace**2 = 4*determinant` of the monodromy, from the chord system.
+    The unknowns are two bounces and `alpha`; the third equation is `trace**2 = 4*determinant` of the monodromy, from
+    the chord system.
     """
     table = egg(K)  # made once: its formulas are simplified, which takes 77 ms
 
@@ -131,7 +132,8 @@ def critical(
     parameters: Sequence[str],
     fixed: Mapping[str, Expr] | None = None,
 ) -> Small:
-    """System for a cycle that bifurcates in all these `kinds`: unknowns are its bounces, then the free `parameters`.
+    """System for a cycle that has all the bifurcations `kinds` at once: unknowns are its bounces, then the
+    `parameters`.
 
     >>> from verification.cycles.recurrence import delayed
     >>> from verification.cycles.newton import floats
@@ -157,7 +159,7 @@ def critical(
 def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
     """System for the fold of the egg's cycle that turns by `2*pi*p/q` at each bounce: unknowns `theta` and `lam`.
 
-    Where that turn maps the table to itself, one bounce with its neighbours a turn away is the whole system.
+    If this rotation maps the table to itself, a single bounce, whose neighbours are its rotated images, is enough.
 
     >>> from sympy import Rational
     >>> import mpmath
@@ -171,7 +173,7 @@ def polygon_fold(K: int, alpha: Expr, p: int = 1, q: int = 3) -> Small:
 
 
 def polygon(K: int, p: int, q: int) -> Chords:
-    """Chord system of one bounce of the egg's cycle that turns by `2*pi*p/q` each time."""
+    """Chord system of the egg's cycle that turns by `2*pi*p/q` at each bounce, reduced to one bounce."""
     if K * p % q:
         raise ValueError(f"polygon: a turn by {p}/{q} does not map the egg with K = {K} to itself")
     return Chords(egg(K), (0,), Closure(1, (p, q)))

@@ -2,9 +2,10 @@
 
 A branch of one set of equations ends where a bounce meets the join: a border collision. The map is continuous there, so
 the cycles with that bounce on the neighbouring component are sought, from the collision inwards. One of them that goes
-on in the direction of the parameter is the same cycle: persistence. Where the only one runs back, two cycles meet on
-the join and exist on one side of it alone: a nonsmooth fold, through which the family goes on as through a smooth one.
-`verification.maps.one_sided` has the condition in the derivatives. At a corner the map has no continuation.
+on in the direction of the parameter is the same cycle: persistence. If the only one goes back in the parameter, two
+cycles meet on the join and exist on one side of it alone: a nonsmooth fold, through which the family goes on as through
+a smooth one. `verification.maps.one_sided` has the condition on the derivatives. At a corner the map has no
+continuation.
 """
 
 from collections.abc import Callable, Iterator
@@ -46,9 +47,9 @@ def next_to(table: Table, part: int, after: bool) -> int:
 
 
 def beyond(system: Cycles, event: Event, rough: bool = False) -> Iterator[Start]:
-    """Cycles next to a border collision whose colliding bounces, some or all, lie on the neighbouring components.
+    """Cycles next to a border collision for which some or all colliding bounces lie on the neighbouring components.
 
-    With `rough` only where all those joins have one tangent.
+    With `rough` there are none unless the tangents agree at all joins concerned.
     """
     ring, x = system.recurrence, event.x
     if not isinstance(ring, Chords):
@@ -73,7 +74,7 @@ def beyond(system: Cycles, event: Event, rough: bool = False) -> Iterator[Start]
 
 
 def _inwards(system: Cycles, z: Array, inwards: dict[int, float]) -> Array | None:
-    """A cycle next to a border collision of which the named bounces have left their joins; None when there is none."""
+    """A cycle next to a border collision for which the bounces in `inwards` have left their joins; or None."""
     bounce = next(iter(inwards))
     row = np.zeros(len(z))
     row[bounce] = 1.0
@@ -88,7 +89,7 @@ def _inwards(system: Cycles, z: Array, inwards: dict[int, float]) -> Array | Non
 
 
 def continued(branch: Branch, interval: Interval, steps: Steps | None = None, tick: Tick | None = None) -> Branch:
-    """The family of a branch over the joins at which it ends, as pieces in order of arc length.
+    """The family of a branch, continued over the joins at which it ends, as pieces in order of arc length.
 
     Each border collision has its kind (persistence, fold, several) in its event's `collision`.
     """
@@ -122,7 +123,7 @@ def continued(branch: Branch, interval: Interval, steps: Steps | None = None, ti
 
 
 def _at_end(piece: Branch, at: int) -> Event | None:
-    """The border collision at an end of a branch whose kind is not known yet; None if there is none."""
+    """The border collision at the end `at` of a branch, if its kind is not known yet; else None."""
     for event in piece.events:
         there = event.point.s == piece.points[at].s
         if event.kind is BifurcationKind.BORDER_COLLISION and there and event.collision is None:
@@ -131,7 +132,7 @@ def _at_end(piece: Branch, at: int) -> Event | None:
 
 
 def _met(pieces: list[Branch], own: Branch, event: Event) -> bool:
-    """Was this collision met before, by another piece? If so, the family is closed."""
+    """Was this collision met before, by another piece? Then the family is closed."""
     others = [e for piece in pieces if piece is not own for e in piece.events if e.collision]
     return any(abs(e.value - event.value) < AGAIN and _alike(e, event) for e in others)
 
@@ -142,7 +143,7 @@ def _alike(one: Event, two: Event) -> bool:
 
 
 def _placed(found: Branch, way: int, s: float, z: Array) -> Branch:
-    """A piece that begins next to a collision at the arc length `s` of a branch, in the branch's order."""
+    """The piece `found` that begins next to a collision, with arc lengths counted from `s` in the direction `way`."""
     gap = found.points[0].z - z
     start = float(np.sqrt(gap @ (found.system.weights * gap)))
 

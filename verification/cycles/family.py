@@ -1,6 +1,6 @@
 """A family of cycles: a branch, where its cycle attracts, and marks by which cycles are recognised.
 
-The marks are those of `numeric.sweeps.endings`: mean distances between bounces, which images under a symmetry share.
+The marks are those of `numeric.sweeps.endings`: mean distances between bounces, which do not change under symmetries.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -29,7 +29,7 @@ Interval = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class CycleFamily:
-    """A branch of cycles, the index of the family on which it is born (None if found from starts), and the event."""
+    """A branch of cycles, its parent family's index and the event of its birth (None if found from starts)."""
 
     branch: Branch
     size: float
@@ -58,7 +58,7 @@ class CycleFamily:
 
     @cached_property
     def attracts(self) -> tuple[Interval, ...]:
-        """The ranges of the parameter on which the cycle attracts: they end at events."""
+        """The ranges of the parameter on which the cycle attracts; they end at events."""
         points, ranges = self.branch.points, list[Interval]()
         for k in range(len(points) - 1):
             (a, b), (first, last) = self.stable[k : k + 2], (float(p.z[-1]) for p in points[k : k + 2])
@@ -89,20 +89,20 @@ class CycleFamily:
 
     @property
     def marked_start(self) -> tuple[float, Array]:
-        """The parameter and the marks of the cycle `start`."""
+        """The parameter value and the marks of the cycle `start`."""
         z, ring = self.start, self.branch.system.recurrence
         assert isinstance(ring, Chords)
         return float(z[-1]), marks_along(ring, z[None])[0]
 
     def attracts_next_to(self, event: Event) -> bool:
-        """Does the cycle attract on at least one side of one of its events?"""
+        """Does the cycle attract next to this event, on at least one side of it?"""
         s = np.array([point.s for point in self.branch.points])
         k = int(np.clip(np.searchsorted(s, event.point.s), 1, len(s) - 1))
         return bool(np.any(self.stable[max(0, k - 2) : k + 2]))
 
     @property
     def start(self) -> Array:
-        """Bounces and parameter of the cycle with multipliers farthest from 1 and -1; stable ones are preferred."""
+        """Bounces and parameter of the cycle with multipliers farthest from 1 and -1; of a stable one if possible."""
         best = [min(abs(p.tests["one"]), abs(p.tests["minus_one"])) * (2 if s else 1) for p, s in self._points]
         return np.asarray(self._points[int(np.argmax(best))][0].z)
 
@@ -113,13 +113,13 @@ class CycleFamily:
 
     @cached_property
     def marks(self) -> Array:
-        """The marks of the cycle at each point of the branch, a row each."""
+        """The marks of the cycle at each point of the branch, one row per point."""
         ring = self.branch.system.recurrence
         assert isinstance(ring, Chords)
         return marks_along(ring, np.array([p.z for p in self.branch.points]))
 
     def near(self, value: float, attracting: bool = True) -> Iterator[tuple[Array, float]]:
-        """The marks of its (attracting) cycles at a value, interpolated between points, with bounds of their errors."""
+        """The marks of the family's (attracting) cycles at a value, interpolated between points, with error bounds."""
         v = self.branch.values
         passing = (v[:-1] - value) * (v[1:] - value) <= 0
         for k in np.nonzero(passing & (self.stable[:-1] | self.stable[1:] | (not attracting)))[0]:
@@ -128,7 +128,7 @@ class CycleFamily:
             yield self.marks[k] + share * step, CLOSE * self.size + float(np.max(np.abs(step))) / 2
 
     def holds(self, value: float, marks: Array) -> bool:
-        """Is a cycle with these marks, attracting or not, on the branch at this value, where it is solved for?"""
+        """Is there a cycle with these marks on the branch at this value, attracting or not? It is computed to check."""
         if not any(np.max(np.abs(near - marks)) < 10 * wide for near, wide in self.near(value, False)):
             return False
         system = self.branch.system
@@ -142,7 +142,7 @@ class CycleFamily:
 
 
 def joined(ranges: Sequence[Interval]) -> list[Interval]:
-    """The intervals in order, with those that touch united.
+    """The intervals in order, with touching or overlapping ones united.
 
     >>> joined([(2.0, 3.0), (0.0, 1.0), (1.0, 1.5)])
     [(0.0, 1.5), (2.0, 3.0)]
@@ -157,13 +157,13 @@ def joined(ranges: Sequence[Interval]) -> list[Interval]:
 
 
 def same_event(one: Event, two: Event) -> bool:
-    """Are two events on two branches the same? A doubling of a cycle may be a pitchfork of a part of it."""
+    """Are events on two branches the same? A doubling of a cycle may appear as a pitchfork of a part of the cycle."""
     both = {one.kind, two.kind} <= {BifurcationKind.FLIP, BifurcationKind.PITCHFORK, BifurcationKind.BRANCH_POINT}
     return (both or one.kind is two.kind) and abs(one.value - two.value) < ALIKE
 
 
 def closing(part: Chords, x: Array) -> int:
-    """The period of the cycle that the images of a part make up."""
+    """The period of the full cycle that a part and its images under the symmetry make up."""
     for rounds in range(2, 2 * ROUND + 1):
         if np.max(np.abs(np.sin((part.closure.carried(x, part.closure.radians, rounds) - x) / 2))) < ALIKE:
             return rounds * part.period
@@ -171,7 +171,7 @@ def closing(part: Chords, x: Array) -> int:
 
 
 def left(period: int) -> Callable[[CurvePoint], bool]:
-    """A `tick` that ends a path when the cycle has not attracted for some points: fewer for longer cycles."""
+    """A `tick` that ends a path when the cycle has been unstable for a number of points, smaller for longer cycles."""
     patience = max(5, UNSTABLE // period)
     since = 0
 
@@ -184,7 +184,7 @@ def left(period: int) -> Callable[[CurvePoint], bool]:
 
 
 def marks_along(ring: Chords, rows: Array) -> Array:
-    """The marks of cycles, a row each; a row of `rows` has the bounces, then the parameter."""
+    """The marks of cycles, one row per cycle; a row of `rows` has the bounces, then the parameter."""
     table = ring.table
     points = np.empty((2, ring.period, len(rows)))
     placed = [ring.placed(z[:-1]) for z in rows]

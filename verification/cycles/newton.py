@@ -4,9 +4,10 @@ To many digits the precision doubles at each step: a step needs no more digits t
 costs as much as all others together. The precision lives in a context made here; `mpmath.mp` is not touched.
 
 The condition number of a solution is the largest row sum of the inverse of the system's matrix: no unknown moves
-farther when no equation is off by more than one. Next to a fold, where a multiplier is `1 + d`, it is of the size of
-`1/d`. Of a cycle it is estimated from a few solutions of the factored system: from below, and rarely off by more than
-a factor of 3 ([Higham2002], section 15.3). A system of a handful of equations is inverted.
+farther when no equation has an error above 1. Next to a fold, where a multiplier is `1 + d`, it is of the size of
+`1/d`. For a cycle it is estimated from a few solutions of the factored system: the estimate is a lower bound, and
+rarely off by more than a factor of 3 ([Higham2002], section 15.3). For a system of a few equations the matrix is
+inverted.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,7 +29,7 @@ ROUNDINGS = 16  # units of rounding in a residual
 
 
 class Conditioning(Enum):
-    """Verdicts on a solution's condition number; the value is advice."""
+    """Verdicts on a solution's condition number; the value of a member is a piece of advice."""
 
     SOUND = "the condition number leaves more than half of the digits"
     SENSITIVE = (
@@ -40,13 +41,13 @@ class Conditioning(Enum):
 
 @runtime_checkable
 class Cyclic(Protocol):
-    """A system for a cycle, which can detect a shorter period."""
+    """A system of equations for a cycle that can tell whether the cycle has a shorter period."""
 
     def inverses(self, arithmetic: Arithmetic, z: Vector) -> tuple[Solve, Solve]:
         """Functions that apply `F'(z)^-1` and its transpose, from one factorisation."""
 
     def shorter(self, z: Vector, within: float) -> int:
-        """The number of bounces after which the cycle repeats itself, up to an error `within`; 0 for never."""
+        """The number of bounces after which the cycle repeats itself, up to an error `within`; 0 if it does not."""
 
 
 def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> float:
@@ -73,7 +74,8 @@ def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> floa
 
 
 def largest_row_sum(solve: Solve, transposed: Solve, n: int) -> float:
-    """Lower bound of the largest row sum of the matrix of `solve`: Hager's ascent, then one asymmetric vector.
+    """Lower bound of the largest row sum of the matrix that `solve` applies: Hager's ascent, then one asymmetric
+    vector.
 
     >>> twice = lambda r: [2 * r[0], r[0] + r[1]]
     >>> largest_row_sum(twice, lambda r: [2 * r[0] + r[1], r[1]], 2)
@@ -95,7 +97,7 @@ def largest_row_sum(solve: Solve, transposed: Solve, n: int) -> float:
 
 
 def digits_left(condition: float, unit: float) -> int:
-    """The reliable digits after the point, when every equation has an error of one `unit`.
+    """The number of reliable digits after the point, if every equation has an error of one `unit`.
 
     >>> digits_left(1e8, 2.0**-52), digits_left(2.9, 2.0**-52), digits_left(float("inf"), 2.0**-52)
     (7, 15, 0)
@@ -106,8 +108,8 @@ def digits_left(condition: float, unit: float) -> int:
 def costs_half(condition: float, unit: float, digits: int) -> bool:
     """Does a residual of some units of rounding leave less than half of the `digits`?
 
-    At a fold it does, whatever is computed there: off by `h`, of the size of the root of the residual, the condition
-    number is of the size of `1/h`.
+    At a fold it does, whatever is computed there: at a distance `h` of the size of the root of the residual, the
+    condition number is of the size of `1/h`.
 
     >>> costs_half(8e6, 2.0**-52, 15), costs_half(1e7, 2.0**-52, 15), costs_half(1e7, 1e-65, 50)
     (False, True, False)
@@ -156,7 +158,7 @@ class System(Protocol):
 
 @dataclass(frozen=True)
 class NewtonStep:
-    """One Newton step: its number of digits, and the decimal logarithm of the correction it made."""
+    """One Newton step: its number of digits, and the decimal logarithm of its correction."""
 
     digits: int
     correction: float
@@ -164,7 +166,7 @@ class NewtonStep:
 
 @dataclass(frozen=True)
 class Solution:
-    """Numbers that solve a problem to about `digits` digits, not proved: floats, or of an mpmath context.
+    """An unproved solution of a problem, correct to about `digits` digits, in floats or numbers of an mpmath context.
 
     The condition number is computed on first use.
     """
@@ -176,7 +178,7 @@ class Solution:
 
     @cached_property
     def condition(self) -> float:
-        """The condition number: how far an unknown moves when no equation is off by more than 1; may be infinite."""
+        """The condition number: how far an unknown moves if no equation has an error above 1; may be infinite."""
         found = norm_of_inverse(self.problem, FLOAT64, [float(x) for x in self.z])
         if found > TOLD and not isinstance(self.z[0], float):
             found = norm_of_inverse(self.problem, multiprecision(type(self.z[0]).context), self.z)
@@ -194,7 +196,7 @@ class Solution:
 
     @property
     def conditioning(self) -> Conditioning:
-        """The verdict on the condition number; its value is advice."""
+        """The verdict on the condition number; the value of the verdict is a piece of advice."""
         if self.shorter:
             return Conditioning.REPEATED
         few = costs_half(self.condition, self.unit, self.digits)
@@ -202,13 +204,13 @@ class Solution:
 
     @property
     def shorter(self) -> int:
-        """The number of bounces after which the cycle repeats itself, up to its error; 0 for never."""
+        """The number of bounces after which the cycle repeats itself, up to the solution's error; 0 if it does not."""
         within = min(NEAR, max(1.0, self.condition) * ROUNDINGS * self.unit)
         return self.problem.shorter(self.z, within) if isinstance(self.problem, Cyclic) else 0
 
     @property
     def advice(self) -> str:
-        """What to do about the conditioning, in words; empty where it is sound."""
+        """Advice on what to do about the conditioning, in words; empty if the condition number is sound."""
         if self.conditioning is Conditioning.SOUND:
             return ""
         return f"{self.conditioning.value}{f' (after {self.shorter} bounces)' if self.shorter else ''}"
@@ -221,7 +223,7 @@ class Solution:
 
 
 class UnsettledError(ValueError):
-    """Newton's method in float64 did not converge; `last` is its last iterate."""
+    """Raised if Newton's method in float64 does not converge; `last` is the last iterate."""
 
     def __init__(self, message: str, last: Solution) -> None:
         super().__init__(message)
@@ -229,10 +231,11 @@ class UnsettledError(ValueError):
 
 
 def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool = False) -> Solution:
-    """The solution near `start` to `digits` digits, in numbers of mpmath.
+    """The solution near `start` to `digits` digits, in mpmath numbers.
 
-    With `in_balls` corrections are the middles of balls, many times faster than mpmath, where the radii say that all
-    their digits are right, and mpmath's elsewhere, as along long cycles. The last bits differ; files have mpmath's.
+    With `in_balls` a correction is computed in balls, many times faster than in mpmath, and its midpoint taken if the
+    radii show all digits right; if not, as along long cycles, it is computed in mpmath. The last bits differ; files
+    have mpmath's.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational
@@ -261,7 +264,7 @@ def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool =
 
 
 def _correction(problem: System, context: Any, in_balls: bool) -> Callable[[Vector], Vector]:
-    """Newton's correction as a function, with the digits that a context has now."""
+    """Newton's correction as a function, which works with the current number of digits of a context."""
     rounded = partial(problem.newton, multiprecision(context))
     if not in_balls:
         return rounded
@@ -279,7 +282,8 @@ def _correction(problem: System, context: Any, in_balls: bool) -> Callable[[Vect
 
 
 def enough_digits(level: int, digits: int) -> float:
-    """The number `d` such that a correction below `10**-d` ends a level: half its digits, by quadratic convergence.
+    """The number `d` such that a correction below `10**-d` ends a level: half the level's digits, as convergence is
+    quadratic.
 
     >>> enough_digits(100, 100), enough_digits(50, 100)
     (46.0, 17.5)
@@ -331,11 +335,11 @@ def in_floats(problem: System, start: Sequence[Any]) -> Solution:
 
 
 def settled(system: System, arithmetic: Arithmetic, start: Sequence[Any]) -> Iteration:
-    """The result of Newton's iteration in one arithmetic, which may converge slowly, at a double zero."""
+    """The result of Newton's iteration in one arithmetic; at a double zero convergence is slow."""
     found = iterated(partial(system.newton, arithmetic), start, IN_FLOATS)
     return replace(found, settled=found.settled or bool(found.sizes and found.sizes[-1] < IN_FLOATS.small))
 
 
 def given(problem: System, z: Sequence[Any]) -> Solution:
-    """A `Solution` from float64 numbers that were found elsewhere, for its condition number."""
+    """A `Solution` made from float64 numbers found elsewhere, so that its condition number can be computed."""
     return Solution(problem, [float(x) for x in z], DIGITS, ())

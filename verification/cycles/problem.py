@@ -1,18 +1,19 @@
 """A cycle of a billiard, by itself or where it folds or flips: its equations and their derivatives, over any numbers.
 
 Unknowns are the boundary parameters of the bounces and, at a bifurcation, one free parameter: `lam` or a shape.
-Equations are the collision rule at every bounce and, at a bifurcation, that the bordering function vanishes: the one
-number that makes the linearised rules singular on vectors that come back unchanged (fold) or negated (flip).
+Equations are the collision rule at every bounce and, at a bifurcation, that the bordering function vanishes. It is 0
+exactly where the linearised rules are singular on vectors that come back unchanged (fold) or negated (flip).
 
 The normal form says how the cycle bifurcates. With `v` and `w` the right and left vectors of the singular
-linearisation, `F` the rules and `e` the amplitude along `v`, the bifurcating branch is
-`parameter = critical + branch*e**2`:
+linearisation, `F` the rules and `e` the amplitude along `v`, the bifurcating branch is `parameter = critical +
+branch*e**2`:
 
     fold:  branch = -[e**2] w.F / (w . dF/dparameter)
     flip:  branch = -[e**3] w.F / speed,     speed = the derivative of the bordering function along the cycle,
 
-where the coefficient of `e**3` is taken on the curve `theta + e*v + e**2*u`, `u` chosen such that the one of `e**2`
-vanishes. `turn` is the bordering function's derivative by the multiplier: not 0 exactly when that is simple.
+where the coefficient of `e**3` is taken on the curve `theta + e*v + e**2*u`, with `u` such that the coefficient of
+`e**2` vanishes. `turn` is the derivative of the bordering function with respect to the multiplier; it is not 0 exactly
+when the multiplier is simple.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -42,9 +43,9 @@ LONG = 24  # bounces from which float64 is quicker in arrays
 class Problem:
     """A cycle by its components, in a table and under a law whose only free parameter is `free`.
 
-    `kind` is FOLD or FLIP, None for a cycle by itself. `closure` says what comes after its bounces: their images
-    under `theta -> -theta`, or the same `p/q` of a turn further on; certificates take no such shift.
-    `lam` is free when None, exact, or a number as it is: a ball proves for every `lam` in it, a jet differentiates.
+    `kind` is FOLD, FLIP, or None for a cycle without a bifurcation. `closure` says what follows its bounces: their
+    images under `theta -> -theta`, or under a turn by the fraction `p/q`; certificates accept no such turn. `lam` is
+    None if free, or exact, or any number: with a ball a proof holds for every `lam` in it, and a jet gives derivatives.
     """
 
     table: Table
@@ -75,7 +76,7 @@ class Problem:
 
     @cached_property
     def ring(self) -> Chords:
-        """The chord system that its bounces obey."""
+        """The chord system that the bounces obey."""
         return Chords(self.table, self.components, self.closure, self.law)
 
     def at(self, arithmetic: Arithmetic, z: Vector) -> dict[str, Any]:
@@ -87,7 +88,7 @@ class Problem:
 
     @property
     def mirror(self) -> bool:
-        """Is it half a cycle, which its mirror image completes?"""
+        """Do the unknowns describe half a cycle, which its mirror image completes?"""
         return self.closure.turn == -1
 
     @property
@@ -114,7 +115,7 @@ class Problem:
         return here.solve, here.solve_transposed
 
     def shorter(self, z: Vector, within: float) -> int:
-        """The number of bounces after which the cycle repeats itself, up to `within` radians; 0 for never.
+        """The number of bounces after which the cycle repeats itself, up to `within` radians; 0 if it does not.
 
         >>> from sympy import S
         >>> from symbolic.tables import ellipse
@@ -148,7 +149,7 @@ def mirrored(component: Component) -> bool:
 
 
 def seen_mirrored(problem: Problem, boundary: bool) -> bool:
-    """Is `theta -> -theta` a symmetry of the law, and with `boundary` of the table, by the parity of their formulas?
+    """Is `theta -> -theta` a symmetry of the law (and of the table, if `boundary`), by the parity of their formulas?
 
     No algebra is used, so that a reader without computer algebra can repeat it.
     """
@@ -160,7 +161,7 @@ def seen_mirrored(problem: Problem, boundary: bool) -> bool:
 
 
 def _sign(f: Expr) -> int:
-    """The factor 1 or -1 of a formula under `theta, eta -> -theta, -eta`, by its parts; 0 where they do not decide."""
+    """The factor 1 or -1 of a formula under `theta, eta -> -theta, -eta`, from its subexpressions; 0 if undecided."""
     if not f.has(theta, eta):
         return 1
     if f in (theta, eta):
@@ -177,7 +178,7 @@ def _sign(f: Expr) -> int:
 
 
 class Linearised:
-    """The equations of a problem and their first derivatives at one point, or over one box."""
+    """The equations of a problem and their first derivatives, at one point or over one box."""
 
     def __init__(self, problem: Problem, arithmetic: Arithmetic, z: Vector, slope: bool = True) -> None:
         kind, closure, n = problem.kind, problem.closure, problem.period
@@ -234,7 +235,7 @@ def bordering_slopes(
 ) -> tuple[Vector, dict[str, Any]]:
     """Derivatives of `w A v` by bounces and parameters; `A` is the matrix on vectors that close with the factor `sign`.
 
-    With `v` and `w` those of an elimination this is the derivative of the bordering function.
+    If `v` and `w` are the null vectors of an elimination, this is the derivative of the bordering function.
     """
     n, close = len(v), sign * closure.turn
     by_bounce: Vector = [0] * n
@@ -257,7 +258,7 @@ def bordering_slopes(
 
 @dataclass(frozen=True)
 class NormalForm:
-    """Coefficients of the module's formulas; `bend` is that of `e**2` (fold) or `e**3` (flip) in `w.F`."""
+    """The coefficients in the module's formulas; `bend` is the one of `e**2` (fold) or `e**3` (flip) in `w.F`."""
 
     kind: BifurcationKind
     turn: Any
@@ -272,10 +273,10 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool | None:
-        """True when the cycle born at a flip is stable, next to the unstable one; None when that is not decided.
+        """True when the cycle born at a flip is stable, next to the unstable one; None if undecided.
 
-        The new cycle lies on the side of the sign of `branch`. The multiplier moves with `-speed/turn` and passes -1 on
-        the side where the old cycle is unstable: the two sides agree at a supercritical flip.
+        The new cycle lies on the side of the sign of `branch`. The multiplier has the derivative `-speed/turn`, which
+        tells on which side the old cycle is unstable. At a supercritical flip the two sides agree.
         """
         if self.kind is not BifurcationKind.FLIP:
             return None
@@ -287,7 +288,7 @@ Series = Callable[[list[Any]], Sequence[Jet]]
 
 
 def bend_of(kind: BifurcationKind, w: Sequence[Any], v: Any, series: Series, solve: Solve) -> Any:
-    """The coefficient in `w.F` of `e**2` at a fold; at a flip of `e**3`, on the curve where that of `e**2` vanishes."""
+    """The coefficient of `e**2` in `w.F` at a fold, or of `e**3` at a flip, on the curve without a term in `e**2`."""
     second = [rule.c[2] for rule in series([v])]
     if kind is BifurcationKind.FOLD:
         return dot(w, second)
@@ -323,7 +324,7 @@ def expanded(
 ) -> list[Jet]:
     """The rules as jets on the curve `x + directions[0]*e + directions[1]*e**2`, to one order beyond the directions.
 
-    Around the end the odd powers of `e` come back times `sign`; with a mirror all of them are negated as well.
+    Around the end of the ring the odd powers of `e` are multiplied by `sign`, and with a mirror all powers are negated.
     """
     own = [Jet(*coefficients, 0) for coefficients in zip(x, *directions, strict=True)]
     padded = ring.closure.padded(own, ring.closure.angle(arithmetic))

@@ -1,4 +1,4 @@
-"""Periodic orbits as rings of three-term rules, over any numbers; their bifurcations, each with its equation.
+"""Periodic orbits as rings of three-term rules, over any kind of number; and the bifurcations, with their equations.
 
     fold                 det(M - 1) = 0 and the branch turns in the parameter
     pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
@@ -11,14 +11,14 @@
 `M` is the monodromy matrix. A bifurcating cycle solves one equation more than it has bounces, for one parameter more:
 `bordering` is 0. `verification.cycles.critical` solves for any of them, and for several at once.
 
-A periodic orbit is a ring: at each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the
-ring closes by the identity or by a symmetry that carries a part of the orbit to the next. The derivatives of the
-rules by the three neighbours are the linearised map, so the multipliers come from three diagonals, and no derivative
-of the map itself is needed. Billiards are such rings (`verification.cycles.chords`).
+A periodic orbit is a ring: at each bounce one equation `R(before, here, after) = 0` ties three neighbours, and the ring
+closes by the identity or by a symmetry that carries a part of the orbit to the next. The derivatives of the rules by
+the three neighbours are the linearised map, so the multipliers come from three diagonals, and no derivative of the map
+itself is needed. Billiards are such rings (`verification.cycles.chords`).
 
 So are maps whose bifurcations are published, with which the engine is tested: the logistic map, `x -> r*x*(1 - x)`
-[May1976]; Henon's, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three successive `x` [Henon1976]; and the
-delayed logistic map, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
+[May1976]; Henon's, `x -> 1 - a*x**2 + y`, `y -> b*x`, as one rule in three successive `x` [Henon1976]; and the delayed
+logistic map, `x -> r*x*(1 - y)`, `y -> x` [MaynardSmith1968], for its torus.
 """
 
 from collections.abc import Mapping, Sequence
@@ -51,7 +51,7 @@ class BifurcationKind(Enum):
 
     @property
     def multiplier(self) -> int:
-        """The critical multiplier, 1 or -1, of the ring to solve for; for a pitchfork of the part that flips.
+        """The critical multiplier, 1 or -1, of the ring to solve for; for a pitchfork that of the part that flips.
 
         >>> BifurcationKind.FOLD.multiplier, BifurcationKind.PITCHFORK.multiplier
         (1, -1)
@@ -60,11 +60,11 @@ class BifurcationKind(Enum):
 
     @property
     def solved(self) -> "BifurcationKind | None":
-        """The kind whose equations are solved: for a pitchfork the flip of a part; None without equations."""
+        """The kind whose equations are solved: for a pitchfork the flip of a part; None if it has no equations."""
         return SOLVED.get(self)
 
     def bordering(self, rows: Sequence[tuple[Any, Any, Any]], turn: int) -> Any:
-        """The number that vanishes at the bifurcation, from the rule's three derivatives at each bounce.
+        """The quantity that vanishes at the bifurcation, from the rule's three derivatives at each bounce.
 
         `turn` is 1, or -1 where the ring closes by a mirror.
 
@@ -89,9 +89,10 @@ SOLVED = {
 
 @dataclass(frozen=True)
 class Closure:
-    """How a ring closes: `x[n] = turn*x[0] + 2*pi*p/q` with `shift = (p, q)`; by the identity for a whole cycle.
+    """How a ring closes: by `x[n] = turn*x[0] + 2*pi*p/q` with `shift = (p, q)`.
 
-    Half of a mirror-symmetric cycle has `turn = -1`; one bounce of a polygon turns by `p/q`.
+    A whole cycle closes by the identity, half of a mirror-symmetric cycle with `turn = -1`, and one bounce of a polygon
+    by a turn of `p/q`.
     """
 
     turn: int = 1
@@ -104,12 +105,12 @@ class Closure:
         return 2 * pi * p / q
 
     def angle(self, words: Arithmetic) -> Any:
-        """The shift in radians, in an arithmetic."""
+        """The shift in radians, in the given arithmetic."""
         p, q = self.shift
         return 2 * words.pi * words.q(p, q) if p else 0
 
     def padded(self, x: Sequence[Any], angle: Any) -> list[Any]:
-        """The list `x[-1], x[0], ..., x[n]`, where `angle` is the shift in the same numbers.
+        """The list `x[-1], x[0], ..., x[n]`, where `angle` is the shift as a number of the same kind.
 
         >>> Closure(-1).padded([1, 2], 0)
         [-2, 1, 2, -1]
@@ -117,7 +118,7 @@ class Closure:
         return [self.turn * (x[-1] - angle), *x, self.turn * x[0] + angle]
 
     def carried(self, x: Any, angle: Any, rounds: int) -> Any:
-        """The image of `x` under `rounds` applications of the closing symmetry, of its inverse where negative."""
+        """The image of `x` under `rounds` closing symmetries, or under their inverses if `rounds` is negative."""
         for _ in range(abs(rounds)):
             x = self.turn * x + angle if rounds > 0 else self.turn * (x - angle)
         return x
@@ -143,10 +144,10 @@ X = TypeVar("X")
 
 @dataclass(frozen=True)
 class Terms(Generic[X]):
-    """The value `R(before, here, after)` of a rule at one bounce, or at all of a ring as arrays, and its derivatives.
+    """The value `R(before, here, after)` of a rule and its derivatives, at one bounce, or at all of a ring as arrays.
 
-    `slope` has those by the three neighbours, `by` those by parameters. Of second order are `bend[i, j]`, by the
-    neighbours `i` and `j`, and `slope_by`, of `slope` by parameters; both are empty where they were not wanted.
+    `slope` has the derivatives by the three neighbours, `by` those by parameters. The second derivatives are `bend[i,
+    j]`, by the neighbours `i` and `j`, and `slope_by`, those of `slope` by parameters; both are empty if not requested.
     """
 
     value: X
@@ -161,7 +162,7 @@ class Terms(Generic[X]):
         return list(zip(*self.slope, strict=True))  # type: ignore[call-overload]  # rows of numbers
 
     def listed(self) -> "Terms[list[Any]]":
-        """The terms along a ring with lists in place of arrays."""
+        """The terms along a ring, with lists in place of arrays."""
         rows: Any = self
         shape = np.shape(rows.value)
 
@@ -192,19 +193,19 @@ def _columns(rows: Sequence[tuple[Any, Any, Any]]) -> tuple[list[Any], list[Any]
 
 
 def around(closure: Closure, x: Array) -> Array:
-    """The bounces `x` with a neighbour at either end."""
+    """The bounces `x` with one more neighbour at either end."""
     return np.array(closure.padded(x, closure.radians))  # type: ignore[arg-type]  # an array is a sequence here
 
 
 class Rule(Protocol):
-    """The rule at single bounces as a function, in one arithmetic."""
+    """A function for the rule at a single bounce, in one arithmetic."""
 
     def __call__(self, i: int, near: Sequence[Any], at: Mapping[str, Any], order: int = 1) -> Terms[Any]:
         """The rule at bounce `i` from three neighbouring bounces `near`, with derivatives up to `order`, at most 2."""
 
 
 class Recurrence(Protocol):
-    """A ring of rules: `over` an arithmetic at single bounces, `terms` at all bounces at once in float64."""
+    """A ring of rules: `over` gives them at single bounces in any arithmetic, `terms` at all bounces in float64."""
 
     @property
     def label(self) -> str:
@@ -216,7 +217,7 @@ class Recurrence(Protocol):
 
     @property
     def closure(self) -> Closure:
-        """How the ring closes: by the identity or a symmetry."""
+        """How the ring closes: by the identity or by a symmetry."""
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -226,7 +227,7 @@ class Recurrence(Protocol):
         """The rule at all bounces and its derivatives up to `order`, in float64."""
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The rule at single bounces, as a function in this arithmetic."""
+        """The rule at single bounces, as a function in the given arithmetic."""
 
     def doubled(self) -> "Recurrence":
         """The recurrence of the cycle run through twice."""
@@ -264,7 +265,7 @@ class Explicit:
         return self.over(ARRAYS)(0, (ring[:-2], ring[1:-1], ring[2:]), at, order)
 
     def over(self, arithmetic: Arithmetic) -> Rule:
-        """The rule at single bounces as a function; constant derivatives are numbers of the same kind.
+        """The rule at single bounces, as a function; derivatives that are constant become numbers of the same kind.
 
         >>> from fractions import Fraction
         >>> from types import SimpleNamespace

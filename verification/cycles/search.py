@@ -1,10 +1,10 @@
 """The search for all cycles up to a period: orbits that almost close are closed by Newton's method and listed once.
 
 Starts are spread over the phase space; segments of their orbits that come back near where they began are the seeds,
-those next to the start (where unstable cycles still show) as much as those on attractors. A round without new cycles is
-followed by one with the known cycles deflated. Rounds go on until several in a row bring nothing new and, on a convex
-table, the index sums vanish. Each cycle found is listed once, whatever bounce it is begun with, and its images under
-the table's symmetries are added. A search finds cycles and does not prove that it found all;
+whether near the start, where unstable cycles still show, or on attractors. A round without new cycles is followed by
+one with the known cycles deflated. Rounds go on until several in a row bring nothing new and, on a convex table, the
+index sums vanish. Each cycle found is listed once, whichever bounce comes first, and its images under the table's
+symmetries are added. A search finds cycles and does not prove that it found all;
 `verification.proofs.periodic.interval_newton` does.
 """
 
@@ -52,7 +52,7 @@ PARABOLIC = 1e-20  # from 2 of that |trace|: so near, the cycle is parabolic
 
 @dataclass(frozen=True)
 class Found:
-    """A cycle of minimal period, its multipliers, and its turns around the boundary in one period (`winding`)."""
+    """A cycle of minimal period, its multipliers, and the number of turns around the boundary (`winding`)."""
 
     components: tuple[int, ...]
     theta: tuple[float, ...]
@@ -70,7 +70,7 @@ class Found:
         return len(self.theta)
 
     def index(self, n: int) -> int | None:
-        """The fixed-point index of `T**n` at a bounce: the sign of `det(1 - M**(n/period))`; None if sides differ."""
+        """Fixed-point index of `T**n` at a bounce, the sign of `det(1 - M**(n/period))`; None if it is not unique."""
         one, two = self.spectrum.multipliers
         power = n // self.period
         if self.one_sided:
@@ -84,7 +84,8 @@ class Found:
 
 @dataclass
 class Catalogue:
-    """The cycles found so far at one contraction; `degenerate` counts those with the multiplier 1, not listed.
+    """The cycles found so far at one contraction; those with the multiplier 1 are counted (`degenerate`) but not
+    listed.
 
     For an elastic law, which preserves areas, the trace alone gives the type: parabolic where its modulus is 2 up to
     1e-20, from numbers of thirty digits. Images under a symmetry, and the cycle run backwards, share one trace.
@@ -101,7 +102,7 @@ class Catalogue:
     def add(
         self, components: tuple[int, ...], x: Array, phi: Array, known: MonodromyDeterminants | None = None
     ) -> bool:
-        """Adds a cycle; False if it is listed already, repeats one that is, or has the multiplier 1.
+        """Adds a cycle; False if it is listed already, repeats a listed one, or has the multiplier 1.
 
         `known` are the multipliers of a cycle of which this one is an image.
         """
@@ -140,7 +141,7 @@ class Catalogue:
         return new
 
     def _known(self, n: int, marks: Array) -> NDArray[np.bool_]:
-        """For each row of marks, whether a cycle of minimal period `n` in the catalogue has them."""
+        """For each row of marks, whether the catalogue has a cycle of minimal period `n` with these marks."""
         if not (filed := self.marks.get(n)):
             return np.zeros(len(marks), dtype=bool)
         found: NDArray[np.bool_] = np.any(np.max(np.abs(marks[:, None] - np.array(filed)), axis=2) < SAME * n, axis=1)
@@ -151,7 +152,7 @@ class Catalogue:
         return spectrum(ring.terms(x, {"lam": self.lam}, 1), ring.closure)
 
     def _derivative(self, components: tuple[int, ...], parts: tuple[int, ...], x: Array) -> Matrix:
-        """The derivative of the return map on the components that a cycle on joins may lie on."""
+        """Derivative of the return map for a cycle on joins, if its bounces are assigned to the components `parts`."""
         terms = Chords(self.table, parts, law=self.law).terms(x, {"lam": self.lam}, 1)
         return of_rows(terms.listed().rows, joins(self.table).slopes(components, parts))
 
@@ -169,8 +170,8 @@ class Catalogue:
     def resolution(self, n: int) -> str:
         """A sentence on the cycles that the search cannot tell apart at a period.
 
-        Two cycles of opposite index that are born at a fold leave every index sum as it is, so that sums vanish is
-        no sign that such a pair was not missed.
+        Two cycles of opposite index that are born at a fold leave every index sum as it is, so vanishing sums do not
+        exclude that such a pair was missed.
         """
         return (
             f"cycles of period {n} nearer than about {SAME * n:.0e} radians count as one, and a cycle with "
@@ -183,7 +184,7 @@ class Catalogue:
         return (cycle for cycle in self.cycles if n % cycle.period == 0)
 
     def rows(self, n: int) -> Array:
-        """The cycles that close after `n` bounces: a row of parameters for each cycle and each of its first bounces."""
+        """The cycles that close after `n` bounces: a row of parameters for each cycle and choice of first bounce."""
         rows = [np.roll(np.tile(c.theta, n // c.period), -k) for c in self.of(n) for k in range(c.period)]
         return np.array(rows).reshape(len(rows), n)
 
@@ -215,7 +216,7 @@ def _least_periods(components: tuple[int, ...], x: Array, phi: Array) -> NDArray
 
 
 def _marks(components: tuple[int, ...], x: Array, phi: Array) -> Array:
-    """Numbers that tell cycles apart and do not depend on the first bounce; of one cycle, or of each row."""
+    """Numbers that tell cycles apart and do not depend on the first bounce, for one cycle or for each row."""
     parts, forth = np.array(components), np.roll(x, -1, axis=-1)
     terms = [np.cos(m * x + 0.4) + np.sin(0.7 + m * parts) for m in (1, 2, 3, 4, 5, 7)]  # symmetric cycles cancel all
     terms += [np.sin(m * phi + 0.3) for m in (1, 2)]  # sums but those of their own order
@@ -262,7 +263,7 @@ Orbits = tuple[NDArray[np.int64], Array, Array]
 
 @dataclass(frozen=True)
 class Searched:
-    """The catalogue, the rounds it took, and for each period whether the index sums vanish (None: no such law here)."""
+    """Catalogue, the rounds of search, and for each period whether the index sums vanish (None if they need not)."""
 
     catalogue: Catalogue
     longest: int
@@ -308,13 +309,13 @@ def all_cycles(
 
 
 def _even(catalogue: Catalogue, n: int) -> bool:
-    """Do the index sums vanish, and are there two double normals, which a smooth convex curve has at least?"""
+    """Do the index sums vanish, and are there at least two double normals, as every smooth convex curve has?"""
     normals = catalogue.count(2) if n % 2 == 0 and catalogue.law.uniform else 2
     return normals >= 2 and not any(catalogue.index_sums(n).values())
 
 
 def _inside(law: Law, lam: Expr) -> bool:
-    """Is the law the same everywhere, and its exit angle below pi/2 also at grazing incidence?
+    """Is the law the same along the whole boundary, and its exit angle below pi/2 even at grazing incidence?
 
     Then the closed annulus of phase points is mapped into its own interior, as by a contraction below 1.
     """
@@ -323,7 +324,7 @@ def _inside(law: Law, lam: Expr) -> bool:
 
 
 def _orbits(map: PinballMap, rng: np.random.Generator, bounces: int) -> Orbits:
-    """Components, parameters and exit angles of random orbits: bounces along the first axis; stopped ones left out."""
+    """Components, parameters and exit angles of random orbits that do not stop, with bounces along the first axis."""
     ends = np.array(map.states.ends)
     parts = rng.integers(0, len(ends), PARTICLES)
     theta = ends[parts, 0] + (ends[parts, 1] - ends[parts, 0]) * rng.uniform(0, 1, PARTICLES)
@@ -342,7 +343,7 @@ def _harvest(
     n: int,
     deflated: bool,
 ) -> int:
-    """Adds the cycles to which segments of `n` bounces lead; returns how many. `deflated`: away from known ones."""
+    """Adds cycles found from orbit segments of `n` bounces, away from known ones if `deflated`; returns how many."""
     parts, theta, phi = orbits
     starts = theta.shape[0] - n
     gap = np.abs(np.sin((theta[n:] - theta[:starts]) / 2)) * 2
@@ -376,7 +377,7 @@ def _harvest(
 def _isolated(
     catalogue: Catalogue, corrector: Corrector, components: tuple[int, ...], x: Array, out: Array
 ) -> tuple[Array, Array]:
-    """The rows whose cycles do not have the multiplier 1; the catalogue counts the others."""
+    """The rows whose cycles do not have the multiplier 1; the catalogue counts those that do."""
     periods, family = _least_periods(components, x, out), np.zeros(len(x), dtype=bool)
     for n in np.unique(periods).tolist():
         own = periods == n
@@ -386,7 +387,7 @@ def _isolated(
 
 
 def _placed(corrector: Corrector, itinerary: tuple[int, ...], rows: Array) -> Iterator[tuple[tuple[int, ...], Array]]:
-    """The rows grouped by the components on which their bounces lie, which may have been left over a smooth join."""
+    """Rows grouped by the components on which their bounces lie; Newton's method may have moved bounces over joins."""
     if closes_smoothly(corrector.table) or corrector.law.placed or not len(rows):
         yield itinerary, rows
         return
@@ -396,7 +397,7 @@ def _placed(corrector: Corrector, itinerary: tuple[int, ...], rows: Array) -> It
 
 
 def _admitted(map: PinballMap, itinerary: tuple[int, ...], closed: Array, corrector: Corrector) -> tuple[Array, Array]:
-    """The rows that are orbits, since the map carries each bounce to the next, and their exit angles."""
+    """The rows for which the map carries each bounce to the next, so that they are cycles; and their exit angles."""
     if not len(closed):
         return closed, closed
     out = corrector.exits(itinerary, closed)
@@ -439,7 +440,7 @@ def no_tangent(table: Table) -> tuple[tuple[int, float], ...]:
 
 
 def _file(catalogue: Catalogue, itinerary: tuple[int, ...], x: Array, out: Array) -> None:
-    """Adds a cycle and its images under the symmetries of the table; for an elastic law each run backwards as well."""
+    """Adds a cycle and its images under the table's symmetries; for an elastic law, also each run backwards."""
     if not catalogue.add(itinerary, x, out):
         return
     known = catalogue.cycles[-1].spectrum

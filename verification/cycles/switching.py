@@ -2,9 +2,9 @@
 
 At a fold no other branch leaves: the branch itself goes on. At a period doubling and at a pitchfork the other branch
 leaves along the null vector: the next cycle is sought in the plane that lies a small amplitude away, which the old
-branch does not meet. At a border collision the bounce on the join is taken to lie on the neighbouring part of the
-boundary; whether a cycle is admissible there, and for which contractions, says whether the collision carries it on,
-ends it, or ends a pair.
+branch does not meet. At a border collision the bounce on the join is taken to lie on the neighbouring component.
+Whether an admissible cycle exists there, and for which contractions, decides whether the cycle continues, ends, or ends
+together with a second one.
 
 On a curve of folds or flips in two parameters these points of codimension two are found:
 
@@ -15,8 +15,8 @@ On a curve of folds or flips in two parameters these points of codimension two a
                  1:2 resonance          the other multiplier is -1 too
                  fold-flip              the other multiplier is 1
 
-At `lam = 1` the map preserves an area, so a curve of folds that gets there ends in a 1:1 resonance, and one of flips
-in a 1:2 resonance.
+At `lam = 1` the map preserves an area, so a curve of folds that gets there ends in a 1:1 resonance, and one of flips in
+a 1:2 resonance.
 """
 
 from collections.abc import Callable
@@ -43,9 +43,10 @@ Tick = Callable[[CurvePoint], object]
 def switched(
     branch: Branch, event: Event, interval: Interval, steps: Steps | None = None, tick: Tick | None = None
 ) -> list[Branch]:
-    """The branches that leave at `event`, in `interval`; both halves of a pitchfork, one of a doubling.
+    """The branches that leave at `event`, in `interval`: both halves at a pitchfork, a single branch at a period
+    doubling.
 
-    At a birth it is the branch of the cycle from which this one is born, which passes through.
+    At a birth the result is the branch of the cycle from which this one is born; that branch passes through the event.
 
     >>> from verification.cycles.branch import branch
     >>> from verification.cycles.recurrence import logistic
@@ -87,7 +88,7 @@ def _along_the_null_vector(
 
 
 def _repeated(part: Chords, v: Array, n: int) -> Array:
-    """The null vector of a part that flips, continued along the whole cycle."""
+    """The null vector of the part that flips, continued along the whole cycle."""
     pieces, piece = [v], v
     while len(pieces) * part.period < n:
         piece = -part.closure.turn * piece
@@ -98,7 +99,7 @@ def _repeated(part: Chords, v: Array, n: int) -> Array:
 def _leaving(
     system: Cycles, z: Array, away: Array, interval: Interval, steps: Steps | None, tick: Tick | None
 ) -> Branch:
-    """The branch that leaves `z` along `away`; `z` itself is its first point."""
+    """The branch that leaves `z` in the direction `away`; the first point of the branch is `z` itself."""
     crossing = CurvePoint(z, away, 0.0, system.tests(z))
     size = AMPLITUDE
     for _ in range(8):
@@ -121,7 +122,7 @@ def _leaving(
 
 
 def _across(branch: Branch, event: Event, interval: Interval, steps: Steps | None, tick: Tick | None) -> list[Branch]:
-    """The branches both ways along the null vector that is not the branch's own tangent."""
+    """The branches that leave in both directions along the null vector other than the branch's tangent."""
     system, z = branch.system, event.point.z
     matrix = ring_matrix(system.terms(z), system.recurrence.closure)
     v = np.append(null_vectors(matrix)[0], 0.0)
@@ -136,7 +137,7 @@ NOISE = 1e-10
 
 
 class CodimensionTwo(Enum):
-    """Kinds of points of codimension two."""
+    """The kinds of points of codimension two."""
 
     CUSP = "cusp"
     ONE_ONE = "1:1 resonance (Bogdanov-Takens)"
@@ -164,13 +165,13 @@ class Degenerate:
 
     @property
     def parameters(self) -> tuple[float, float]:
-        """The two parameters."""
+        """The values of the two parameters."""
         return float(self.point.z[-2]), float(self.point.z[-1])
 
 
 @dataclass(frozen=True)
 class CodimensionOneCurve:
-    """A curve of folds or flips, with the points of codimension two and the reasons of both ends."""
+    """A curve of folds or flips, with its points of codimension two and the reasons why it ends at either end."""
 
     system: CriticalCycles
     points: tuple[CurvePoint, ...] = field(repr=False)
@@ -179,11 +180,11 @@ class CodimensionOneCurve:
 
     @property
     def plane(self) -> Array:
-        """The points of the curve in the plane of the two parameters, a row each."""
+        """The points of the curve in the plane of the two parameters, one row per point."""
         return np.array([point.z[-2:] for point in self.points])
 
     def crossing(self, value: float) -> list[Array]:
-        """The points of the curve whose first parameter is `value`, each solved for."""
+        """The points of the curve whose first parameter is `value`, each corrected by Newton's method."""
         return arc.passing(self.system, self.points, -2, value)
 
 
@@ -199,9 +200,10 @@ def curve(
     tick: Tick | None = None,
     unit: float = SHAPE,
 ) -> CodimensionOneCurve:
-    """The curve of `kind` through the critical cycle near `x`, at parameters near `near`, both ways inside `box`.
+    """The curve of cycles with the bifurcation `kind`, through the one near `x` and `near`, in both directions inside
+    `box`.
 
-    `unit` is the range of a shape, to which the lengths of steps are in proportion.
+    `unit` is the range of a shape parameter; the lengths of steps are proportional to it.
 
     >>> from verification.cycles.recurrence import henon
     >>> flip, box = BifurcationKind.FLIP, ((0.0, 0.9), (0.0, 2.0))
@@ -233,7 +235,7 @@ def curve(
 
 
 def degenerate(system: CriticalCycles, path: Path) -> list[Degenerate]:
-    """The points of codimension two between neighbours of a path, and a resonance at its end."""
+    """The points of codimension two between neighbouring points of a path, and a resonance at its end."""
     found = []
     for a, b in pairwise(path.points):
         for name in ("bend", "other_one", "other_minus_one"):

@@ -1,14 +1,14 @@
-"""The systems that are followed: a cycle in one parameter, a bifurcating cycle in two; parts of symmetric cycles.
+"""The systems for continuation: a cycle in one parameter or a bifurcating cycle in two; and parts of symmetric cycles.
 
-A cycle has as many rules as bounces, so one free parameter makes a branch. Where it bifurcates, a vector `v` comes
-back unchanged (fold) or negated (flip), `A v = 0`. Bordered by two fixed vectors `b` and `c` the matrix is regular,
-and the last entry `g` of the solution of `[A b; c 0] (v, g) = (0, 1)` is 0 exactly there: one equation more for one
-parameter more. Its derivative is `dg = -w dA v` with the left vector `w`.
+A cycle has as many rules as bounces, so one free parameter makes a branch. Where it bifurcates, a vector `v` comes back
+unchanged (fold) or negated (flip), `A v = 0`. Bordered by two fixed vectors `b` and `c` the matrix is regular, and the
+last entry `g` of the solution of `[A b; c 0] (v, g) = (0, 1)` is 0 exactly where it bifurcates. This is one more
+equation, for one more parameter. Its derivative is `dg = -w dA v` with the left vector `w`.
 
-A rotation by `2*pi/k`, or the mirror `theta -> -theta`, that maps the boundary to itself maps cycles to cycles. A
-cycle that is its own image after `m` of its `n` bounces is a ring of `m` bounces that closes by the symmetry. Where
-such a cycle has the multiplier 1 without a fold, two cycles branch off that lack the symmetry: a pitchfork, at which
-the part flips.
+A rotation by `2*pi/k`, or the mirror `theta -> -theta`, that maps the boundary to itself maps cycles to cycles. A cycle
+that is its own image after `m` of its `n` bounces is a ring of `m` bounces that closes by the symmetry. Where such a
+cycle has the multiplier 1 without a fold, two cycles branch off that lack the symmetry: a pitchfork, at which the part
+flips.
 """
 
 from collections.abc import Callable
@@ -51,7 +51,7 @@ def series_of(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind)
 
 
 def coefficients(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind, parameter: str) -> NormalForm:
-    """The normal form of a cycle where it folds or flips in `parameter`; its vectors have the root mean square 1."""
+    """The normal form of a cycle that folds or flips in `parameter`, from vectors normalised to root mean square 1."""
     terms = ring.terms(x, at, 2)
     v, w = (list(x) for x in null_vectors(ring_matrix(terms, ring.closure, kind.multiplier)))
     solve = inverse(terms, ring.closure)
@@ -59,7 +59,7 @@ def coefficients(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKi
 
 
 def inverse(terms: Terms[Array], closure: Closure) -> Callable[[Any], Any]:
-    """A function that solves the linearised rules of a cycle for a right side, with pivoting."""
+    """A function that solves the linearised rules of a cycle for a given right side, with pivoting."""
     return lambda right: solved(ring_matrix(terms, closure), np.asarray(right))
 
 
@@ -96,7 +96,7 @@ def reflected(table: Table) -> bool:
 
 @cache
 def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
-    """The symmetries but the identity, as `theta -> turn*theta + shift`; mirrors first, if the law is odd."""
+    """Symmetries other than the identity, as `theta -> turn*theta + shift`; mirrors come first, if the law is odd."""
     if law.placed:
         return ()
     k = rotations(table)
@@ -106,7 +106,7 @@ def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
 
 
 def parts(ring: Chords, x: Array) -> list[tuple[Chords, Array]]:
-    """Shorter rings, with their bounces, that make up the cycle `x` by a symmetry; the shortest first.
+    """Shorter rings, with their bounces, that make up the cycle `x` by a symmetry, in order of length.
 
     >>> from symbolic.tables import egg
     >>> triangle = Chords(egg(3).at(alpha="2/25"), (0, 0, 0))
@@ -134,7 +134,7 @@ def _gap(ring: Chords, g: Closure, x: Array, i: int, m: int) -> float:
 
 
 def _turn(table: Table) -> float:
-    """The period of the boundary parameter; infinite where there are several components."""
+    """The period of the boundary parameter; infinite for a table with several components."""
     return 2 * pi if len(table.components) == 1 else inf
 
 
@@ -158,7 +158,7 @@ def images(ring: Recurrence, x: Array, y: Array, within: float) -> bool:
 
 
 def repeats(ring: Recurrence, x: Array) -> bool:
-    """Does the cycle repeat a shorter one, or is it its own image under a symmetry some bounces later?"""
+    """Does the cycle repeat a shorter one, or is it its own image under a symmetry up to a shift of its bounces?"""
     if not isinstance(ring, Chords) or ring.closure != IDENTITY:
         return False
     n = ring.period
@@ -167,9 +167,9 @@ def repeats(ring: Recurrence, x: Array) -> bool:
 
 
 def crossed(ring: Recurrence, a: Array, b: Array) -> list[tuple[Chords, Array, float]]:
-    """Repeating or symmetric cycles between `a` and `b`, which are neither: ring and bounces of a part, share of way.
+    """Repeating or symmetric cycles between the cycles `a` and `b`: ring and bounces of a part, fraction of the way.
 
-    The gaps between the bounces and their images have opposite signs in `a` and `b`, and cancel there.
+    The gaps between bounces and their images have opposite signs in `a` and `b`, so they vanish in between.
     """
     found: list[tuple[Chords, Array, float]] = []
     if not isinstance(ring, Chords) or ring.closure != IDENTITY:
@@ -187,7 +187,7 @@ def crossed(ring: Recurrence, a: Array, b: Array) -> list[tuple[Chords, Array, f
 
 
 def whole(part: Chords, x: Array, n: int) -> tuple[Chords, Array]:
-    """The full cycle of `n` bounces, and its bounces, from a part and its images under the closing symmetry."""
+    """The full cycle of `n` bounces, with its bounces, from a part and its images under the closing symmetry."""
     pieces, piece = [x], x
     while len(pieces) * part.period < n:
         piece = part.closure.carried(piece, part.closure.radians, 1)
@@ -214,7 +214,7 @@ class Cycles:
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the arc length: the mean square of the bounces, and the parameter."""
+        """Weights of the arc length: the bounces count by their mean square, the parameter in full."""
         n = self.recurrence.period
         return np.append(np.full(n, 1.0 / n), PARAMETER**2)
 
@@ -237,18 +237,18 @@ class Cycles:
         return spectrum(self.terms(z), self.recurrence.closure)
 
     def tests(self, z: Array) -> dict[str, float]:
-        """The test functions `det(M - 1)`, `det(M + 1)` and `det M - 1`, which is set to 0 where the law is elastic."""
+        """The test functions `det(M - 1)`, `det(M + 1)` and `det M - 1`; the last is set to 0 if the law is elastic."""
         found, ring = self.spectrum(z), self.recurrence
         elastic = isinstance(ring, Chords) and ring.law.uniform and self.at(z)["lam"] == 1
         volume = 0.0 if elastic else found.determinant - 1
         return {"one": found.at_one, "minus_one": found.at_minus_one, "volume": volume}
 
     def obstacle(self, z: Array) -> str:
-        """Reason why these bounces are not a cycle; empty if they are."""
+        """The reason why the bounces at `z` do not form a cycle; empty if they do."""
         return self.recurrence.obstacle(z[:-1], self.at(z))
 
     def renewed(self, z: Array) -> "Cycles":
-        """The same system: nothing depends on the point."""
+        """The same system, as nothing in it depends on the point."""
         return self
 
 
@@ -256,7 +256,7 @@ class Cycles:
 class CriticalCycles:
     """Cycles at a fold or a flip, in two parameters; unknowns are the bounces, then the parameters.
 
-    `unit` is the range of a shape: steps along a curve are in proportion to it.
+    `unit` is the range of a shape parameter; the lengths of steps along a curve are proportional to it.
     """
 
     recurrence: Recurrence
@@ -276,12 +276,12 @@ class CriticalCycles:
         fixed: Parameters | None = None,
         unit: float = SHAPE,
     ) -> "CriticalCycles":
-        """The system with borders for a critical cycle near `z`."""
+        """The system for a critical cycle near `z`, bordered by the singular vectors there."""
         none = np.zeros(recurrence.period)
         return cls(recurrence, kind, two, (none, none), fixed or {}, unit).bordered_at(z, None)
 
     def bordered_at(self, z: Array, before: tuple[Array, Array] | None) -> "CriticalCycles":
-        """The system with borders from the singular vectors at `z`, in the directions of `before`."""
+        """The system bordered by the singular vectors at `z`, signed so that they agree in direction with `before`."""
         right, left = null_vectors(self._matrix(self.terms(z)))
         if before is not None:
             right, left = (x if x @ old >= 0 else -x for x, old in zip((right, left), before, strict=True))
@@ -295,7 +295,7 @@ class CriticalCycles:
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the arc length: the mean square of bounces; a `unit` of a shape counts as much as all of `lam`."""
+        """Weights of the arc length: bounces count by their mean square; a `unit` of a shape counts as all of `lam`."""
         n = self.recurrence.period
         parameters = [(PARAMETER / (1 if name == "lam" else self.unit)) ** 2 for name in self.two]
         return np.append(np.full(n, 1.0 / n), parameters)
@@ -309,7 +309,7 @@ class CriticalCycles:
         return self.recurrence.terms(z[:-2], self.at(z), order)
 
     def vectors(self, terms: Terms[Array]) -> tuple[Array, Array, float]:
-        """`v`, `w` and `g` of the module docstring: right and left null vectors where `g` is 0, at a bifurcation."""
+        """`v`, `w` and `g` of the module docstring; `v` and `w` are null vectors where `g` is 0, at a bifurcation."""
         n = self.recurrence.period
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n] = dense(self._matrix(terms))
@@ -335,7 +335,7 @@ class CriticalCycles:
         return np.append(terms.value, g), matrix
 
     def tests(self, z: Array) -> dict[str, float]:
-        """The normal form's coefficient, `det M - 1`, and the other multiplier less 1 and -1."""
+        """The test functions: coefficient of the normal form, `det M - 1`, and the other multiplier minus 1, plus 1."""
         terms = self.terms(z)
         v, w, _ = self.vectors(terms)
         found = spectrum(terms, self.recurrence.closure)
@@ -345,7 +345,7 @@ class CriticalCycles:
         return {"bend": bend, "volume": found.determinant - 1, "other_one": other - 1, "other_minus_one": other + 1}
 
     def obstacle(self, z: Array) -> str:
-        """Reason why these bounces are not a cycle; empty if they are."""
+        """The reason why the bounces at `z` do not form a cycle; empty if they do."""
         return self.recurrence.obstacle(z[:-2], self.at(z))
 
     def renewed(self, z: Array) -> "CriticalCycles":

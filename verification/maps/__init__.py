@@ -1,4 +1,4 @@
-"""The map to any precision, in mpmath and in balls, with the first hit proved."""
+"""The map to any precision, in mpmath and in balls, with a proof that each landing is the first hit."""
 
 import lazy_loader
 

@@ -1,13 +1,13 @@
-"""The map in balls: a landing is enclosed by an interval Newton step and proved to be the first hit, or not given.
+"""The map in balls: a landing is enclosed by an interval Newton step and proved to be the first hit, or it is refused.
 
 A float64 kernel, or mpmath where that fails, guesses a landing and Newton's method sharpens it. An interval Newton step
 then shows that every start in the ball lands exactly once near it, and a cover of the boundary shows that no such
-flight meets it before (`verification.maps.first_hit`), whatever the shape of the table. The proof rests on the balls
-alone, and not on the guess.
+flight meets the boundary before (`verification.maps.first_hit`), whatever the shape of the table. The proof rests on
+the balls alone, and not on the guess.
 
 So an enclosed orbit is proved bounce by bounce, for every start in the ball before. Where a landing cannot be proved
-the orbit ends with the status `unproved`. How an orbit ends (a join, a cusp, a tangency) is what mpmath finds, and is
-not proved.
+the orbit ends with the status `unproved`. How an orbit ends (at a join, a cusp, a tangency) is found by mpmath and not
+proved.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -48,7 +48,7 @@ class EnclosedMap:
     >>> bounce.x.contains(-2), bounce.x.rad() < 1e-20
     (True, True)
 
-    `lam` is a number or its text, `"9/10"` or `"0.9"`, which mean the same; a float is the double that it is.
+    `lam` is a number or its text (`"9/10"` and `"0.9"` mean the same); a float stands for its exact binary value.
     """
 
     def __init__(self, map: PinballMap, lam: Any, bits: int) -> None:
@@ -78,22 +78,22 @@ class EnclosedMap:
         return f"EnclosedMap({self.map!r}, {str(self.exact.contraction)!r}, {self.bits})"
 
     def start(self, theta: Any, phi: Any, component: int = 0) -> Bounce:
-        """The bounce with parameter `theta` and exit angle `phi`, which are balls or exact numbers, in balls."""
+        """The bounce, in balls, with parameter `theta` and exit angle `phi`, which are balls or exact numbers."""
         with working(self.bits):
             theta, phi = number(theta, self.bits), number(phi, self.bits)
             return self._leaving(theta, phi, component, self._frame(component, theta))
 
     def _leaving(self, theta: arb, phi: arb, component: int, frame: Sequence[arb], eta: arb | None = None) -> Bounce:
-        """The bounce with exit angle `phi` at the point and velocity `frame` of the curve."""
+        """The bounce that leaves at exit angle `phi`, where `frame` is point and velocity of the boundary curve."""
         x, y, dx, dy = frame
         speed = (dx * dx + dy * dy).sqrt()
         c, s = self.ops.turned(phi)
         return Bounce(component, theta, phi, ((s * dx - c * dy) / speed, (s * dy + c * dx) / speed), x, y, eta)
 
     def bounce(self, here: Bounce) -> Bounce | Refusal:
-        """The next bounce, enclosed and proved, or a `Refusal`. If the particle stops, `code` is not 0.
+        """The next bounce, enclosed and proved, or a `Refusal`; `code` is not 0 if the particle stops.
 
-        Such an outcome is what mpmath finds for the middle of `here`, and is not proved.
+        That a particle stops is what mpmath finds for the midpoint of `here`; it is not proved.
         """
         refusal = Refusal.WIDE
         for guess in self._guesses(here):
@@ -120,7 +120,7 @@ class EnclosedMap:
             return free(self.boundary, *((end.component, end.theta) for end in ends))
 
     def orbit(self, here: Bounce, bounces: int) -> Iterator[Bounce]:
-        """The next `bounces` bounces, each proved; fewer where one is not proved, or the particle stops."""
+        """The next `bounces` bounces, each proved; fewer if a bounce cannot be proved or the particle stops."""
         for _ in range(bounces):
             landed = self.bounce(here)
             if isinstance(landed, Refusal) or landed.code:
@@ -129,11 +129,11 @@ class EnclosedMap:
             here = landed
 
     def curve(self, component: int, theta: arb) -> Sequence[arb]:
-        """Point, velocity, acceleration by the parameter (six balls); beyond a smooth join on the next component."""
+        """Point, velocity and acceleration, as six balls; beyond a smooth join, those of the next component."""
         return self._along(self.curves, component, theta)
 
     def _frame(self, component: int, theta: arb) -> Sequence[arb]:
-        """Point and velocity (four balls), as by `curve`."""
+        """Point and velocity of the curve, as four balls; beyond a smooth join, those of the next component."""
         return self._along(self.frames, component, theta)
 
     def _along(self, curves: Curves, component: int, theta: arb) -> Sequence[arb]:
@@ -147,9 +147,9 @@ class EnclosedMap:
         return [joined(values) for values in zip(*found, strict=True)]
 
     def _stretches(self, component: int, theta: arb) -> list[tuple[int, arb, arb]]:
-        """Components, parameters there and their derivatives by `theta`, which together cover the ball `theta`.
+        """Triples (component, parameter on it, its derivative by `theta`) that together cover the ball `theta`.
 
-        Beyond a smooth join the next component goes on, with a parameter of the same speed at the join.
+        Beyond a smooth join the next component continues the curve, with a parameter of the same speed at the join.
         """
         agree, after = self.joins
         (low, high), found = self.ends[component], []
@@ -171,7 +171,7 @@ class EnclosedMap:
         return [(component, inner, arb(1)), *found]
 
     def _on_boundary(self, component: int, theta: arb) -> bool:
-        """Is a parameter within its component, or on the next one beyond a smooth join?"""
+        """Does a parameter lie within its component, or on the next one beyond a smooth join?"""
         if len(self.parts) == 1:
             return True
         agree, _ = self.joins
@@ -182,12 +182,12 @@ class EnclosedMap:
         return True
 
     def _inside(self, component: int, theta: arb) -> bool:
-        """Is a parameter strictly within its component, or on the next one beyond a smooth join?"""
+        """Does a parameter lie strictly within its component, or on the next one beyond a smooth join?"""
         low, high = self.ends[component]
         return bool(low < theta < high) or (len(self.parts) > 1 and self._on_boundary(component, theta))
 
     def _short(self, component: int, theta: arb, side: int) -> bool:
-        """Does a parameter beyond an end of its component stay within the next one?"""
+        """Does a parameter that is beyond an end of its component stay within the neighbouring component?"""
         after = self.joins[1]
         beyond = after[component] if side else after.index(component)
         low, high = self.ends[beyond]
@@ -196,7 +196,7 @@ class EnclosedMap:
         )
 
     def _exit(self, eta: arb, component: int, theta: arb) -> arb:
-        """The exit angle for the angle of incidence `eta`, in a ball."""
+        """The exit angle for the angle of incidence `eta`, as a ball."""
         formula = self.exact.formula
         if formula is None:
             return -self.lam * eta
@@ -207,7 +207,7 @@ class EnclosedMap:
         return joined(found)
 
     def length(self, component: int, theta: arb, digits: int = 0) -> Any:
-        """The paper's arc length, in closed form or by rigorous integration of the speed; `digits` 0 means all."""
+        """The paper's arc length, in closed form or by rigorous integration; `digits` 0 means full precision."""
         whole = [self._length_on(part, at, digits) for part, at, _ in self._stretches(component, theta)]
         return None if any(one is None for one in whole) else joined(whole)
 
@@ -221,7 +221,7 @@ class EnclosedMap:
         return found + (dx * dx + dy * dy).sqrt() * (theta - middle)
 
     def arclength(self, component: int, digits: int) -> ExactArcLength:
-        """The function for the length between two parameters of a component, to `digits` digits; kept for reuse."""
+        """The function for the arc length between two parameters of a component, to `digits` digits; cached."""
         asked = component, bits_of(digits, 40)
         if asked not in self.lengths:
             self.lengths[asked] = ExactArcLength(self.parts[component], self.shape, self.ends[component], asked[1])
@@ -234,7 +234,7 @@ class EnclosedMap:
         return place
 
     def _guesses(self, here: Bounce) -> Iterator[Bounce]:
-        """Guesses of where the middle of `here` lands: by a kernel if it has one, then by mpmath."""
+        """Guesses of where the midpoint of `here` lands: from the float64 kernel if it has one, then from mpmath."""
         guess = self.landings.guess(float(here.theta.mid()), float(here.phi.mid()), here.component)
         if guess is not None:
             component, at = guess
@@ -252,7 +252,7 @@ class EnclosedMap:
         return Bounce(component, theta, None, (None, None), None, None, code=code)
 
     def _sharpened(self, here: Bounce, component: int, near: arb) -> arb:
-        """A kernel's guess to all digits, by Newton's method with a precision that doubles; proves nothing."""
+        """A guess of the kernel, refined to all digits by Newton's method with doubling precision; proves nothing."""
         x0, y0, vx, vy = (value.mid() for value in (here.x, here.y, *here.v))
         for bits in self.precisions:
             with working(bits):
@@ -261,7 +261,7 @@ class EnclosedMap:
         return near
 
     def _flight(self, here: Bounce, component: int) -> Flight:
-        """The flight function, 0 where the flight meets the wall, with its slope."""
+        """The flight function, which is 0 where the flight meets the boundary, with its derivative."""
         vx, vy = here.v
 
         def flight(theta: arb) -> tuple[arb, arb]:
@@ -271,7 +271,7 @@ class EnclosedMap:
         return flight
 
     def _polished(self, here: Bounce, component: int, near: arb) -> arb:
-        """A guess of mpmath to all digits, by Newton's method; proves nothing."""
+        """A guess of mpmath, refined to all digits by Newton's method; proves nothing."""
         flight = self._flight(here, component)
 
         def correction(at: Vector) -> Vector:
@@ -305,7 +305,7 @@ class EnclosedMap:
 
 
 def number(value: Any, bits: int = 0) -> arb:
-    """An exact number, a float (the double that it is) or a ball, as a ball."""
+    """An exact number, a float (with its exact binary value) or a ball, as a ball."""
     if isinstance(value, arb):
         return value
     if isinstance(value, Fraction):

@@ -2,9 +2,9 @@
 
 A landing is a zero of the paper's flight function. The float64 kernel gives a guess, Newton's method with doubling
 precision refines it, and `maps.flight` shows it to be the first hit; so nothing rests on the closed forms of the
-kernels. Where there is no guess, or it grazes, lies beside a join or is not shown to be first, all zeros are bracketed
-by `numeric.flights.general` in mpmath, with at most 50 digits, and the first is refined. `errors` compares a float64
-step with this map of the same state, in units of 2**-52.
+kernels. If there is no guess, or the guess grazes, lies beside a join or is not shown to be first, all zeros are
+bracketed by `numeric.flights.general` in mpmath, with at most 50 digits, and the first is refined. `errors` compares a
+float64 step with this map of the same state, in units of 2**-52.
 """
 
 import math
@@ -38,7 +38,7 @@ STEPS = 4  # Newton steps with all digits
 
 @dataclass(frozen=True)
 class Bounce:
-    """A bounce: component, parameter `theta`, exit angle, direction `v`, point, incidence angle, code of a `Status`."""
+    """A bounce: component, parameter `theta`, exit angle, direction `v`, point, incidence angle, and `Status` code."""
 
     component: int
     theta: Any
@@ -88,7 +88,7 @@ class ExactMap:
 
     @cached_property
     def coarse(self) -> "ExactMap | None":
-        """The same map to `COARSE` digits, for finding landings; None where this one has no more."""
+        """The same map to `COARSE` digits, for finding landings; None if this map itself has no more digits."""
         return ExactMap(self.map, COARSE, self.lam) if self.digits > COARSE else None
 
     def start(self, theta: Any, phi: Any, component: int = 0) -> Bounce:
@@ -109,7 +109,7 @@ class ExactMap:
         return Bounce(component, theta, mp.atan2(v[0] * tx + v[1] * ty, v[1] * tx - v[0] * ty), v, px, py)
 
     def bounce(self, here: Bounce) -> Bounce:
-        """The next bounce, after one flight and one reflection; `code` is not 0 where the particle stops."""
+        """The next bounce, after one flight and one reflection; `code` is not 0 if the particle stops."""
         mp = self.context
         if self.cusped and self._meets_the_cusp(here):
             return replace(here, eta=None, code=Status.CUSP.code)
@@ -130,7 +130,7 @@ class ExactMap:
         return self.formula.exit(self.ops, eta, self.lam, *place)[0]
 
     def length(self, component: int, theta: Any) -> Any:
-        """The paper's arc length to this map's precision; None on tables of several pieces without a closed form."""
+        """Paper's arc length, to this map's precision; None on tables of several components without a closed form."""
         mp, map = self.context, self.map
         closed = closed_length(map, self.ops, self.shape, component, theta)
         if closed is not None:
@@ -151,7 +151,7 @@ class ExactMap:
             return ExactArcLength(part.curve, exact_balls(self.shape), (low, high), bits)
 
     def _guessed(self, here: Bounce) -> tuple[int, Any, int, Sequence[Any]] | None:
-        """Component, parameter, code and curve at the landing near the kernel's guess; None where it is unreliable."""
+        """Component, parameter, status code and curve at the landing near the kernel's guess; None if unreliable."""
         guess = self.landings.guess(float(here.theta), float(here.phi), here.component)
         if guess is None:
             return None
@@ -182,7 +182,7 @@ class ExactMap:
         return (component, theta, 0, found) if self.obstacles.passed(start, end) else None
 
     def _searched(self, here: Bounce) -> tuple[int, Any, int, Sequence[Any]]:
-        """Component, parameter, code and curve at the landing that the search for all zeros finds."""
+        """Component, parameter, status code and curve at the landing, found by the search for all zeros."""
         component, theta, code = self._landing(here)
         return component, theta, code, self.curves[component](theta)
 
@@ -199,12 +199,12 @@ class ExactMap:
         return int(landing.position[0]), landing.position[1], int(landing.code or 0)
 
     def _meets_the_cusp(self, here: Bounce) -> bool:
-        """Does the flight pass the origin, where the cardioid has its cusp, within `NEAR**2`?"""
+        """Does the flight pass within `NEAR**2` of the origin, where the cardioid has its cusp?"""
         (x, y), (vx, vy) = (here.x, here.y), here.v
         return bool(x * vx + y * vy < 0 and abs(x * vy - y * vx) < NEAR * NEAR)
 
     def _sharpened(self, here: Bounce, component: int, theta: Any) -> Any:
-        """The zero of the flight function that Newton's method reaches from `theta`; None if it is not near."""
+        """The zero of the flight function that Newton's method reaches from `theta`; None if it is not near it."""
         mp, (vx, vy) = self.context, here.v
 
         def correction(at: Vector) -> Vector:
@@ -216,7 +216,7 @@ class ExactMap:
         return found.x[0] if found.settled and abs(found.x[0] - theta) < mp.mpf(10) ** -COARSE else None
 
     def orbit(self, here: Bounce, bounces: int) -> list[Bounce]:
-        """The bounce `here` and the next `bounces` ones; shorter when the particle stops."""
+        """The bounce `here` and the next `bounces` bounces; fewer if the particle stops."""
         orbit = [here]
         for _ in range(bounces):
             following = self.bounce(orbit[-1])
@@ -250,7 +250,7 @@ class ExactMap:
 
 
 def closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: int, theta: Any) -> Any:
-    """Arc length from the table's origin in elementary functions, component by component; None where impossible."""
+    """Arc length from the table's origin in elementary functions, summed over the components; None if impossible."""
     parts, length, law = map.ir.parts, map.family.arclength, map.family.formula
     if map.unit.length != 1 and not (law is not None and law.lengths):
         return None
@@ -310,6 +310,6 @@ def _number(mp: Any, x: Any) -> Any:
 
 
 def _place(map: PinballMap, exact: ExactMap, fields: list[Any]) -> tuple[int, Any]:
-    """Component and parameter of a kernel's fields, given as numbers of mpmath."""
+    """Component and parameter in a kernel's fields, as mpmath numbers."""
     component, theta = map.family.place(exact.ops, fields[: len(map.family.position)])
     return int(component), theta

@@ -5,9 +5,9 @@ straight part; so there it is enough that consecutive bounces are different poin
 shows the chord is not tangent.
 
 In other tables each chord is proved to meet nothing on its way. On a chord from `p` in direction `d` a boundary point
-`q` lies on the line when the cross product `d x (q - p)` is 0. The boundary is covered by balls: off the line, or on it
-but not between the ends, or next to an end, where `d x q'` keeps its sign so that the line is crossed there once, at
-the end itself.
+`q` lies on the line when the cross product `d x (q - p)` is 0. The boundary is covered by balls. Each is off the line,
+or on the line but not between the ends of the chord, or next to an end, where `d x q'` keeps its sign so that the line
+is crossed only once, at the end itself.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -39,9 +39,11 @@ PIECES = 2**12  # boxes that a proof of convexity may use up
 
 
 def convex(table: Table, shape: tuple[arb, ...] = ()) -> bool | None:
-    """True when the table is proved convex: parts and joins bend inwards or are straight, and the tangent turns once.
+    """True when the table is proved convex: components and joins bend inwards or are straight, and the tangent turns
+    once.
 
-    `shape` encloses the free shape parameters; without it all values in their ranges are meant. None: nothing proved.
+    `shape` encloses the free shape parameters; without it the proof is for all values in their ranges. None if nothing
+    is proved.
 
     >>> from symbolic.tables import cardioid, cuspless, egg
     >>> convex(cuspless), convex(egg(3).at(alpha="0.08")), convex(cardioid)
@@ -65,10 +67,11 @@ def _convex(table: Table, shape: tuple[arb, ...]) -> bool | None:
 
 
 def _once(table: Table, shape: tuple[arb, ...]) -> bool:
-    """Is a boundary that bends inwards proved to turn once? One of two turns bends inwards too, and meets itself.
+    """Is a boundary that bends inwards proved to turn once? (A curve with two turns bends inwards too, but meets
+    itself.)
 
-    The proof is a positive radius, or the angle in balls. A curve that bends everywhere stops nowhere, so its number of
-    turns cannot change with the shape parameters: one value of them is enough.
+    The proof is a positive polar radius, or the total angle in balls. A curve with curvature everywhere has velocity
+    everywhere, so its number of turns cannot change with the shape parameters: a proof for one value is enough.
     """
     if not table.shapes:
         return _turns(table, ()) is True
@@ -112,7 +115,7 @@ def _bends_inwards(table: Table, index: int, shape: tuple[arb, ...]) -> bool:
 
 
 def _all_within(shape: tuple[arb, ...], ranges: Iterable[Interval]) -> bool:
-    """Do the enclosed shape parameters lie in their ranges, so that a proof over the ranges holds for them?"""
+    """Do the enclosed shape parameters lie in their ranges, so that a proof for the ranges applies to them?"""
     return not shape or all(isinstance(r, Interval) and _within(x, r) for x, r in zip(shape, ranges, strict=True))
 
 
@@ -123,9 +126,9 @@ def _within(x: arb, range: Interval) -> bool:
 
 
 def _exactly_nonnegative(bend: Expr, ranges: Mapping[Expr, Interval]) -> bool:
-    """True when a sum of cosines of multiples of `theta` is proved nonnegative, as a polynomial in a cosine.
+    """True when `bend`, a sum of cosines of multiples of `theta`, is proved nonnegative as a polynomial in a cosine.
 
-    Its coefficients may be polynomials in shape parameters, which have `ranges`.
+    The coefficients may be polynomials in shape parameters with the given `ranges`.
     """
     waves, c = coefficients(bend) or {}, theta  # `c` stands for the cosine
     step = gcd(*waves)  # 0 where there is none
@@ -145,7 +148,7 @@ def _rational(w: Expr) -> bool:
 
 
 def _over(range: Interval) -> arb:
-    """A ball over a range; infinite where the range is, or where its ends are not rational."""
+    """A ball that holds a range; infinite if the range is, or if its ends are not rational."""
     if not (range.start.is_Rational and range.end.is_Rational):
         return arb("0 +/- inf")
     return _exact(Fraction(str(range.start))).union(_exact(Fraction(str(range.end))))
@@ -153,13 +156,13 @@ def _over(range: Interval) -> arb:
 
 @cache
 def _joined(table: Table) -> bool:
-    """Do all joins bend inwards, by less than a right angle?"""
+    """Do all joins bend inwards, and by less than a right angle?"""
     return all(across.is_nonnegative and along.is_positive for across, along in tangents(table))
 
 
 @cache
 def _turned(table: Table) -> bool:
-    """Do all joins bend inwards, by less than half a turn?"""
+    """Do all joins bend inwards, and by less than half a turn?"""
     return all(across.is_positive or (across.is_zero and along.is_positive) for across, along in tangents(table))
 
 
@@ -182,7 +185,7 @@ def tangents(table: Table) -> Iterator[tuple[Expr, Expr]]:
 
 @cache
 def closes_smoothly(table: Table) -> bool:
-    """Has the table one component, whose formulas have period 2*pi?
+    """Does the table have a single component, whose formulas have period 2*pi?
 
     >>> from symbolic.tables import cuspless, egg
     >>> closes_smoothly(egg(3)), closes_smoothly(cuspless)
@@ -201,12 +204,12 @@ def inside(
     turns: bool = True,
     rough: bool = False,
 ) -> bool | None:
-    """True when each bounce is proved inside its component, or on a closed curve of period 2*pi; False if refuted.
+    """True when each bounce is proved inside its component, or on a closed curve of period 2*pi; False if one is proved
+    outside.
 
-    `turns` says that the law, too, has period 2*pi. Beyond its ends another formula leaves the boundary, except along
-    the next component where one analytic curve runs through the join; and with `rough` where tangents agree, for
-    equations that go on along the next component (`OverJoins`). With one component nothing is refuted there: a turn
-    less may bring the parameter back.
+    `turns` says that the law, too, has period 2*pi. A parameter beyond its component's end is admitted if one analytic
+    curve runs through the join; with `rough` also if only the tangents agree, for equations that go on along the next
+    component (`OverJoins`). With a single component nothing is refuted, as a turn less may bring the parameter back.
     """
     ends = _ends(table, shape, BITS)
     for index, value in zip(components, zero, strict=False):
@@ -221,9 +224,9 @@ def inside(
 
 
 def _runs_on(table: Table, index: int, value: arb, shape: tuple[arb, ...], rough: bool) -> bool:
-    """Is a parameter within its component, or on the next one where one curve runs through the join?
+    """Is a parameter within its component, or on the next one where the equations go on over the join?
 
-    The part beyond the end must be shorter than the straight line between the ends of that component.
+    The excess beyond the end must be shorter than the straight line between the ends of that next component.
     """
     if len(table.components) == 1:
         return False
@@ -249,7 +252,7 @@ def _runs_on(table: Table, index: int, value: arb, shape: tuple[arb, ...], rough
 
 
 def minimal(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
-    """True when the period is proved minimal: for each proper divisor `k`, some bounce differs from the `k`-th next."""
+    """True if the period is proved minimal: for each proper divisor `k`, some bounce differs from the `k`-th next."""
     n = len(components)
     for shift in (k for k in range(1, n) if n % k == 0):
         if not any(_apart(table, components, zero, i, (i + shift) % n) for i in range(n)):
@@ -293,7 +296,7 @@ Place = Callable[[arb], Frame]
 
 @dataclass(frozen=True)
 class BallBoundary:
-    """Closed chains of components: for each a function to point and velocity, and the ends of its parameter."""
+    """Closed chains of components: for each component a function to point and velocity, and its parameter's ends."""
 
     places: Sequence[Place]
     ends: Sequence[tuple[arb, arb]]
@@ -301,7 +304,7 @@ class BallBoundary:
 
     @cached_property
     def closed(self) -> tuple[bool, ...]:
-        """For each component, whether its ends coincide: in closed chains, exactly when their balls overlap."""
+        """For each component, whether its two ends coincide: in closed chains, exactly if their balls overlap."""
         if len(self.ends) == 1:
             return (True,)
         found = []
@@ -312,7 +315,7 @@ class BallBoundary:
 
 
 def first_hits(table: Table, components: tuple[int, ...], zero: list[arb], shape: tuple[arb, ...] = ()) -> bool | None:
-    """True when every chord of the cycle is proved to leave inwards, arrive from inside, and meet nothing between.
+    """True when every chord of the cycle is proved to leave inwards, arrive from inside, and meet nothing in between.
 
     >>> from symbolic.tables import cardioid
     >>> with working(96):
@@ -325,7 +328,7 @@ def first_hits(table: Table, components: tuple[int, ...], zero: list[arb], shape
 
 
 def unobstructed(table: Table, bounces: Sequence[tuple[int, arb]], shape: tuple[arb, ...] = ()) -> bool:
-    """True when the flights between successive bounces, which need not close, are proved free as in `first_hits`."""
+    """True when the flights between successive bounces, which need not close up, are proved free as in `first_hits`."""
     with working(BITS_OF_HIT):
         boundary = _boundary(table, shape)
         return all(free(boundary, start, end) for start, end in pairwise(bounces))
@@ -353,8 +356,8 @@ def turns_once(table: Table) -> bool | None:
     """True when a boundary without free shape parameters is proved to bend inwards and to turn once.
 
     The tangent of such a closed curve, corners included, turns through a whole number of turns; with one turn the curve
-    is simple and bounds a convex set (Fenchel's theorem). The angle is summed in balls, over arcs on which no tangent
-    is as far as a right angle from the first. None: nothing proved.
+    is simple and bounds a convex set (Fenchel's theorem). The angle is summed in balls, over arcs on which all tangents
+    are within a right angle of the first one. None if nothing is proved.
 
     >>> from symbolic.tables import cardioid, cuspless, square
     >>> turns_once(cuspless), turns_once(square()), turns_once(cardioid)
@@ -366,7 +369,7 @@ def turns_once(table: Table) -> bool | None:
 
 
 def _turns(table: Table, shape: tuple[arb, ...]) -> bool | None:
-    """True when the tangent, corners included, is proved to turn once, summed over arcs; None: nothing proved."""
+    """True when the tangent, corners included, is proved to turn exactly once; False if refuted, None if undecided."""
     with working(BITS_OF_HIT):
         boundary, total, spent = _boundary(table, shape), arb(0), 0
         last = boundary.places[-1](boundary.ends[-1][1])
@@ -392,7 +395,7 @@ def _products(p: Frame, q: Frame) -> Frame:
 
 
 def _angle(p: Frame, q: Frame) -> arb:
-    """The angle from one velocity to another, between -pi/2 and pi; nan where that is not known."""
+    """The angle from one velocity to another, between -pi/2 and pi; nan if it cannot be enclosed."""
     across, along = _products(p, q)
     if along > 0:
         return (across / along).atan()
@@ -400,9 +403,9 @@ def _angle(p: Frame, q: Frame) -> arb:
 
 
 def free(boundary: BallBoundary, start: tuple[int, arb], end: tuple[int, arb]) -> bool:
-    """Does the chord leave inwards, arrive from inside, and meet nothing between? False when that is not proved.
+    """Does the chord leave inwards, arrive from inside, and meet nothing in between? False when that is not proved.
 
-    Call it inside `working`. `start` and `end` are a component and a ball of its parameter.
+    Must be called inside `working`. `start` and `end` are pairs of a component and a ball of its parameter.
     """
     first, last = (boundary.places[component](at) for component, at in (start, end))
     p, d = first[:2], (last[0] - first[0], last[1] - first[1])
@@ -426,7 +429,7 @@ def free(boundary: BallBoundary, start: tuple[int, arb], end: tuple[int, arb]) -
 
 
 def _between(boundary: BallBoundary, index: int, at: arb, piece: arb) -> list[arb]:
-    """Balls of parameters from a bounce to a piece of boundary, over the ends of a closed curve if that is shorter."""
+    """Balls of the parameters between a bounce and a piece of boundary, the shorter way round on a closed curve."""
     low, high = boundary.ends[index]
     gap = piece.mid() - at.mid()
     if not boundary.closed[index] or abs(gap) < (high - low) / 2:
@@ -435,7 +438,7 @@ def _between(boundary: BallBoundary, index: int, at: arb, piece: arb) -> list[ar
 
 
 def _over_join(boundary: BallBoundary, index: int, piece: arb, bounce: tuple[int, arb], d: Any) -> bool:
-    """Is the line crossed only at the bounce itself, from there over its nearer join to this piece?"""
+    """Is the line met only at the bounce itself, on the stretch from the bounce over its nearer join to this piece?"""
     (own, at), after = bounce, boundary.after()
     (first, last), (low, high) = boundary.ends[own], boundary.ends[index]
     if not after or own == index:

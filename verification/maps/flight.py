@@ -1,10 +1,11 @@
-"""Float64 aids for a flight in many digits: a guess of the landing, and a proof that nothing is met before it.
+"""Float64 aids for a flight in many digits: a guess of the landing, and a proof that the flight meets nothing before
+it.
 
 Newton's method with doubling precision (`precisions`) refines the guess, on a curve compiled once for each number
-system (`curve`). `Obstacles` shows that the landing is the first hit. On a table that is proved convex it is, since a
-line has only two points on its boundary. On others the boundary is covered by boxes, with bounds for all points in
-them; each is off the line, or not between its ends, or on a stretch where the line is crossed once, at one end of the
-flight. So nothing that is proved rests on the kernel.
+system (`curve`). `Obstacles` shows that the landing is the first hit. On a table that is proved convex this is clear,
+since a line meets its boundary only twice. On others the boundary is covered by boxes, with bounds for all points in
+them. Each box is off the line, or not between the ends of the flight, or on a stretch where the line is crossed once,
+at one end of the flight. So nothing that is proved rests on the kernel.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,7 +38,7 @@ SLACK = 2.0**-40  # times the size of the table: more than the rounding errors o
 def curve(program: Program, ops: Any, shape: Sequence[Any], count: int = 6) -> Curve:
     """The first `count` outputs (point, velocity, ...) of a component's curve as a function of its parameter.
 
-    Expressions in the shape alone are computed once, here.
+    Expressions that depend on the shape alone are computed once, in advance.
 
     >>> from numeric.lowering.program import table_ir
     >>> from verification.arithmetic.balls import FLOAT64
@@ -51,7 +52,7 @@ def curve(program: Program, ops: Any, shape: Sequence[Any], count: int = 6) -> C
 
 @cache
 def _closure(program: Program, both: bool) -> Kernel:
-    """Source of a function of all inputs of a program but the first, which returns a function of the first."""
+    """Source of a function of all inputs of a program but the first, which returns a function of the first input."""
     first, words = len(program.inputs), set[str]()
     moving, outside, inside = {0}, list[str](), list[str]()
     turned = set[int]()
@@ -108,7 +109,7 @@ def precisions(bits: int) -> list[int]:
 
 
 class Curves(dict[int, Curve]):
-    """Functions for point and velocity by component, compiled on first use; `bits` is the precision of balls."""
+    """Functions for point and velocity, by component, compiled on first use; `bits` is the precision of balls."""
 
     def __init__(self, programs: Sequence[Program], ops: Any, shape: Sequence[Any], count: int = 4, bits: int = 0):
         super().__init__()
@@ -126,9 +127,9 @@ class Landings:
         self.map = map if map.lam.size == 1 else map.at(float(map.lam.flat[0]))
 
     def guess(self, theta: float, phi: float, component: int) -> tuple[int, float] | None:
-        """Component and parameter of the landing in float64; None where it is unreliable.
+        """Component and parameter of the landing in float64; None where the guess is unreliable.
 
-        That is where the particle stops or flies along the wall, and near the ends of components.
+        It is unreliable where the particle stops or flies along the boundary, and near the ends of components.
         """
         if not (self._within(component, theta) and abs(phi) < STEEPEST):
             return None
@@ -143,7 +144,7 @@ class Landings:
 
 
 class Obstacles:
-    """Proofs that a flight on a map's table meets nothing before it lands.
+    """Proofs that a flight on the table of a map meets nothing before it lands.
 
     >>> flower = Obstacles(PinballMap("circle"))
     >>> flower.convex
@@ -163,7 +164,7 @@ class Obstacles:
     def passed(self, start: Place, end: Place, radius: float = 0.0) -> bool:
         """Is the flight from `start` to `end` proved to meet nothing between them?
 
-        It must leave inwards and arrive from inside. `radius` bounds the errors of parameters and points.
+        The flight must leave inwards and arrive from inside. `radius` bounds the errors of parameters and points.
         """
         if self.convex:
             return True
@@ -182,7 +183,7 @@ def _convex(table: Any) -> bool:
 
 
 class _Boxes:
-    """Boxes that cover a boundary: middles and half widths of point and velocity, and their neighbours."""
+    """Boxes that cover a boundary: midpoints and half widths of point and velocity, and the boxes next to each."""
 
     def __init__(self, map: PinballMap) -> None:
         ops, parts = map.states.ops, map.ir.parts

@@ -3,8 +3,8 @@
 Where tangents agree a join is no corner: the billiard map is continuous there. Where curvatures agree as well its
 derivative is continuous, and the parameter of a component may run on beyond its ends along the true boundary: `x`
 beyond the end of one component is the parameter `start + (x - end)*ratio` of the next, where the ratio makes the speeds
-agree. So Newton's method and a branch of cycles pass such a join like any other place. A closed curve of period 2*pi
-needs none of this, and a table with free shape parameters has none, since its ends may move.
+agree. So Newton's method and a branch of cycles pass such a join like any other point. A closed curve of period 2*pi
+needs no continuation, and a table with free shape parameters has none, since its ends may move.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ SIDES = 64  # at most, choices of the sides of a cycle's joins
 
 @dataclass(frozen=True)
 class Joins:
-    """For both ends of `m` components, shape `(m, 2)`: parameter, component beyond, contact, ratio of speeds."""
+    """For both ends of `m` components, shape `(m, 2)`: parameter, next component, kind of contact, ratio of speeds."""
 
     ends: Array
     beyond: NDArray[np.int64]
@@ -48,7 +48,8 @@ class Joins:
         return bool(self.runs_on.any())
 
     def place(self, component: Any, x: Any) -> tuple[Any, Any, Any]:
-        """Components, parameters on them and derivatives by `x`, for parameters `x` that may pass `component`'s ends.
+        """Components, parameters on them and their derivatives by `x`, for parameters `x` that may pass `component`'s
+        ends.
 
         >>> from symbolic import Scene
         >>> halves = [{"name": n, "x": "2*cos(theta)", "y": "sin(theta)", "from": a, "to": b}
@@ -74,7 +75,7 @@ class Joins:
         return part, here, slope
 
     def canonical(self, component: Any, x: Any) -> tuple[Any, Any]:
-        """Components and parameters of bounces; one on a smooth join is put at the start of the component after it."""
+        """Components and parameters of bounces, where a bounce on a smooth join is put on the next component."""
         part, at, _ = self.place(component, x)
         low, high, after = self.ends[part, 0], self.ends[part, 1], self.beyond[part, 1]
         last = (abs(at - high) < NEAR * (high - low)) & self.smooth[part, 1]
@@ -92,12 +93,12 @@ class Joins:
         return np.asarray(first | last)
 
     def slopes(self, parts: Sequence[int], others: Sequence[int]) -> list[float]:
-        """By how much the parameters of bounces run on other sides of their joins, when those on `parts` run by 1."""
+        """Speeds of bounce parameters on the components `others`, when those on the components `parts` have speed 1."""
         both = zip(parts, others, strict=True)
         return [1.0 if part == other else float(self.ratio[part, 0]) for part, other in both]
 
     def sides(self, parts: Sequence[int], x: Array) -> list[tuple[tuple[int, ...], Array]]:
-        """The bounces on either side of each join where the curvature jumps, as `(components, parameters)`."""
+        """Ways to assign bounces at joins where the curvature jumps to either side, as `(components, parameters)`."""
         rows = []
         for part, at in zip(parts, x, strict=True):
             before = int(self.beyond[part, 0])
@@ -107,7 +108,7 @@ class Joins:
         return [(tuple(part for part, _ in one), np.array([at for _, at in one])) for one in whole]
 
     def jumps(self, part: int, x: float) -> bool:
-        """True if this bounce is at the start of a component where only the tangents are known to agree."""
+        """True if this bounce is at the start of a component, where tangents but not curvatures agree."""
         low, high = self.ends[part]
         return self.contact[part][0] is JoinKind.TANGENT and bool(abs(x - low) < NEAR * (high - low))
 
@@ -117,10 +118,10 @@ ROUGH = (JoinKind.TANGENT, JoinKind.CURVATURE)  # the map is continuous, and two
 
 @dataclass(frozen=True)
 class OverJoins:
-    """Where balls of parameters lie that may reach over a join at which tangents agree, and no more is known.
+    """The position of balls of parameters that may reach over a join at which only the tangents are known to agree.
 
     A parameter beyond the end of a component is `start + (x - end)*ratio` on the next one, where the ratio makes the
-    speeds agree. `ends` and `ratio` have the start and the end of each component.
+    speeds agree. `ends` and `ratio` have one entry for the start and one for the end of each component.
     """
 
     known: Joins
@@ -128,7 +129,7 @@ class OverJoins:
     ratio: tuple[tuple[arb, arb], ...]
 
     def __call__(self, part: int, x: arb) -> list[tuple[int, arb, arb]]:
-        """The components that the ball meets, where it is on each of them, and the slopes by its own parameter."""
+        """The components that the ball `x` meets, the ball of the parameter on each, and its derivative by `x`."""
         (low, high), found = self.ends[part], []
         before, after = (contact in ROUGH for contact in self.known.contact[part])
         if not ((before and x < low) or (after and x > high)):
@@ -142,7 +143,7 @@ class OverJoins:
 
 
 def over_joins(table: Table, arithmetic: Any) -> OverJoins | None:
-    """The joins that a ball may reach over, in balls; None where there are none, or a shape is free."""
+    """The joins that a ball may reach over, in balls; None if there are none, or if a shape parameter is free."""
     if table.shapes or len(table.components) == 1:
         return None
     known = joins(table)
@@ -167,7 +168,7 @@ def _velocity(part: Component) -> Kernel:
 
 @cache
 def joins(table: Table) -> Joins:
-    """The joins of a table; no parameter runs on over them if the shape is free.
+    """The joins of a table; no parameter continues over them if a shape parameter is free.
 
     >>> from symbolic.tables import ellipse, square
     >>> joins(square()).any, joins(ellipse.at(a=2)).any

@@ -5,9 +5,10 @@
     test_the_derivative = laws.jacobian()  # the paper's tables, of any shape, under laws of several kinds
     test_mine = laws.symmetry(my_table, max_examples=100)
 
-`tables` is a table, a scene, a map, the name of one of the paper's, or a list of such; None for all of the paper's.
-Contractions are drawn, and so are parameters that have a range, and the reflection law, unless a scene has its own.
-Other arguments are Hypothesis' settings. A failure is shown as the simplest particle for which the law fails.
+`tables` is a table, a scene, a map, the name of one of the paper's tables, or a list of these; None means all of the
+paper's tables. Contractions, parameters that have a range, and the reflection law (unless a scene has its own) are
+drawn at random. Other arguments are Hypothesis' settings. A failure is shown as the simplest particle for which the law
+fails.
 
 Each law allows rounding errors in proportion to the condition number of the flight. Particles whose flight grazes or
 passes near a join are left out, since the map is not continuous there.
@@ -75,7 +76,7 @@ def _landed(particle: Particle) -> Any:
 
 
 def _bound(step: Any, *matrices: Any) -> float:
-    """Allowed error: units of rounding times the condition of the flight, by its derivatives and landing angle."""
+    """Allowed error: units of rounding times the condition of the flight, from its derivatives and landing angle."""
     size = 1 + max(float(np.abs(matrix).max()) for matrix in matrices)
     return float(UNITS * EPS * size**2 / np.cos(step.eta))
 
@@ -83,7 +84,8 @@ def _bound(step: Any, *matrices: Any) -> float:
 def jacobian(tables: Any = None, **options: Any) -> Test:
     """Test that the derivative of the map in `(s, phi)` is the symbolic one. Paper: eq. (derivative_of_map).
 
-    The symbolic one is `symbolic.derivative_matrix`, generated for mpmath and evaluated where the exact map lands.
+    The symbolic derivative is `symbolic.derivative_matrix`, generated for mpmath and evaluated where the exact map
+    lands.
     """
 
     def the_derivative_is_the_symbolic_one(particle: Particle) -> None:
@@ -124,7 +126,7 @@ def symbolic_derivative(own: ExactMap | EnclosedMap, start: Bounce, landed: Boun
 
 
 def _with_letters(map: PinballMap) -> tuple[Table, dict[str, Any]]:
-    """The table with its shape parameters free, and their values: one formula serves all shapes."""
+    """The table with free shape parameters, and their values, so that one formula serves all shapes."""
     scene = map.uniform(map.lam).scene
     if "table" in scene.document:
         return named(scene.name, scene.K), scene.shape
@@ -133,13 +135,13 @@ def _with_letters(map: PinballMap) -> tuple[Table, dict[str, Any]]:
 
 @lru_cache(maxsize=256)
 def _matrix(table: Table, here: int, there: int, in_balls: bool, digits: int) -> Callable[..., Any]:
-    """The derivative matrix of flights between two components, as a function of its letters as keywords."""
+    """The derivative matrix of flights between two components, as a function of its symbols as keyword arguments."""
     return _by_name(_formula(table, here, there), in_balls, digits)
 
 
 @lru_cache(maxsize=64)
 def _formula(table: Table, here: int, there: int) -> Matrix:
-    """The derivative matrix, kept since it takes a second to derive."""
+    """The symbolic derivative matrix, cached since it takes a second to derive."""
     return derivative_matrix(table, here, there)
 
 
@@ -147,13 +149,13 @@ def _formula(table: Table, here: int, there: int) -> Matrix:
 def _slopes_of_law(
     law: Law, part: Component, in_balls: bool, digits: int
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions for minus the derivative of the exit angle by the incidence angle, and that by landing arc length."""
+    """Minus the derivatives of the exit angle by the incidence angle and by the landing's arc length, as functions."""
     by_place = law.phi.diff(theta_letter) / geometry.speed(part) + law.phi.diff(s_letter)
     return _by_name(-law.phi.diff(eta_letter), in_balls, digits), _by_name(by_place, in_balls, digits)
 
 
 def _by_name(expression: Any, in_balls: bool, digits: int) -> Callable[..., Any]:
-    """The expression as a function of its letters, given by name; further names are ignored."""
+    """The expression as a function of its symbols, passed by name; further names are ignored."""
     letters = {letter.name for letter in expression.free_symbols}
     value = generate(expression, "arb" if in_balls else "mpmath", digits)
     return lambda **given: value(**{name: number for name, number in given.items() if name in letters})
@@ -179,7 +181,7 @@ def determinant(tables: Any = None, **options: Any) -> Test:
 
 
 def _slopes(particle: Particle, orbit: Any) -> Any:
-    """Minus the slope of the law at each bounce."""
+    """Minus the derivative of the law by the incidence angle, at each bounce."""
     eta, theta, component = (np.ravel(field) for field in (orbit.eta, orbit.theta, orbit.component))
     return particle.map.slopes(eta, theta, component)[0]
 
@@ -224,7 +226,7 @@ def symmetry(tables: Any = None, **options: Any) -> Test:
 
 
 def time_reversal_at_lam_1(tables: Any = None, **options: Any) -> Test:
-    """Test that a particle that is turned around flies back to its start, where exit and incidence angles are equal."""
+    """Test that a particle that is turned around flies back to its start if exit and incidence angles are equal."""
 
     def a_classical_particle_that_is_turned_around_flies_back(particle: Particle) -> None:
         map = particle.map.uniform(lam=1.0)
@@ -240,7 +242,7 @@ def time_reversal_at_lam_1(tables: Any = None, **options: Any) -> Test:
 
 
 def first_hit(tables: Any = None, **options: Any) -> Test:
-    """Test that the float64 landing is the one that balls prove to be the first, on its component and in its place."""
+    """Test that the float64 landing agrees with the landing that balls prove to be the first hit."""
 
     def the_landing_is_the_first_hit(particle: Particle) -> None:
         step = _landed(particle)
@@ -258,6 +260,6 @@ def first_hit(tables: Any = None, **options: Any) -> Test:
 
 
 def every(tables: Any = None, **options: Any) -> Iterator[Test]:
-    """Tests of all these laws, in the order of this module."""
+    """All these tests, in the order of this module."""
     for law in (jacobian, determinant, area_sum_rule, symmetry, time_reversal_at_lam_1, first_hit):
         yield law(tables, **options)

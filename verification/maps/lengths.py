@@ -64,7 +64,7 @@ class ExactArcLength:
 
 
 class _Pieces:
-    """Function for the length from a component's start; `stretches` as by `_stretches`."""
+    """Function for the arc length from a component's start; `stretches` are those of the function `_stretches`."""
 
     def __init__(
         self, stretches: Sequence[tuple[float, float, float]], series: Callable[[Any], Any], bits: int
@@ -84,7 +84,7 @@ class _Pieces:
 
 
 def _pieces(length: ExactArcLength) -> _Pieces | None:
-    """The function by series; None where the speed is not shown to be analytic, as at a cusp."""
+    """The length function by series; None where the speed is not shown to be analytic, as at a cusp."""
     stretches = list(_stretches(length.discs, length.low, length.high))
     if any(bound >= LARGE for _, _, bound in stretches):
         return None

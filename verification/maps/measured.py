@@ -1,4 +1,4 @@
-"""The paper's arc length where it is an integral, for every kind of number in which a law is evaluated."""
+"""The paper's arc length, for curves where it is an integral, in every kind of number in which a law is evaluated."""
 
 from functools import cache, lru_cache
 from typing import Any
@@ -18,14 +18,14 @@ from verification.maps.exact import ExactMap
 
 @cache
 def map_of(table: Table, maker: Any) -> Any:
-    """The map with `lam = 1` of a table without free shapes, made by `maker` and kept."""
+    """The map with `lam = 1` of a table without free shape parameters, made by `maker` and cached."""
     return maker(table, lam=1)
 
 
 class Lengths:
     """The paper's arc length on a closed curve where it is an integral: of floats, arrays, mpmath numbers, balls, jets.
 
-    It runs once round, between the ends of the curve's parameter, where it jumps by the perimeter.
+    The length grows over one turn of the curve's parameter and jumps by the perimeter at the ends of its range.
     """
 
     def __init__(self, table: Table) -> None:
@@ -53,7 +53,7 @@ class Lengths:
         return [here, Jet(self.of(here.c[0]), *(c / k for k, c in enumerate(steps.c[:-1], 1)))]
 
     def of(self, here: Any) -> Any:
-        """The length at a number; for a ball enclosed, by the integral to its middle and the speed over it."""
+        """Arc length at a number; for a ball, enclosed by the length at its midpoint and the speed over the ball."""
         if isinstance(here, arb):
             if ctx.prec not in self.enclosed:
                 self.enclosed[ctx.prec] = EnclosedMap(self.map, 1, ctx.prec)

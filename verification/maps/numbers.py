@@ -1,6 +1,6 @@
 """Number systems in which a table's programs run with many digits: mpmath, real balls and complex balls.
 
-Each has `turned`, cosine and sine at the cost of one.
+Each has the method `turned`, which gives cosine and sine at the cost of one of them.
 """
 
 from typing import Any
@@ -11,7 +11,7 @@ from numeric.backends.scalars import ScalarBackend
 
 
 class Numbers(ScalarBackend[Any]):
-    """The numbers of an mpmath context, as an arithmetic for programs."""
+    """The numbers of an mpmath context, as an arithmetic in which programs run."""
 
     def turned(self, x: Any) -> tuple[Any, Any]:
         """Cosine and sine."""
@@ -23,7 +23,7 @@ class Balls(ScalarBackend[Any]):
     """Operations of ball arithmetic that a program calls: constants, roots and elementary functions."""
 
     def __init__(self) -> None:
-        """Takes no context, unlike the other number systems."""
+        """Accepts no context, unlike the other number systems."""
 
     def q(self, p: int, n: int) -> arb:
         """A ball that holds `p/n`."""
@@ -81,7 +81,7 @@ class Balls(ScalarBackend[Any]):
 
 
 class ComplexBalls(Balls):
-    """Analytic operations on complex balls; not finite where a branch cut may meet the ball."""
+    """Analytic operations on complex balls; the result is not finite where a branch cut may meet the ball."""
 
     def sqrt(self, x: Any) -> Any:
         """The principal square root."""

@@ -3,15 +3,14 @@
 Let `x` be the bounces and `F(x) = 0` the collision rules; let parameters continue over a join with matched speeds.
 
 1. `F` is continuous, and analytic on each side of the hyperplanes `x[i] = join`. So `F(x) - F(y) = S*(x - y)` in a box,
-   `S` in the convex hull of the Jacobians of all sides there: an interval Newton or Krawczyk step with the union of
-   their balls proves that the box has exactly one cycle, on whichever side it lies [Krawczyk1969].
-2. In the coordinates `(x[-1], x[0])` the return map has one derivative `M` for each choice of sides. If all products
-   of `L` of them are below 1 in one norm, `L` returns contract: the cycle attracts.
-3. If `det(1 - M) < 0` for all products `M` of one length, the fixed point of that power has a negative
-   index. An attracting cycle has the index 1: this one does not attract.
-4. When the sign of `det(1 - M)` is the same on both sides of a join, a branch that crosses it keeps the direction of
-   its parameter: persistence. When the signs differ it turns back there: a nonsmooth fold [NusseYorke1992].
-5. Tests 2 and 3 may both fail; then nothing is decided.
+`S` in the convex hull of the Jacobians of all sides there: an interval Newton or Krawczyk step with the union of their
+balls proves that the box has exactly one cycle, on whichever side it lies [Krawczyk1969]. 2. In the coordinates
+`(x[-1], x[0])` the return map has one derivative `M` for each choice of sides. If all products of `L` of them are below
+1 in one norm, `L` returns contract: the cycle attracts. 3. If `det(1 - M) < 0` for all products `M` of one length, the
+fixed point of that power has a negative index. An attracting cycle has the index 1, so a cycle with a negative index
+does not attract. 4. When the sign of `det(1 - M)` is the same on both sides of a join, a branch that crosses it keeps
+the direction of its parameter: persistence. When the signs differ it turns back there: a nonsmooth fold
+[NusseYorke1992]. 5. Tests 2 and 3 may both fail; then nothing is decided.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -29,7 +28,7 @@ ROUNDS = 60  # of the iteration to a norm
 
 
 class OneSided(Enum):
-    """The verdict of all one-sided derivatives of a cycle on its stability."""
+    """The verdict on a cycle's stability that follows from all its one-sided derivatives."""
 
     ATTRACTS = "attracts: in one norm the products of its one-sided derivatives contract, whichever sides are taken"
     REPELS = "does not attract: det(1 - M) < 0 on all sides, and an attracting cycle has the index 1"
@@ -48,7 +47,8 @@ class OneSided(Enum):
 def of_rows(rows: Iterable[Row], slopes: Sequence[Any]) -> Matrix:
     """The derivative of the return map in two successive bounces, from the derivatives of the rule at each bounce.
 
-    `slopes[i]` is the speed of bounce `i`'s own parameter when the parameter that continues over the join has speed 1.
+    `slopes[i]` is the speed of the parameter of bounce `i` on its own component when the parameter that continues over
+    the join has speed 1.
 
     >>> of_rows([(2.0, 3.0, 1.0), (2.0, 3.0, 1.0)], [1.0, 1.0])
     ((-2.0, -3.0), (6.0, 7.0))
@@ -69,7 +69,7 @@ def times(p: Matrix, q: Matrix) -> Matrix:
 
 
 def words(matrices: Sequence[Matrix]) -> Iterator[list[Matrix]]:
-    """The products of one matrix, of two, and so on, as long as there are at most `WORDS` of one length."""
+    """The products of one matrix, of two, and so on, as long as there are at most `WORDS` products of one length."""
     found = list(matrices)
     while len(found) <= WORDS:
         yield found
@@ -83,7 +83,7 @@ def at_one(m: Matrix) -> Any:
 
 
 def verdict(matrices: Sequence[Matrix]) -> OneSided:
-    """The verdict of one-sided derivatives, floats or balls; with balls it is proved.
+    """The verdict from one-sided derivatives, in floats or balls; with balls it is proved.
 
     >>> half, kink = ((0.5, 0.0), (0.0, 0.4)), ((0.5, 0.0), (9.0, 0.4))
     >>> [verdict(some).name for some in ((half, kink), (((2.0, 0.0), (0.0, 0.4)),), (half, ((2.0, 0.0), (0.0, 0.4))))]
@@ -98,7 +98,7 @@ def verdict(matrices: Sequence[Matrix]) -> OneSided:
 
 
 def _frame(matrices: Sequence[Matrix]) -> Matrix:
-    """A triangular frame in whose norm the derivatives are small; the proof does not depend on how it was found."""
+    """A triangular frame in whose norm the derivatives are small; proofs do not depend on how the frame was found."""
     floats = np.array([[[float(x) for x in row] for row in m] for m in matrices])
     gram = np.eye(2)
     for _ in range(ROUNDS):
@@ -120,7 +120,7 @@ def _within(frame: Matrix, m: Matrix) -> Matrix:
 
 
 def _shrinks(m: Matrix) -> bool:
-    """Are both singular values below 1?"""
+    """Are both singular values of the matrix below 1?"""
     (a, b), (c, d) = m
     squares, det = a * a + b * b + c * c + d * d, a * d - b * c
     return bool(det * det < 1 and squares < 1 + det * det)

@@ -1,8 +1,8 @@
 """Orbits with a given number of correct digits, as tables of text: in mpmath, or enclosed in balls.
 
-An orbit loses digits where its flights spread errors. In mpmath the derivatives along the float64 orbit say how many to
-add; where those along the new orbit say more, it is computed again. Balls show what they lose: an attempt that ends too
-soon tells how many bits a bounce takes.
+An orbit loses digits where its flights spread errors. In mpmath the derivatives along the float64 orbit give the number
+of digits to add; if those along the new orbit ask for more, it is computed again. The radii of balls show the loss: an
+attempt that ends too soon gives the number of bits lost per bounce.
 """
 
 from collections.abc import Callable, Sequence
@@ -35,8 +35,8 @@ def in_multiprecision(
 ) -> Entries:
     """The orbit in mpmath, with as many extra digits as its instability loses, so that `digits` are correct.
 
-    Of the arc length `s`, the length `flight` of the flight before and the `time` since the start only those among the
-    `fields` are computed. `step` is called with the number of each bounce, for a progress bar.
+    The arc length `s`, the length `flight` of the last flight and the `time` since the start are computed only if they
+    are among the `fields`. `step` is called with the number of each bounce, for a progress bar.
     """
     lost = _lost_in_float64(map, start, bounces)
     while True:
@@ -59,7 +59,7 @@ def in_multiprecision(
 
 
 def _computed(exact: ExactMap, start: Start, bounces: int, step: Step) -> tuple[list[Bounce], int]:
-    """The start and the bounces after it, and the code of the outcome that ended them, or 0."""
+    """The start and the bounces after it, and the status code of the outcome that ended the orbit, or 0."""
     theta, phi, component = start
     turned = exact.exactly(theta) - 2 * _turns(exact.map, start) * exact.context.pi
     orbit = [exact.start(turned, exact.exactly(phi), component)]
@@ -73,7 +73,7 @@ def _computed(exact: ExactMap, start: Start, bounces: int, step: Step) -> tuple[
 
 
 def _lost_in_float64(map: PinballMap, start: Start, bounces: int) -> int:
-    """The digits that the float64 orbit loses, extrapolated to `bounces` where it stops too soon."""
+    """The digits that the float64 orbit loses, extrapolated to `bounces` if it stops too soon."""
     orbit = map.orbit(float(start[0]), float(start[1]), bounces, start[2])
     made = int(np.argmax(np.append(orbit.code, 1) != 0))  # bounces that are regular, and the start
     lost = digits_lost(map, list(zip(*(field[:made].tolist() for field in orbit[:2]), orbit.phi[:made], strict=True)))
@@ -81,7 +81,7 @@ def _lost_in_float64(map: PinballMap, start: Start, bounces: int) -> int:
 
 
 def digits_lost(map: PinballMap, states: Sequence[tuple[int, float, float]]) -> int:
-    """The decimal digits by which an error made anywhere on an orbit grows at most.
+    """The largest number of decimal digits by which an error made anywhere on an orbit grows.
 
     `states` are component, parameter and exit angle, bounce by bounce. The number is the largest rise of the logarithm
     of a tangent vector's length.
@@ -111,7 +111,7 @@ def digits_lost(map: PinballMap, states: Sequence[tuple[int, float, float]]) -> 
 def in_balls(
     map: PinballMap, lam: Any, start: Start, bounces: int, digits: int, step: Step, fields: Sequence[str] = KEYS
 ) -> Entries:
-    """The orbit enclosed in balls, to `digits` digits, or decimals for numbers below one; a row for each bounce."""
+    """The orbit enclosed in balls, to `digits` digits (decimals for numbers below one); one row per bounce."""
     bits = bits_of(digits, MORE + EACH * min(bounces, FIRST))
     for _ in range(TRIES):
         entries, last = _attempt(map, lam, start, bounces, digits, bits, step, fields)
@@ -124,7 +124,7 @@ def in_balls(
 
 
 def _bits_known(ball: arb) -> int:
-    """Bits after the binary point that a ball's radius leaves known; 2**30 for an exact one."""
+    """The number of bits after the binary point that a ball's radius leaves known; 2**30 for an exact ball."""
     mantissa, exponent = ball.rad().man_exp()
     return -int(exponent) - int(mantissa).bit_length() if mantissa != 0 else 1 << 30
 
@@ -139,7 +139,7 @@ def _attempt(
     step: Step,
     fields: Sequence[str] = KEYS,
 ) -> tuple[Entries, Bounce | None]:
-    """The orbit with `bits` bits, and the last bounce where they are too few, else None."""
+    """The orbit with `bits` bits, and its last bounce if the bits are too few, else None."""
     enclosed = EnclosedMap(map, lam, bits)
     names = [part.name for part in map.ir.parts]
     entries = Entries()
@@ -172,15 +172,15 @@ def _attempt(
 
 
 def _turns(map: PinballMap, start: Start) -> int:
-    """Turns by which a start on a closed curve is outside the range of its parameter; 0 on other tables."""
+    """Number of turns by which a start on a closed curve is outside the range of its parameter; 0 on other tables."""
     low, high = map.states.ends[start[2]]
     return 0 if len(map.states.ends) > 1 else round((float(start[0]) - (low + high) / 2) / (high - low))
 
 
 def text_of(number: arb, digits: int) -> str:
-    """The digits of a ball's middle, the last one off by one at most; empty when the ball is too wide for `digits`.
+    """The digits of a ball's midpoint, the last one off by at most one; empty when the ball is too wide for `digits`.
 
-    For a number below one they are decimals; one that is below all of them is 0.
+    For a number below one, digits after the point are counted; a number smaller than all of them is shown as 0.
     """
     size = max(1.0, float(abs(number.mid())))
     if not number.rad() < arb(10) ** (-digits) * size:
@@ -203,5 +203,5 @@ def _entry(name: str, texts: Sequence[str | None], fields: Sequence[str]) -> dic
 
 
 def _stopped(last: dict[str, Any], status: str) -> dict[str, Any]:
-    """The row of a particle that stops: the place of its last bounce and the name of the outcome."""
+    """The row of a particle that stops: the position of its last bounce and the name of the outcome."""
     return last | {"eta": None, "status": status}

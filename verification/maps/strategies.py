@@ -81,7 +81,7 @@ PLACED = {
 
 @st.composite
 def reflections(draw: st.DrawFn, placed: bool = True) -> str:
-    """Formulas of reflection laws: the paper's, and others that add polynomials and sines to it.
+    """Formulas of reflection laws: the paper's law, and laws that add polynomials and sines to it.
 
     With `placed`, also laws that depend on where on the boundary the particle lands.
     """
@@ -94,7 +94,7 @@ def reflections(draw: st.DrawFn, placed: bool = True) -> str:
 
 @st.composite
 def scenes(draw: st.DrawFn, scene: Scene) -> Scene:
-    """The scene, each parameter with a range drawn from that range."""
+    """The scene, with each parameter that has a range drawn from this range."""
     numbers: dict[str, Any] = {
         name: low + (high - low) * draw(st.fractions(0, 1, max_denominator=100))
         for name, (low, high) in scene.ranges.items()
@@ -109,10 +109,10 @@ def maps(
     lams: st.SearchStrategy[float] | None = None,
     laws: st.SearchStrategy[str] | None = None,
 ) -> PinballMap:
-    """Maps of the paper's tables with any shape, or of the table or tables given: names, exact tables, scenes, maps.
+    """Maps of the paper's tables with any shape, or of the given table or tables: names, exact tables, scenes, maps.
 
     Free shape parameters are drawn from their ranges. With `laws` the reflection law is drawn too, unless a scene has
-    one of its own; else it is the paper's.
+    one of its own; without `laws` it is the paper's.
     """
     chosen = list(tables) if isinstance(tables, list | tuple) else [tables] if tables is not None else []
     chosen = [each if isinstance(each, str | Scene) else _with_ranges(each) for each in chosen]
@@ -136,7 +136,7 @@ def particles(
     steepest: float = STEEPEST,
     laws: st.SearchStrategy[str] | None = None,
 ) -> Particle:
-    """Phase points inside phase space, away from the ends of components, of maps drawn by `maps`."""
+    """Phase points in the interior of phase space, away from the ends of components, of maps drawn by `maps`."""
     map = draw(maps(tables, lams, laws))
     component = draw(st.integers(0, len(map.states.ends) - 1))
     low, high = map.states.ends[component]
@@ -147,7 +147,7 @@ def particles(
 
 @lru_cache(maxsize=64)
 def _with_ranges(given: Any) -> Any:
-    """A scene with ranges for a table with free shape parameters, the name of a paper's table, or the table itself."""
+    """A scene for a map, or for a table with free shape parameters; else the table, or its name."""
     if isinstance(scene := getattr(given, "scene", None), Scene):  # of a map
         return scene
     table, _ = given_table(given, POINTS, {})
@@ -162,7 +162,7 @@ def _with_ranges(given: Any) -> Any:
 
 
 def _of_scene(scene: Scene, lam: float) -> PinballMap:
-    """Map of a scene at `lam`, or at the scene's own contraction if its law is none at `lam`."""
+    """Map of a scene at `lam`, or at the scene's own contraction where its law is not valid at `lam`."""
     with suppress(ValueError):
         scene = scene.at(lam=Fraction(lam))
     return PinballMap(scene, kernels=False)

@@ -1,11 +1,12 @@
 """Absorbing sets: the cells that a few boxes and all their later images meet, when these are finitely many.
 
-The map takes such a set into its interior. Only the numbers of its cells are stored, so the grid may be as fine as the
+The map takes such a set into its interior. Only the indices of its cells are stored, so the grid may be as fine as the
 gap between two thin sets requires.
 
 On a table with a threefold rotation symmetry every set has three copies. Let a set be grown from boxes near an end of
-one diameter. If it has no point in common with its rotated copies, then *three regions, one about each diameter, hold
-an attractor each, or more*, and no orbit that starts near that end comes near one of its copies.
+one diameter. If it has no point in common with its rotated copies, then *each of three disjoint regions, one about each
+diameter, holds at least one attractor*, and no orbit that starts near the chosen end comes near one of its rotated
+copies.
 """
 
 from collections.abc import Sequence
@@ -26,10 +27,10 @@ BESIDE = (-1, 0, 1)
 def reached(
     map: BoxMap, grid: Grid, start: Boxes, parts: int, turns: Sequence[int] = (), most: int = MOST
 ) -> Indices | None:
-    """The numbers, in order, of all cells that the boxes `start` and their later images meet; or None.
+    """The sorted indices of all cells that the boxes `start` and their later images meet; or None.
 
-    Cells are mapped in `parts` by `parts` pieces. None is returned where nothing is proved of a box, where an image
-    leaves the charts, where there are more than `most` cells, and where a cell touches another one that is shifted by
+    Cells are cut into `parts` by `parts` pieces before they are mapped. None is returned if an image is not enclosed or
+    leaves the charts, if there are more than `most` cells, or if a cell touches a cell of the set that is shifted by
     one of the `turns` (in columns).
     """
     member = new = numbered(grid, grid.met(Images.exact(start)))
@@ -49,7 +50,7 @@ def reached(
 
 
 def numbered(grid: Grid, met: Rectangles) -> Indices:
-    """The numbers `(chart*columns + column)*rows + row` of the cells in the rectangles `met`, in order."""
+    """The sorted indices `(chart*columns + column)*rows + row` of the cells in the rectangles `met`."""
     across, high = met.right - met.left + 1, met.top - met.bottom + 1
     owner = np.repeat(np.arange(across.size), across)
     column = met.chart[owner] * grid.columns + ranges(met.left, met.right + 1) % grid.columns
@@ -58,19 +59,19 @@ def numbered(grid: Grid, met: Rectangles) -> Indices:
 
 
 def cells(grid: Grid, numbers: Indices) -> Cells:
-    """The cells with these numbers."""
+    """The cells with the given indices."""
     column = numbers // grid.rows
     return Cells(column // grid.columns, column % grid.columns, numbers % grid.rows, np.ones_like(numbers))
 
 
 def _ordered(numbers: Indices) -> Indices:
-    """The distinct numbers, sorted. Most of them are neighbours, for which sorting is faster than `np.unique`."""
+    """The distinct numbers, sorted; many of them are neighbours, for which sorting is faster than `np.unique`."""
     found = np.sort(numbers)
     return found[np.append(True, found[1:] != found[:-1])] if found.size else found
 
 
 def _held(some: Indices, ordered: Indices) -> NDArray[np.bool_]:
-    """A mask: which of the numbers `some` are in the sorted array `ordered`."""
+    """A mask of those numbers in `some` that are in the sorted array `ordered`."""
     if not ordered.size:
         return np.zeros(some.shape, dtype=bool)
     place = np.minimum(np.searchsorted(ordered, some), ordered.size - 1)
@@ -93,7 +94,7 @@ def _touches(grid: Grid, new: Indices, member: Indices, turns: Sequence[int]) ->
 
 @dataclass(frozen=True, eq=False)
 class AbsorbingSet:
-    """Cells that the map takes into the interior of their union; `numbers` are their sorted numbers."""
+    """Cells that the map takes into the interior of their union; `numbers` are the sorted indices of the cells."""
 
     grid: Grid
     numbers: Indices
@@ -119,9 +120,10 @@ class AbsorbingSet:
 
 
 def grown(map: BoxMap, grid: tuple[int, int, int], start: Boxes) -> AbsorbingSet | None:
-    """The absorbing set grown from the boxes `start`; None where the growth does not end or an image is not proved.
+    """The absorbing set grown from the boxes `start`; None if the growth does not end or an image is not enclosed.
 
-    `grid` is the number of columns, of rows, and of the parts (each way) into which a cell is cut before it is mapped.
+    `grid` is the number of columns, of rows, and of parts in each direction into which a cell is cut before it is
+    mapped.
     """
     fine = Grid(map.charts, *grid[:2])
     numbers = reached(map, fine, start, grid[2], most=CELLS)
@@ -129,7 +131,8 @@ def grown(map: BoxMap, grid: tuple[int, int, int], start: Boxes) -> AbsorbingSet
 
 
 def kept_apart(map: BoxMap, grid: tuple[int, int, int], start: Boxes | None) -> Array | None:
-    """The polar angles of a trapping region that grows from `start` and avoids its copies turned by thirds; or None.
+    """The polar angles of a trapping region that grows from `start` and does not meet its copies rotated by thirds; or
+    None.
 
     `grid` is as for `grown`, with a multiple of three columns; the table has a threefold rotation symmetry.
     """

@@ -17,7 +17,7 @@ Indices = NDArray[np.int64]
 
 
 class Boxes(NamedTuple):
-    """Boxes of a phase space, one entry each: its chart, and arrays of the low and high ends of both coordinates."""
+    """Boxes of a phase space: an array of charts, and arrays of the low and high ends of both coordinates."""
 
     chart: Indices
     x: tuple[Array, Array]
@@ -45,7 +45,7 @@ class Boxes(NamedTuple):
 
 
 class Images(NamedTuple):
-    """Rectangles that hold images: `source` is the index of the mapped box; `lost` are boxes with no proved image."""
+    """Rectangles that hold images: `source` has the index of the mapped box; `lost` the boxes with no proved image."""
 
     source: Indices
     boxes: Boxes
@@ -58,7 +58,7 @@ class Images(NamedTuple):
 
 
 class Chart(NamedTuple):
-    """A closed rectangle of phase space; with `period` its first coordinate is an angle, and its ends are one point."""
+    """A closed rectangle of phase space; with `period`, its first coordinate is an angle, with its ends identified."""
 
     name: str
     x: tuple[float, float]
@@ -72,11 +72,11 @@ class BoxMap(Protocol):
 
     @property
     def charts(self) -> tuple[Chart, ...]:
-        """The charts."""
+        """The charts of the phase space."""
 
     @property
     def label(self) -> str:
-        """The map and its parameters, in words."""
+        """The map and its parameters, as a text for messages."""
 
     def images(self, boxes: Boxes) -> Images:
         """Rectangles that hold the image of each box, including any part outside of the charts."""
@@ -91,7 +91,7 @@ class Turned:
 
     @property
     def charts(self) -> tuple[Chart, ...]:
-        """The chart: the first coordinate covers one part in `turns` of a full turn, and is periodic."""
+        """The chart, whose first coordinate is periodic and covers the fraction `1/turns` of a full turn."""
         (chart,) = self.map.charts
         return (chart._replace(x=(-np.pi / self.turns, np.pi / self.turns)),)
 
@@ -101,13 +101,14 @@ class Turned:
         return f"{self.map.label}, up to {self.turns} turns"
 
     def images(self, boxes: Boxes) -> Images:
-        """The images under the map itself."""
+        """The images under the map itself; the grid reduces them modulo the rotation."""
         return self.map.images(boxes)
 
 
 @dataclass(frozen=True)
 class PlaneImages:
-    """A map of a rectangle of the plane, from `formula(x, y)` and the entries `derivative(x, y)`, both of balls.
+    """A map of a rectangle of the plane, from `formula(x, y)` and the matrix entries `derivative(x, y)`, evaluated in
+    balls.
 
     >>> half = PlaneImages("halving", Chart("plane", (-1, 1), (-1, 1)), lambda x, y: (x / 2, y / 2),
     ...     lambda x, y: ((0.5, 0), (0, 0.5)))
@@ -135,7 +136,7 @@ class PlaneImages:
 
 
 def centred(boxes: Boxes) -> tuple[list[BallArray], list[BallArray], list[BallArray]]:
-    """Midpoints, deviations from them as balls about 0, and whole ranges of boxes, for both coordinates."""
+    """Midpoints of boxes, deviations from these as balls about 0, and whole boxes as balls, for both coordinates."""
     whole = [hull(*boxes.x), hull(*boxes.y)]
     return [BallArray(b.m) for b in whole], [BallArray(0.0 * b.m, b.r) for b in whole], whole
 
@@ -146,7 +147,7 @@ Row = tuple[Indices, Indices, Array, Array, Array, Array]
 def collected(rows: list[Row], count: int) -> Images:
     """The images of `count` boxes, from rows of arrays `source, chart, x low, x high, y low, y high`.
 
-    A box without a row, or with an end that is not finite, is lost.
+    A box without a row, or with a row whose ends are not finite, is lost.
     """
     source, chart, *ends = (np.concatenate(column) for column in zip(*rows, strict=True))
     good = np.logical_and.reduce([np.isfinite(end) for end in ends])

@@ -1,4 +1,4 @@
-"""Theorems that are written as JSON documents: each entry of a document is a field of a dataclass, in order.
+"""Theorems that are written as JSON documents, in which each entry is a field of the theorem's dataclass, in order.
 
 >>> from dataclasses import dataclass, field
 >>> from verification.rigorous.theorem import hypothesis
@@ -44,7 +44,7 @@ Metadata = dict[str, "Entry"]
 
 
 class Entry(NamedTuple):
-    """How a field is read from an entry (given the fields before it) and written; `name` is "" or the entry's name."""
+    """How a field is read from an entry (given the fields before) and written; an empty `name` means the field's."""
 
     read: Callable[[Any, Mapping[str, Any]], Any]
     write: Callable[[Any], Any]
@@ -71,7 +71,7 @@ def whole_number(name: str, given: Any, most: int, least: int = 1) -> int:
 
 
 def parse_range(given: Any) -> tuple[Fraction, Fraction]:
-    """The two ends of a range of contractions; `ValueError` where they are not two fractions as text."""
+    """The two ends of a range of contractions; `ValueError` unless they are two fractions as text."""
     if not all(isinstance(end, str) and END.fullmatch(end) for end in given) or len(given) != 2:
         raise ValueError(f"certificate: lam = {ascii(given)[:80]}; accepted: two ends, as fractions")
     return Fraction(given[0]), Fraction(given[1])
@@ -111,12 +111,12 @@ class Certified(Theorem):
 
     @property
     def name(self) -> str:
-        """The statement with its data, in one line."""
+        """The title of the theorem: the statement with its data, in one line."""
         raise NotImplementedError
 
     @property
     def evidence(self) -> dict[str, Any]:
-        """Further entries of the document: the checklist, or data that a checker needs who does not search."""
+        """Further entries of the document: the checklist, or data that spare a checker the search."""
         return {}
 
     @property
@@ -138,7 +138,7 @@ class Certified(Theorem):
         return {"schema": self.schema, "name": self.name, "kind": self.kind, **written}
 
     def document(self) -> dict[str, Any]:
-        """The certificate: the statement together with the evidence."""
+        """The certificate, which consists of the statement and the evidence."""
         return self.to_dict() | self.evidence
 
     @classmethod
@@ -154,7 +154,7 @@ class Certified(Theorem):
 
     @classmethod
     def read(cls, given: Mapping[str, Any]) -> Self:
-        """The theorem of a document whose version is known to be this one, field by field."""
+        """The theorem of a document of this version, read field by field."""
         read: dict[str, Any] = {}
         if given["kind"] != cls.kind:
             raise ValueError(f"certificate: {ascii(given['kind'])[:80]} is no {cls.kind}")
@@ -164,9 +164,11 @@ class Certified(Theorem):
         return cls(**read)
 
     def check_entries(self, given: Mapping[str, Any], evidence: Mapping[str, Any] | None = None) -> None:
-        """`ValueError` at the first entry of a document that differs, as JSON text, from this theorem's.
+        """Raises `ValueError` at the first entry of a document that differs, as JSON text, from the entry of this
+        theorem.
 
-        Without `evidence` entries beside the statement may be anything; runs of cells may stand in any order.
+        Without `evidence`, entries other than those of the statement may be anything. Runs of cells may stand in any
+        order.
         """
         true = self.to_dict() | ({"runs": given["runs"]} if "runs" in given else {})
         if _text(given.get("name")) != _text(true["name"]):
@@ -194,7 +196,7 @@ def _text(entry: Any) -> str:
 
 
 def read_document(path: Path) -> dict[str, Any]:
-    """The JSON object in a file; `ValueError` when the file is too large, no JSON, or ambiguous."""
+    """The JSON object in a file; `ValueError` if the file is too large, not JSON, or ambiguous."""
     try:
         with path.open("rb") as file:
             text = file.read(LARGEST_FILE + 1)

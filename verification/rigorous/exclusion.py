@@ -1,7 +1,8 @@
 """A search that proves that a region holds no solution: boxes cover it, each is tested, and undecided ones are halved.
 
-The boxes are arrays of some thousand at a time. Where a midpoint is rounded, the half box is widened by the rounding
-error, so that neighbouring boxes leave no gap. Midpoints and widths of few binary digits are halved exactly.
+The boxes are arrays of some thousand at a time. If the midpoint of a half box is rounded, the half box is widened by
+the rounding error, so that neighbouring boxes leave no gap. Midpoints and widths of few binary digits are halved
+exactly.
 """
 
 from collections.abc import Callable
@@ -17,7 +18,7 @@ CHUNK = 4096  # boxes in one call of the test
 
 @dataclass(frozen=True)
 class Cuboids:
-    """Boxes in `n` dimensions, as rows of middles and of half widths: arrays of shape `(boxes, n)`."""
+    """Boxes in `n` dimensions, as rows of midpoints and of half widths: two arrays of shape `(boxes, n)`."""
 
     middle: Array
     half: Array
@@ -48,7 +49,7 @@ class Cuboids:
 
 
 class Search(NamedTuple):
-    """The outcome of a search: `empty` is True when nothing is proved to be there, None when it ended undecided."""
+    """Outcome of a search: `empty` is True if the region is proved to hold nothing, None if the search is undecided."""
 
     empty: bool | None
     boxes: int
@@ -61,11 +62,11 @@ def exclude(
     smallest: float,
     tick: Callable[[int], None] = lambda boxes: None,
 ) -> Search:
-    """A search whether the region covered by `start` holds nothing.
+    """A search for a proof that the region covered by `start` holds nothing.
 
     `nothing_in` returns a mask of the boxes that are proved to hold nothing; the other boxes are halved. The search
     ends undecided after `budget` boxes, or at an undecided box with all sides below `smallest`. `tick` is called with
-    the number of boxes tested so far. `ValueError` where a box is not finite.
+    the number of boxes tested so far. `ValueError` if a box is not finite.
 
     >>> line = Cuboids(np.array([[0.0]]), np.array([[1.0]]))
     >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 2) > boxes.half[:, 0], 100, 1e-3).empty

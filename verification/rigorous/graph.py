@@ -3,10 +3,10 @@
 Each chart is cut into equal cells. The vertices of the graph are *leaves*: square blocks of cells, smaller where orbits
 may return. A leaf has an edge to every leaf that its enclosed image meets, so every orbit follows a walk in the graph:
 
-- An infinite walk stays, from some step on, in one strongly connected component with an edge inside. These components
-  are the Morse sets; every infinite orbit is in one of them from some bounce on.
-- Leaves from which no edge leads away are a trapping region, also called an attractor block: the map takes them
-  into their interior.
+- An infinite walk stays, from some step on, in one strongly connected component with an edge inside. Such components
+  are the Morse sets; from some bounce on, every infinite orbit stays in one of them.
+- Leaves from which no edge leads away are a trapping region, also called an attractor block: the map takes them into
+  their interior.
 - A leaf from which every walk ends in a trapping region lies in its basin.
 """
 
@@ -44,7 +44,7 @@ class Cells(NamedTuple):
 
 
 class Rectangles(NamedTuple):
-    """Ranges of cells that images meet: columns `left` to `right`, which may exceed the last column by a turn."""
+    """Ranges of cells that images meet; columns `left` to `right` may exceed the last column by up to a full turn."""
 
     source: Indices
     chart: Indices
@@ -95,7 +95,7 @@ class Grid:
         return Boxes(cells.chart, *ends)
 
     def met(self, images: Images) -> Rectangles:
-        """The ranges of cells that closed rectangles meet, cells with a common border point included."""
+        """The ranges of cells that closed rectangles meet, including cells that share only a border point with one."""
         boxes, found = images.boxes, []
         out = np.zeros(boxes.chart.size, dtype=bool)
         kept, turning = (np.array([getattr(c, name) for c in self.charts])[boxes.chart] for name in ("kept", "period"))
@@ -114,7 +114,7 @@ class Grid:
         return Rectangles(images.source, boxes.chart, left, right, bottom, top, out)
 
     def to_array(self, cells: Cells, values: Indices | Mask, empty: int = 0) -> NDArray[np.int32]:
-        """An array of all cells, of shape `(charts, columns, rows)`: the value of each block at its cells."""
+        """An array over all cells, of shape `(charts, columns, rows)`, with the value of each block at its cells."""
         picture = np.full((len(self.charts), self.columns, self.rows), empty, dtype=np.int32)
         for size in np.unique(cells.size):
             on = np.flatnonzero(cells.size == size)
@@ -138,7 +138,7 @@ def halved(cells: Cells) -> Cells:
 
 
 def mapped(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> tuple[Rectangles, Mask]:
-    """The cells that images of blocks meet, with blocks cut into `parts` by `parts`; the mask of unproved blocks."""
+    """Cells that images of blocks meet, with blocks cut into `parts` by `parts`; and a mask of blocks not enclosed."""
     found, lost = [], np.zeros(cells.chart.size, dtype=bool)
     step = max(1, BLOCK // parts**2)
     for start in range(0, cells.chart.size, step):
@@ -156,7 +156,7 @@ def mapped(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | N
 
 
 def inside(grid: Grid, cells: Cells, met: Rectangles, lost: Mask) -> Mask:
-    """For each block: True if the union of the blocks covers its image. Cells are counted; no edges are built."""
+    """True for each block whose image the union of the blocks covers; cells are counted, and no edges are built."""
     member = grid.to_array(cells, np.ones(cells.chart.size, dtype=bool))
     doubled = np.concatenate([member, member], axis=1).cumsum(1, dtype=np.int64).cumsum(2, dtype=np.int64)
     total = np.pad(doubled, ((0, 0), (1, 0), (1, 0)))
@@ -172,9 +172,9 @@ def inside(grid: Grid, cells: Cells, met: Rectangles, lost: Mask) -> Mask:
 class Transitions:
     """A transition graph: one vertex for each block of `cells`, and a last vertex for the outside.
 
-    A block that was refined is no `leaf` any more; it has edges to its four parts, since other blocks have edges to it.
-    A leaf without a proved image, or whose image leaves the charts, has an edge to the outside, which has an edge to
-    every block: an orbit may do anything there.
+    A block that was refined is no longer a `leaf`; it has edges to its four parts, as other blocks may still have edges
+    to it. A leaf without a proved image, or whose image leaves the charts, has an edge to the outside, which in turn
+    has an edge to every block, as an orbit may do anything outside.
     """
 
     grid: Grid
@@ -206,8 +206,8 @@ class Transitions:
     def complete(self, members: Mask) -> bool:
         """True if all edges on closed walks through the `members` join two leaves.
 
-        A walk through a refined block would be missed by code that reads the edges between leaves only. Where the
-        images of the parts lie in the image of the block, which enclosures do not guarantee, the answer is always True.
+        A walk through a refined block would be missed by code that reads the edges between leaves only. If the
+        enclosures of the parts lie in that of the block, which is not guaranteed, the answer is always True.
         """
         cut = np.append(~self.leaf, False) & self.recurrent
         return not np.any(np.isin(self.components[cut], self.components[members & np.append(self.leaf, False)]))
@@ -223,12 +223,12 @@ class Transitions:
         return walked(sparse(source, target, size)), walked(sparse(target, source, size))
 
     def connected(self, start: Mask) -> Mask:
-        """The leaves on walks from `start` back to it; if it is the only one, orbits that leave it never return."""
+        """Leaves on walks from `start` back to `start`; if no others, then orbits that leave `start` never return."""
         found: Mask = self.reached(start) & self.reached(start, backward=True) & np.append(self.leaf, True)
         return found
 
     def reached(self, start: Mask, backward: bool = False) -> Mask:
-        """The vertices to which walks lead from `start`, itself included; if `backward`, from which they lead to it."""
+        """The vertices to which walks lead from `start`, itself included; from which they lead to it, if `backward`."""
         graph = self.condensed[1 if backward else 0]
         size = graph.shape[0]
         first = np.unique(self.components[start])
@@ -245,7 +245,7 @@ OUTSIDE = -1
 
 
 def transitions(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> Transitions:
-    """The transition graph of blocks that cover all or a part of phase space; the rest counts as outside."""
+    """The transition graph of blocks that cover phase space or a part of it; the uncovered part counts as outside."""
     everywhere = np.arange(cells.chart.size)
     return joined(grid, cells, everywhere >= 0, arrows(map, grid, cells, everywhere, everywhere, parts, told))
 
@@ -259,7 +259,7 @@ def arrows(
     parts: int,
     told: Callable[[float], None] | None,
 ) -> Arrows:
-    """The edges from the blocks `new`, cut into `parts` by `parts`, to the blocks `leaves`: indices in `cells`."""
+    """Edges from the blocks `new` (cut into `parts` by `parts`) to the blocks `leaves`, as indices in `cells`."""
     some = Cells(*(field[new] for field in cells))
     if not new.size:
         return np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32)
@@ -290,9 +290,9 @@ def arrows(
 
 
 def lookup(grid: Grid, blocks: Cells, names: Indices) -> Callable[[Indices], NDArray[np.int32]]:
-    """A function from cell numbers to the `names` of the blocks that hold them, `OUTSIDE` where no block does.
+    """A function from cell numbers to the `names` of the blocks that hold them, or to `OUTSIDE` if no block does.
 
-    It reads an array of all cells or, where these are too many, the sorted numbers of the blocks of each size.
+    The function reads an array of all cells or, if these are too many, the sorted numbers of the blocks of each size.
     """
     if grid.columns * grid.rows * len(grid.charts) <= CELLS:
         picture = grid.to_array(blocks, names, OUTSIDE).ravel()
@@ -317,7 +317,7 @@ def lookup(grid: Grid, blocks: Cells, names: Indices) -> Callable[[Indices], NDA
 
 
 def joined(grid: Grid, cells: Cells, leaf: Mask, edges: Arrows) -> Transitions:
-    """The transition graph with these edges, and the edges of the outside added."""
+    """The transition graph with the given edges, to which the edges of the outside are added."""
     count = leaf.size
     source = np.concatenate([edges[0], np.full(count + 1, count, dtype=np.int32)])
     target = np.concatenate([edges[1], np.arange(count + 1, dtype=np.int32)])
@@ -333,7 +333,7 @@ def sparse(source: NDArray[np.int32], target: NDArray[np.int32], size: int) -> c
 
 
 def walked(graph: csr_matrix) -> csr_matrix:
-    """A graph for SciPy's search, each edge once: with repeated edges `connected_components` may not end.
+    """The graph with each edge once, for SciPy's search: with repeated edges `connected_components` may not end.
 
     >>> walked(sparse(np.array([0, 0, 1]), np.array([1, 1, 0]), 2)).nnz
     2
@@ -343,7 +343,7 @@ def walked(graph: csr_matrix) -> csr_matrix:
 
 
 def ranges(first: Indices, last: Indices) -> Indices:
-    """The integers from `first` to below `last` of each pair, concatenated.
+    """The integers from `first` up to `last - 1` for each pair of entries, concatenated.
 
     >>> ranges(np.array([3, 10]), np.array([5, 13]))
     array([ 3,  4, 10, 11, 12])
@@ -378,11 +378,11 @@ class MorseGraph:
 
     @property
     def attracting(self) -> tuple[int, ...]:
-        """The sets from which no walk leads to another set."""
+        """The indices of the sets from which no walk leads to another set."""
         return tuple(i for i in range(len(self.sets)) if not np.any(np.delete(self.below[i], i)))
 
     def trapping(self, index: int) -> Mask:
-        """The leaves that walks from a Morse set reach: a trapping region, unless the outside is among them."""
+        """The leaves that walks from a Morse set reach, a trapping region unless the outside is among them."""
         return self.transitions.reached(self._set(index))
 
     def basin(self, block: Mask) -> Mask:
@@ -400,7 +400,7 @@ MOST = 400  # the most Morse sets whose order is computed
 
 
 def morse_graph(transitions: Transitions) -> MorseGraph:
-    """The Morse graph of a transition graph; the outside counts as a Morse set where a walk reaches it."""
+    """The Morse graph of a transition graph; the outside counts as a Morse set if a walk reaches it."""
     labels, recurrent = transitions.components, transitions.recurrent.copy()
     recurrent[-1] = np.any(transitions.edges.indices[: transitions.edges.indptr[-2]] == transitions.count)
     vertices = np.flatnonzero(recurrent)
@@ -427,9 +427,9 @@ def refined(
 ) -> Transitions:
     """The transition graph that starts with blocks of `coarsest` cells and halves them where orbits may return.
 
-    Blocks are mapped in `parts` by `parts` pieces. Boxes in the mask `absorbed` have no edges: orbits that enter them
-    are not followed. A walk from one of the `joint` boxes to another counts as returning. `ValueError` unless
-    `coarsest` is a power of 2.
+    Blocks are cut into `parts` by `parts` pieces before they are mapped. Boxes for which `absorbed` is True have no
+    edges, as orbits that enter them are not followed. A walk from one of the `joint` boxes to another counts as
+    returning. `ValueError` unless `coarsest` is a power of 2.
     """
     if coarsest & (coarsest - 1):
         raise ValueError(f"grid: blocks of {coarsest} cells cannot be halved down to one; use a power of 2")

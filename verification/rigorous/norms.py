@@ -1,4 +1,4 @@
-"""Contraction in a norm: derivatives in a frame, and weights for which they shrink vectors."""
+"""Contraction in a norm: derivatives in other coordinates, and weights for which derivatives shrink vectors."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,8 @@ SLACK = 1e-9  # relative; more than the rounding of a dozen operations
 
 
 def shrinkage(size: Array, target: NDArray[np.int64]) -> float:
-    """An upper bound `q` for which `size*v <= q*v'`, with a vector `v > 0` for each set and `v'` that of its target.
+    """An upper bound `q` for which `size*v <= q*v'`, where each set has a vector `v > 0`, and `v'` is the vector of the
+    set's target.
 
     `size` has shape `(2, 2, sets)` and bounds the derivative's entries in modulus over each set; set `i` is mapped to
     set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`.
@@ -38,7 +39,7 @@ def times(first: Matrix, second: Matrix) -> Matrix:
 
 
 def in_frame(frame: tuple[tuple[float, float], tuple[float, float]], matrix: Matrix) -> Matrix:
-    """The product of the inverse of a 2 by 2 `frame`, given by its rows, and a matrix."""
+    """The product of the inverse of `frame`, a 2 by 2 matrix given by its rows, and a matrix."""
     (a, b), (c, d) = ([BallArray(x) for x in row] for row in frame)
     det = a * d - b * c
     return times([[d / det, -b / det], [-c / det, a / det]], matrix)

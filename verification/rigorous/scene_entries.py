@@ -1,6 +1,7 @@
 """The scene of a certificate: table and law as JSON entries, read and written, and as a title in words.
 
-It differs from a scene file: it has no starts and no name, and the free parameter has a range in place of a number.
+Such entries differ from a scene file: they have no starts and no name, and the free parameter has a range in place of a
+number.
 """
 
 import re
@@ -41,7 +42,7 @@ PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,59}")
 
 
 def scene_said(table: Table, law: Law, lam: Expr | None = None) -> dict[str, Any]:
-    """The JSON entries of a table, a law, and of `lam` unless it is free. A fitted table is written as its fit.
+    """The JSON entries of a table, of a law, and of `lam` unless it is free. A fitted table is written as its formula.
 
     >>> from symbolic.tables.law import PAPERS_LAW
     >>> scene_said(tables.egg(3).at(alpha="2/25"), PAPERS_LAW, S(1) / 3)
@@ -90,9 +91,9 @@ def title_of(scene: Mapping[str, Any]) -> str:
 
 
 def scene_of(scene: Mapping[str, Any], free: str, box: arb) -> tuple[Table, Law]:
-    """Table and law of JSON entries; `free` names the parameter that may have a range, which must hold `box`.
+    """Table and law from JSON entries; `free` names the parameter that may have a range, which must hold `box`.
 
-    A user's boundary is proved valid over the whole range; `ValueError` where it is not proved.
+    A user's boundary is proved valid over the whole range; `ValueError` if this fails.
     """
     known_entries("certificate: scene", scene, tuple(key for key in KEYS if key != "name"))
     law = Law(text_entry("law", scene.get("law", UNIFORM)))

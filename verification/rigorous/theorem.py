@@ -1,7 +1,8 @@
-"""A theorem as a frozen dataclass: its fields are the data, its docstring the statement, some methods hypotheses.
+"""A theorem as a frozen dataclass: its fields are the data, its docstring is the statement, and some methods are
+hypotheses.
 
-A method marked by `hypothesis` proves one hypothesis, which its docstring states. The checklist, whether the theorem is
-proved, and the list of open hypotheses follow from these.
+A method marked by `hypothesis` proves one hypothesis, which its docstring states. From the verdicts follow the
+checklist, whether the theorem is proved, and the list of open hypotheses.
 
 >>> from dataclasses import dataclass, replace
 >>> @dataclass(frozen=True)
@@ -28,7 +29,7 @@ Verdict = bool | None
 
 
 class Hypothesis(cached_property[Verdict]):
-    """The verdict of a method, computed once: True when proved, None when not proved, False when refuted."""
+    """The verdict of a method, computed once: True if proved, None if not proved, False if refuted."""
 
     def __init__(self, method: Callable[[Any], object], name: str, refutable: bool) -> None:
         def verdict(theorem: Any) -> Verdict:
@@ -50,7 +51,7 @@ def hypothesis(method: Callable[[Any], object], /) -> Hypothesis:
 
 @overload
 def hypothesis(*, name: str = "", refutable: bool = False) -> Callable[[Callable[[Any], object]], Hypothesis]:
-    """A decorator that makes a hypothesis with these settings."""
+    """A decorator that makes a hypothesis with this name and this refutability."""
 
 
 def hypothesis(
@@ -59,14 +60,14 @@ def hypothesis(
     """A hypothesis of a theorem, from the method that proves it.
 
     A result that is not true, or an `ArithmeticError`, means *not proved*: an enclosure that is too wide refutes
-    nothing. Only a `refutable` hypothesis is refuted by `False`. `name` is its name in `checks`, where a field has that
-    name already.
+    nothing. Only a `refutable` hypothesis is refuted by `False`. `name` replaces the method's name in `checks`, for
+    instance if a field has that name already.
     """
     return Hypothesis(method, name, refutable) if method else lambda given: Hypothesis(given, name, refutable)
 
 
 class Theorem:
-    """A statement about its data, proved when all its hypotheses are; the base class of frozen dataclasses."""
+    """A statement about data, proved if all its hypotheses are; theorems are frozen dataclasses derived from it."""
 
     @classmethod
     def hypotheses(cls) -> dict[str, Hypothesis]:
@@ -81,7 +82,7 @@ class Theorem:
 
     @property
     def checks(self) -> dict[str, Verdict]:
-        """The verdict on each hypothesis: True where it is proved, None where it is not, False where it is refuted."""
+        """The verdict on each hypothesis: True if proved, None if not proved, False if refuted."""
         return {name: each.__get__(self) for name, each in self.hypotheses().items()}
 
     @property
@@ -91,5 +92,5 @@ class Theorem:
 
     @property
     def proved(self) -> bool:
-        """True when there is at least one hypothesis and all are proved."""
+        """True if there is at least one hypothesis and all hypotheses are proved."""
         return bool(self.checks) and not self.open

@@ -140,9 +140,10 @@ HAIR = 1e-9  # far above rounding errors, far below the margins of the polygons
 
 
 def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Polygon | None:
-    """A polygon around `start` whose image lies within it, at least `room` from its sides; None beyond `limit`.
+    """A polygon around `start` whose image lies within it, at least `room` from its sides; None if it grows beyond
+    `limit`.
 
-    It is the hull, in floats, of all images of `start` when each step may err by `room` and by the balls of the map.
+    The polygon is the hull, in floats, of all images of `start`, where each step may err by `room`.
     """
     around = [(room * math.cos(k * math.pi / 4), room * math.sin(k * math.pi / 4)) for k in range(8)]
     polygon = hull([(start[0] + a, start[1] + b) for a, b in around])
@@ -158,7 +159,7 @@ def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Pol
 
 
 def exactly_convex(polygon: Polygon) -> Polygon:
-    """The convex hull of the corners in exact arithmetic, which drops corners that only rounding made convex."""
+    """The convex hull of the corners in exact arithmetic; corners that are convex only by rounding are dropped."""
     exact = hull([(Fraction(u), Fraction(v)) for u, v in polygon])  # type: ignore[misc]  # hull works for fractions too
     return [(float(u), float(v)) for u, v in exact]
 
@@ -174,7 +175,7 @@ def _vertices(piece: AffinePiece, point: Point) -> list[Point]:
 
 
 def trapped(pieces: Pieces, polygon: Polygon) -> bool | None:
-    """True when the image of the polygon is proved to lie in its interior; None when that is not proved.
+    """True when the image of the polygon is proved to lie in its interior; None if it is not proved.
 
     On each side of the border the map is affine, so the image is the hull of the images of the corners.
     """
@@ -194,7 +195,7 @@ def holds(polygon: Polygon, point: Row) -> bool:
 
 @dataclass(frozen=True)
 class ConeExpansion:
-    """A cone of vectors `(u, v)`, given by `u/v`, that both pieces map into itself; bounds of the growth of `|v|`."""
+    """A cone of vectors `(u, v)`, by the `ratio` `u/v`, that both pieces map into itself; bounds of growth of `|v|`."""
 
     ratio: arb
     least: arb
@@ -225,7 +226,7 @@ def turned(piece: AffinePiece, ratio: arb) -> arb:
 
 
 class FixedPointChange(Enum):
-    """The kinds of border collision, by the fixed points of the two pieces for parameters before and after it."""
+    """The kinds of border collision, by the fixed points of the two pieces before and after the bifurcation."""
 
     FOLD = "two fixed points, one on each side of the border, on one side of the parameter and none on the other"
     PERSISTENCE = "one fixed point, which crosses the border"
@@ -245,7 +246,7 @@ def fixed_point(piece: AffinePiece) -> Row:
 
 
 def kind(pieces: Pieces) -> FixedPointChange:
-    """The kind of the border collision: which pieces have their fixed point on their own side for `e > 0`."""
+    """The kind of the border collision, by which pieces have their fixed point on their own side for `e > 0`."""
     own = [inward(fixed_point(piece)[1], component) for component, piece in pieces.items()]
     if all(x > 0 for x in own) or all(x < 0 for x in own):
         return FixedPointChange.FOLD
@@ -273,7 +274,7 @@ def robust(pieces: Pieces) -> bool | None:
 
 
 def homoclinic(left: AffinePiece, right: AffinePiece) -> arb:
-    """`phi` of the module's theorem; it is 0 where the left fixed point has a homoclinic tangency.
+    """The quantity `phi` of the module's theorem; it is 0 if the left fixed point has a homoclinic tangency.
 
     >>> shift = arb(0), arb(1)
     >>> left, right = (AffinePiece(((arb(0), arb(-d)), (arb(1), arb(t))), shift) for t, d in ((2.5, 1), (-2, 0.5)))
@@ -286,7 +287,7 @@ def homoclinic(left: AffinePiece, right: AffinePiece) -> arb:
 
 
 def less(a: arb, b: arb) -> bool | None:
-    """`a < b` for balls: True or False when it is proved, else None."""
+    """The verdict on `a < b` for balls: True or False if proved, else None."""
     return True if a < b else False if a >= b else None
 
 
@@ -300,8 +301,8 @@ class AttractorBounds:
     """Bounds in units of `e`: the attractor reaches `inner`, and lies within the polygon `outer`.
 
     `inner` are a low and a high `v` of points on the unstable manifold of the folding piece's fixed point; every
-    attracting set that holds this fixed point contains them. `strips` are length and width of two thin convex sets that
-    hold the attractor: the images of the two sides of the border.
+    attracting set that holds this fixed point contains them. `strips` are the lengths and widths of two thin convex
+    sets whose union holds the attractor: the images of the two sides of the border.
     """
 
     inner: tuple[arb, arb]
@@ -313,7 +314,7 @@ Segment = tuple[Row, Row]
 
 
 def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 10) -> AttractorBounds | None:
-    """Bounds of the attractor, None when not proved; `folding` is the piece with a multiplier below -1."""
+    """Bounds of the attractor; None if not proved. `folding` is the piece with a multiplier below -1."""
     fixed, border = fixed_point(pieces[folding]), _to_border(pieces[folding])
     if border is None or not inward(fixed[1], folding) > 0:
         return None
@@ -329,15 +330,15 @@ def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 1
 
 
 def strips(pieces: Pieces, region: Polygon) -> tuple[tuple[float, float], ...]:
-    """Length and width of the images of the two sides of a trapping region, in whose union its attractor lies."""
+    """Length and width of the images of the two sides of a trapping region; the union holds the region's attractor."""
     return tuple(_strip(_image(piece, part(region, component))) for component, piece in pieces.items())
 
 
 def _to_border(piece: AffinePiece) -> Row | None:
-    """Where the unstable direction of a fixed point meets `v = 0`; None unless its multiplier is below -1.
+    """The point where the unstable line of a piece's fixed point meets `v = 0`; None unless its multiplier is below -1.
 
-    The preimages of that segment lie on it, alternately on either side of the fixed point and ever closer, so the whole
-    segment belongs to the unstable manifold.
+    The preimages of the segment from the fixed point to that point lie on the same line, on alternate sides and ever
+    closer to the fixed point, so the segment belongs to the unstable manifold.
     """
     (a, b), _ = piece.rows
     u, v = fixed_point(piece)
@@ -360,23 +361,24 @@ def _middle(x: Row) -> Point:
 
 
 def _image(piece: AffinePiece, points: Polygon) -> Polygon:
-    """Points whose hull holds the image of the hull of `points`, with `HAIR` added for rounding."""
+    """Points whose hull holds the image of the hull of `points`; they are moved by `HAIR` to allow for rounding."""
     images = [piece.of((arb(u) + arb(0, HAIR), arb(v) + arb(0, HAIR))) for u, v in points]
     return [(float(a), float(b)) for u, v in images for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
 
 
 def _strip(points: Polygon) -> tuple[float, float]:
-    """Length along the longest diagonal of a set, and width across it, rounded up."""
+    """The length of a set along its longest diagonal, and its width across the diagonal, rounded up."""
     length, p, q = max((math.dist(p, q), p, q) for p in points for q in points)
     across = [((q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])) / length for x in points]
     return length + 1e-9, max(across) - min(across) + 1e-9
 
 
 def exponents(pieces: Pieces, region: Polygon, bounces: int = 2, length: int = 12) -> tuple[float, float] | None:
-    """Lower and upper bound of the largest exponent per bounce of every orbit in a trapping region; or None.
+    """Lower and upper bound of the largest exponent per bounce, for every orbit in a trapping region; None if not
+    proved.
 
     They come from the least and the greatest product of stretches along itineraries of `length` steps that some point
-    of the region may follow. A step of the map takes `bounces` bounces.
+    of the region may follow. A step of the map consists of `bounces` bounces.
     """
     whole = expansion(pieces)
     if whole is None:

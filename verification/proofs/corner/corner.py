@@ -5,9 +5,9 @@ collision rules hold there, but a derivative along an orbit that passes the lowe
 side. Both boundary parameters run counterclockwise, with the speed of arc length at the corners. Paper: section 5.2.
 
 Bounces that depend on a few parameters are enclosed in mean value form: the value at the centre of a box of parameters,
-and the derivatives over the box. So each bounce keeps its dependence on the parameters, which plain balls would lose
-and grow. Positions near a corner are given as the distance `beyond` it: positive arc length on the wall, and negative
-on the arc, where the parameter differs from arc length in second order.
+and the derivatives over the box. So each bounce keeps its dependence on the parameters, which plain balls would lose,
+at the price of wider enclosures. Positions near a corner are given as the distance `beyond` it: positive arc length on
+the wall, and negative on the arc, where the parameter agrees with arc length to first order.
 """
 
 from collections.abc import Callable
@@ -39,8 +39,8 @@ class Corner:
 
     `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc; `motion` is `d
     s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are the linear parts of the half return,
-    mirrored to the upper corner, with `d/d lam` as shift. `descent` is the derivative in `lam` of `s_4` at the kink:
-    when it is negative, the minimum of `s_4` falls below `s*` as `lam` grows.
+    mirrored to the upper corner; their shift is the derivative by `lam`. `descent` is the derivative in `lam` of `s_4`
+    at the kink: when it is negative, the minimum of `s_4` falls below `s*` as `lam` grows.
     """
 
     slope_wall: arb
@@ -52,11 +52,12 @@ class Corner:
 
     @property
     def unstable(self) -> bool | None:
-        """True when a side has a multiplier above 1, the other in (0, 1), and an eigenvector off the border; or None.
+        """True if one side has a multiplier above 1, a second one in (0, 1), and an eigenvector off the border; else
+        None.
 
-        Then the half return maps a cone around that eigenvector, on that side, into itself and stretches it, near its
-        fixed point too: orbits leave. A multiplier below -1 would not prove this, as its eigenvector changes sides, and
-        vectors that are stretched on one side may shrink on the other.
+        Then the half return maps a cone around the eigenvector, on its side, into itself and stretches it, also near
+        its fixed point, so orbits leave. A multiplier below -1 would not prove this, as its eigenvector changes sides,
+        and vectors that are stretched on one side may shrink on the other.
         """
         sides = (self.wall, self.arc)
         leaves = any(p.determinant > 0 and p.trace > 1 + p.determinant and not p.rows[1][0].contains(0) for p in sides)
@@ -69,7 +70,7 @@ class Corner:
 
     @property
     def minimum_at_kink(self) -> bool | None:
-        """True when `s_4` falls up to `phi-star` and grows beyond, False when it does not, None when open."""
+        """True when `s_4` falls up to `phi-star` and grows beyond, False when that is refuted, None when undecided."""
         left, right = (self.slope_wall, self.slope_arc) if self.motion > 0 else (self.slope_arc, self.slope_wall)
         if not (self.motion > 0 or self.motion < 0):
             return None
@@ -88,7 +89,7 @@ class LinearRule:
     eta: Any
 
     def next(self, before: Any, here: Any, lam: Any) -> Any:
-        """The derivative of the next parameter, from those of the two parameters before it and of `lam`."""
+        """The derivative of the next boundary parameter, from those of the two parameters before it and of `lam`."""
         return -(self.lower * before + self.diagonal * here + self.eta * lam) / self.upper
 
 
@@ -129,7 +130,7 @@ def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
 
 
 def _half(first: LinearRule, second: LinearRule) -> AffinePiece:
-    """The linear part of half a return, as a map of two successive displacements; the mirror changes their sign."""
+    """Linear part of half a return, as a map of two successive displacements; the mirror image changes their sign."""
     columns = []
     for before, here, lam in ((-1, 0, 0), (0, -1, 0), (0, 0, 1)):
         third = first.next(before, here, lam)
@@ -206,16 +207,17 @@ def corner_parameters() -> tuple[arb, arb]:
 
 
 def angle(here: BoundaryPoint, there: BoundaryPoint) -> tuple[arb, arb, arb]:
-    """The angle of the chord from `here` to `there` with the normal, and its derivatives by the two ends."""
+    """The angle of the chord from `here` to `there` with the normal at `here`, and its derivatives by the two ends."""
     return _angles()[here.component, there.component](here.at.whole, there.at.whole)
 
 
 def following(
     previous: BoundaryPoint, here: BoundaryPoint, component: int, near: float, lam: Quantity, spread: Spread
 ) -> BoundaryPoint:
-    """The bounce after `here` on a component, from a guess `near`; `ArithmeticError` when it is not enclosed.
+    """The bounce after `here` on a component, from a guess `near`; `ArithmeticError` if none is enclosed.
 
-    It solves the collision rule at `here`, on the component continued beyond its ends; `spread` is the parameters' box.
+    The bounce solves the collision rule at `here`, on the component continued beyond its ends; `spread` is the
+    parameters' box.
 
     >>> with working(BITS):
     ...     (right, left), lam = (BoundaryPoint(c, constant(arb(0), ())) for c in (ARC, WALL)), constant(arb(0), ())
@@ -243,7 +245,7 @@ def following(
 
 
 def on_arc(previous: BoundaryPoint, here: BoundaryPoint, near: float, lam: Quantity, spread: Spread) -> BoundaryPoint:
-    """`following` on the arc, from a guess `near`; `ArithmeticError` unless it is proved to lie between the corners."""
+    """The bounce after `here` on the arc; `ArithmeticError` unless it is proved to lie between the corners."""
     found = following(previous, here, ARC, near, lam, spread)
     if not abs(found.at.whole) < corner_parameters()[ARC]:
         raise ArithmeticError("a landing on the arc is not enclosed")
@@ -251,7 +253,7 @@ def on_arc(previous: BoundaryPoint, here: BoundaryPoint, near: float, lam: Quant
 
 
 def beyond(bounce: BoundaryPoint, upper: bool) -> Quantity:
-    """The distance of a bounce beyond the upper corner, or of its mirror image if `upper` is False."""
+    """The distance of a bounce beyond the upper corner; of its mirror image if `upper` is False."""
     sign, at = 1 if upper else -1, bounce.at
     edge = corner_parameters()[bounce.component]
     return Quantity(sign * at.centre - edge, tuple(sign * s for s in at.slopes), sign * at.whole - edge)
@@ -260,7 +262,7 @@ def beyond(bounce: BoundaryPoint, upper: bool) -> Quantity:
 def after_corner(
     previous: BoundaryPoint, here: BoundaryPoint, upper: bool, lam: Quantity, spread: Spread
 ) -> list[BoundaryPoint]:
-    """The bounces after `here` near a corner: one bounce, or one on each component where that is undecided.
+    """The bounces after `here` near a corner: one bounce, or one on each component if the component is undecided.
 
     The table is convex, so a zero of the collision rule that is proved to lie on the boundary is the landing. When the
     ball of the zero on the arc holds the corner, the angle is monotone there, and it is monotone along the whole line
@@ -290,7 +292,7 @@ def after_corner(
 
 
 def _polished(here: BoundaryPoint, component: int, value: float, near: float) -> float:
-    """Newton's method in float64 for the place on a component where the chord angle has this value."""
+    """The position on a component at which the chord angle has this value, by Newton's method in float64."""
     angle, start = _guesses()[here.component, component], float(here.at.centre.mid())
 
     def correction(x: Vector) -> list[float]:
@@ -301,7 +303,7 @@ def _polished(here: BoundaryPoint, component: int, value: float, near: float) ->
 
 
 def _root(plain: Angle, angle: Angle, here: arb, value: arb, near: float, radius: float) -> arb:
-    """The place where the chord angle from `here` is `value` (`plain`: no derivatives), by an interval Newton step."""
+    """The position where the chord angle from `here` is `value`, by an interval Newton step from `near`."""
     gap = plain(here, arb(near))[0] - value
     for _ in range(10):
         box = arb(near, radius)

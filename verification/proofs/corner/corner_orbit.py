@@ -10,11 +10,11 @@ theorem
     H     in  DG(hull) * (1, m)            H_m  =  G_v
     H_lam in  Db(hull) * (1, m)            H_e/e  in  (1/3) * D3G(hull)[(1, m), (1, m), (1, m)]
 
-with the hull of 0 and `(e, e*m)`; the last because second derivatives of odd functions are odd. So one interval Newton
-step proves an orbit for every `e` of `[0, MOST]`, of least period 4 where `w` and `-w` differ. When the ball of `d
-lam/d(e^2)` excludes 0, its sign says on which side of `lambda_c` the orbit exists. Then no multiplier is 1 along the
-branch, because `det [G_w, G_v] = -(d lam/de)*e*det [H_lam, H_m]`: an orbit that is a saddle at one end is one
-everywhere. Paper: section 5.1.
+with the hull of 0 and `(e, e*m)`; the last because the second derivatives of odd functions are odd. So one interval
+Newton step proves an orbit for every `e` in `[0, MOST]`; its least period is 4, since `w` and `-w` differ for `e > 0`.
+When the ball of `d lam/d(e^2)` excludes 0, its sign says on which side of `lambda_c` the orbit exists. Then no
+multiplier is 1 along the branch, because `det [G_w, G_v] = -(d lam/de)*e*det [H_lam, H_m]`: if the orbit is a saddle at
+one end, it is a saddle everywhere. Paper: section 5.1.
 """
 
 from collections.abc import Mapping
@@ -68,7 +68,7 @@ class CornerOrbit(SolutionInBox):
 
     @property
     def value(self) -> arb:
-        """The contraction, or the exit angle at the upper corner, as a ball."""
+        """The value that the theorem states, the contraction or the exit angle at the upper corner, as a ball."""
         theta1, lam = self.enclosure.zero
         with working(self.bits):
             value: arb = lam if self.free == "lam" else corner_angle(balls(self.bits), theta1)
@@ -141,7 +141,7 @@ class CornerOrbit(SolutionInBox):
 
     @property
     def name(self) -> str:
-        """`lambda-star` or `phi-star` near the paper's values, else a description."""
+        """The name `lambda-star` or `phi-star` if the box is near the paper's values, else a description."""
         near = all(abs(x - mid) < 0.001 for x, mid in zip(self.centre, NEAR, strict=True))
         return {"lam": "lambda-star", "phi": "phi-star"}[self.free] if near else "an orbit through both corners"
 
@@ -196,7 +196,7 @@ class EqualMultipliers(SolutionInBox):
 
     @property
     def name(self) -> str:
-        """`alpha-hat` where the box holds its value in closed form, else a description."""
+        """The name `alpha-hat` if the box holds the closed form of `alpha-hat`, else a description."""
         return "alpha-hat" if self.in_box(alpha_hat().subs(letter, self.lam)) else "equal multipliers"
 
     @property
@@ -233,7 +233,7 @@ class DoubledBranch:
     """The branch of one orbit for every `e` of `(0, MOST]`: bounces at `w = e` on the wall, `v = e*m` on the arc.
 
     `m`, `lam` and `bend`, the derivative `d lam/d(e^2)`, are balls over the whole branch; `end` is `lam` at `e = MOST`.
-    `unstable` is True when every orbit has one multiplier above 1 and one below.
+    `unstable` is True if every orbit is proved to have one multiplier above 1 and one below.
     """
 
     m: arb

@@ -1,9 +1,10 @@
 """The attractor born at `lambda-star`: theorems for the piecewise linear limit, and float64 orbits of the map itself.
 
-The half return leaves a corner, meets the arc, lands near the other corner, and takes the mirror image. It is
-continuous and piecewise smooth, since the curvature of the boundary jumps at the corners. Its enclosed linear parts at
-`lambda-star` make a piecewise linear map, the normal form of a border collision. For this map the kind, bounds of the
-attractor in units of `lam - lambda-star`, and bounds of the exponent are proved. Paper: section 5.2.
+The half return leaves a corner, meets the arc, lands near the other corner, and is followed by the mirror reflection.
+It is continuous and piecewise smooth, since the curvature of the boundary jumps at the corners. Its enclosed linear
+parts at `lambda-star` make a piecewise linear map, the normal form of a border collision. For this map the kind of the
+border collision, bounds of the attractor in units of `lam - lambda-star`, and bounds of the exponent are proved. Paper:
+section 5.2.
 """
 
 import math
@@ -54,7 +55,7 @@ Array = NDArray[np.float64]
 class Border:
     """Theorems on the piecewise linear map; lengths and angles are in units of `lam - lambda-star`.
 
-    `angles` bounds the exit angle at the corner, less `phi-star`; `exponent` bounds the largest exponent per bounce of
+    `angles` bounds the exit angle at the corner minus `phi-star`; `exponent` bounds the largest exponent per bounce of
     every orbit; a few exceptional orbits attain these bounds.
     """
 
@@ -97,7 +98,8 @@ def _angles(region: Polygon) -> tuple[float, float]:
 
 
 def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | None:
-    """Length and width of two convex sets, proved to hold the attractor of the map itself; None when not proved.
+    """Length and width of two convex sets whose union is proved to hold the attractor of the map itself; None if not
+    proved.
 
     Both are in units of `lam - lambda-star` and hold for all `lam` up to `lambda-star + last`, the first set for
     bounces on the arc.
@@ -120,9 +122,9 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
     """The two orbits of period 4 born at `lambda-star`, proved for all `lam` up to `lambda-star + last`.
 
     They are returned as fixed points `(u, v)` of the half return, one on the arc and one on the wall, in units of `lam
-    - lambda-star`. For every matrix `A` that the half return takes in the region, `base + (1 - A)^-1 (H(base)/e -
-    base)` lies in a ball inside the region; so there is exactly one. From 0.07122 on `proofs.periodic.over_interval`
-    follows both.
+    - lambda-star`. For every matrix `A` in the enclosure of the half return's derivative on the region, `base + (1 -
+    A)^-1 (H(base)/e - base)` lies in a ball inside the region; so there is exactly one fixed point. From `lam =
+    0.07122` on both orbits are followed by `proofs.periodic.over_interval`.
 
     >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
     {0: '-0.532', 1: '10.1'}
@@ -142,7 +144,8 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
 class ScaledAttractor:
     """An attractor in units of `lam - lambda-star`: ranges of arc length beyond the corner, and of `phi - phi-star`.
 
-    `widths` are those of the strips of bounces after the arc and after the wall; `exponent` is the largest per bounce.
+    `widths` are the widths of the two strips of bounces that come from the arc and from the wall; `exponent` is the
+    largest exponent per bounce.
     """
 
     lam: float
@@ -184,7 +187,8 @@ def _exit_angle(theta1: float) -> float:
 
 
 def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, float], rate: float) -> ScaledAttractor:
-    """The attractor from bounces near the corners, mirrored to the upper one; the bounce before each gives `u`.
+    """The attractor from the bounces of an orbit near the corners, mirrored to the upper corner; the bounce before
+    gives `u`.
 
     The last entry of `near` is the distance along the boundary from the middle of the wall.
     """

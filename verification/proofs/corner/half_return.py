@@ -111,14 +111,14 @@ def _boxes(region: Polygon, component: int, e: arb) -> list[tuple[arb, arb, arb]
 
 
 def _shift(base: float, times: list[arb]) -> Row:
-    """`H(e*base, 0, e)/e` for all `e` up to the end of the last of the balls `times`, which cover the range from 0."""
+    """Enclosure of `H(e*base, 0, e)/e` for `e` in the last of the balls `times`, which cover the range from 0."""
     images = [image for e in times for image in followed(ARC, base * e, arb(0), e)]
     first, second = (joined([base * image[k].slopes[0] + image[k].slopes[2] for image in images]) for k in (0, 1))
     return first, second
 
 
 def followed(component: int, u: arb, v: arb, e: arb, depth: int = 0) -> list[Image]:
-    """The half return of a box of unscaled `(u, v, e)`, in halves where it is not enclosed as a whole."""
+    """The half return of a box of unscaled `(u, v, e)`; the box is halved as long as its image is not enclosed."""
     try:
         return _images(component, u, v, e)
     except ArithmeticError:
@@ -157,8 +157,8 @@ TRIES = 4
 class ProvedRange:
     """One step of the proof: the trapping region and the cone for `e[0] < lam - lambda-star <= e[1]`.
 
-    `cycle` holds all fixed points `(u, v)` of the half return in the region with `v <= 0`. There is one when `cycle`
-    lies in the interior of the region with `v < 0` (Brouwer).
+    `cycle` holds all fixed points `(u, v)` of the half return in the region with `v <= 0`. There is a fixed point if
+    `cycle` lies in the interior of the region with `v < 0` (Brouwer).
     """
 
     e: tuple[float, float]
@@ -168,13 +168,14 @@ class ProvedRange:
 
     @property
     def saddle(self) -> bool | None:
-        """True if the half return is proved to have a fixed point on the arc (unstable by the cone); else None."""
+        """True if the half return is proved to have a fixed point on the arc (a saddle, by the cone); else None."""
         return True if holds(self.region, self.cycle) and self.cycle[1] < 0 else None
 
 
 @dataclass(frozen=True)
 class ChaosAboveLambdaStar(Theorem):
-    """For `lambda-star < lam <= last` a polygon around the corner orbit is trapping, with positive exponents in it.
+    """For `lambda-star < lam <= last` a polygon around the corner orbit is trapping, and all orbits in it have positive
+    exponents.
 
     It is proved in at most `budget` steps of `e = lam - lambda-star`.
 
@@ -194,7 +195,7 @@ class ChaosAboveLambdaStar(Theorem):
 
     @cached_property
     def steps(self) -> tuple[ProvedRange, ...]:
-        """The steps of the proof, which cover `e` from 0 up to `end` or as far as they succeed."""
+        """The steps of the proof; they cover `e` from 0 to `end`, or as far as the proof succeeds."""
         made: list[ProvedRange] = []
         with working(BITS):
             near, reached, length = limit(), 0.0, FIRST
@@ -216,7 +217,7 @@ class ChaosAboveLambdaStar(Theorem):
 
     @hypothesis
     def trapped(self) -> bool:
-        """The steps reach `last`: the polygon is mapped into its interior, a cone into itself and stretched."""
+        """Steps reach `last`; each proves that the polygon is trapping and that a cone is invariant and stretched."""
         return bool(self.steps) and self.steps[-1].e[1] >= self.end
 
     @property
@@ -230,7 +231,7 @@ class ChaosAboveLambdaStar(Theorem):
 def step(near: Pieces, e: tuple[float, float]) -> tuple[Pieces, ProvedRange] | None:
     """The affine maps for a range of `e`, and the step that they prove; None if no proof is found.
 
-    `near` are affine maps for a similar range, from which a first region is grown.
+    `near` has the affine maps for a similar range, from which a first region is grown.
     """
     region = grown(near, START, ROOM)
     for _ in range(TRIES):

@@ -1,14 +1,14 @@
 """The place of the fourth collision in the cuspless cardioid, for all exit angles and contractions in given ranges.
 
 A particle leaves the upper corner at an angle near 0. The paper's plot shows that up to `lambda-star` its fourth
-collision lies beyond the corner, on the wall (`s_4 > s*`). It is proved by bisecting the ranges into boxes of angle and
-contraction, each followed in balls until it lands strictly inside the wall.
+collision lies beyond the corner, on the wall (`s_4 > s*`). This is proved by bisecting the ranges into boxes of angle
+and contraction; each box is followed in balls until its image lies strictly inside the wall.
 
 A particle that leaves the upper corner towards `theta1` on the arc has its second bounce near the lower corner, and its
 fourth at the distance `s4` beyond the upper one (on the wall when `s4 > 0`, the paper's `s_4 > s*`). Where the second
-bounce passes the corner, `s4` has a kink. It is proved on boxes that `s4` falls with `theta1` while the second bounce
+bounce passes the corner, `s4` has a kink. A proof on boxes shows that `s4` falls with `theta1` while the second bounce
 is on the wall and grows when it is on the arc, so that the kink is the minimum, and that the minimum falls with `lam`.
-It is 0 at `lambda-star` by the corner orbit, so it has the sign of `lambda-star - lam`. Paper: section 5.2.
+The minimum is 0 at `lambda-star` by the corner orbit, so it has the sign of `lambda-star - lam`. Paper: section 5.2.
 """
 
 from collections.abc import Callable
@@ -48,7 +48,7 @@ TURN = 6.283185307179586
 
 @dataclass(frozen=True)
 class Departures:
-    """A set of phase points: an interval of a component, their exit angles, and the slap map's slope along the way."""
+    """A set of phase points: interval on a component, exit angles, and the slap map's slope along the orbit so far."""
 
     component: int
     theta: arb
@@ -70,7 +70,7 @@ def _loaded() -> tuple[Angles, Angles, Angles, dict[int, arb]]:
 
 
 class CusplessMap:
-    """The map of the cuspless cardioid on pieces, for all contractions in the ball `lam`."""
+    """The map of the cuspless cardioid on sets of phase points, for all contractions in the ball `lam`."""
 
     def __init__(self, lam: arb | int = 0) -> None:
         self.lam = lam
@@ -82,7 +82,7 @@ class CusplessMap:
         return all(mirrored(part) for part in cuspless.components)
 
     def iterated(self, pieces: list[Departures], n: int) -> list[Departures] | None:
-        """The images of pieces under `n` flights; None when one could not be enclosed."""
+        """The images of pieces under `n` flights; None if an image could not be enclosed."""
         for _ in range(n):
             following: list[Departures] = []
             for piece in pieces:
@@ -94,7 +94,8 @@ class CusplessMap:
         return pieces
 
     def landing(self, piece: Departures) -> list[Departures] | None:
-        """The image of a piece: one piece, or up to three where it may straddle the corners; None when not enclosed.
+        """The image of a piece: one piece, or up to three where it may straddle the corners; None if it cannot be
+        enclosed.
 
         The table is convex, so a root of the chord angle that is proved to lie on the boundary is the landing. The
         component is guessed in float64: the wall when the ray passes between the corners. When the root there may lie
@@ -163,7 +164,7 @@ SETTLED, HALVED = 1e-8, 1e-15  # the last correction of Newton's method (the nex
 
 
 def _falling_root(near: Angle, start: float, phi: float, low: float, high: float) -> float:
-    """The place where the chord angle, which decreases along the boundary, is `phi`: Newton steps, else bisection."""
+    """The position where the chord angle, which falls along the boundary, is `phi`, by Newton steps or bisection."""
     here = (low + high) / 2
     for _ in range(60):
         value, _, slope = near(start, here)
@@ -188,7 +189,7 @@ SMALLEST = 2.0**-40
 
 @dataclass(frozen=True)
 class Fourth:
-    """The search's result: `on_wall` is True if all boxes land inside the wall, else None; `boxes` counts them."""
+    """Result of the search: `on_wall` is True if all boxes land inside the wall, else None; `boxes` is their number."""
 
     on_wall: bool | None
     boxes: int
@@ -242,9 +243,9 @@ MARGIN = 1e-6  # relative, around the greatest exit angle
 
 @dataclass(frozen=True)
 class Course:
-    """One course of the orbit over a box: the component of the second bounce, and both distances beyond a corner.
+    """The components and positions of one possible orbit over a box: `component` is that of the second bounce.
 
-    `second` is for the second bounce and the lower corner, `fourth` for the fourth bounce and the upper corner.
+    `second` is the distance of the second bounce beyond the lower corner, `fourth` that of the fourth beyond the upper.
     """
 
     component: int
@@ -253,7 +254,7 @@ class Course:
 
 
 def courses(theta1: arb, lam: arb) -> list[Course]:
-    """The possible courses of orbits with `theta1` and `lam` in balls; derivatives are by these two."""
+    """The possible courses of orbits with `theta1` and `lam` in balls; derivatives are with respect to these two."""
     spread = theta1 - arb(theta1.mid()), lam - arb(lam.mid())
     contraction = parameter(arb(lam.mid()), 1, spread)
     start = BoundaryPoint(ARC, constant(corner_parameters()[ARC], spread))
@@ -267,7 +268,7 @@ def courses(theta1: arb, lam: arb) -> list[Course]:
 
 
 def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = silent) -> bool | None:
-    """True if for `|phi| <= most` and all contractions of the range `s4` has one kink, its minimum; else None.
+    """True if, for `|phi| <= most` and all contractions in the range, the only kink of `s4` is its minimum; else None.
 
     Once `s4` is proved monotone on both sides, it remains to show that the second bounce is on the wall at one end of
     the range and on the arc at the other; this is shown at angles just within `most`.
@@ -295,7 +296,7 @@ def minimum_at_kink(most: float, lowest: float, highest: float, tick: Tick = sil
 
 
 def _towards(phi: float) -> float:
-    """The landing `theta1` of a particle that leaves the upper corner at this exit angle, by bisection in floats."""
+    """Landing `theta1` of a particle that leaves the upper corner at the exit angle `phi`, by bisection in floats."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = (low + high) / 2
@@ -313,13 +314,13 @@ def _followed(theta1: arb, lam: arb, depth: int = 0) -> list[Course]:
 
 
 def _turns(course: Course) -> bool:
-    """True if the second bounce moves from the wall to the arc as `theta1` grows, and `s4` falls, then grows."""
+    """True if the second bounce moves from wall to arc as `theta1` grows, and `s4` falls (wall) or grows (arc)."""
     slope = course.fourth.slopes[0]
     return bool(course.second.slopes[0] < 0 and (slope < 0 if course.component == WALL else slope > 0))
 
 
 def exit_angle(theta1: arb) -> arb:
-    """The exit angle at the upper corner of a particle that flies to `theta1`; it falls as `theta1` grows."""
+    """The exit angle at the upper corner of a particle that flies to `theta1`; this angle falls as `theta1` grows."""
     return angle(BoundaryPoint(ARC, constant(corner_parameters()[ARC], ())), BoundaryPoint(ARC, constant(theta1, ())))[
         0
     ]
@@ -327,7 +328,7 @@ def exit_angle(theta1: arb) -> arb:
 
 @dataclass(frozen=True)
 class Kink:
-    """The kink over a range of contractions: its `theta1`, the `value` of `s4` at it, and the derivative in `lam`."""
+    """The kink of `s4` over a range of contractions: `theta1`, the `value` of `s4`, and its derivative by `lam`."""
 
     lam: arb
     theta1: arb
@@ -336,7 +337,7 @@ class Kink:
 
 
 def kink(lam: arb) -> Kink:
-    """The kink of `s4` for every contraction of a ball; `ArithmeticError` when it is not enclosed."""
+    """The kink of `s4` for every contraction in a ball; `ArithmeticError` if it cannot be enclosed."""
     with working(BITS):
         near = _near(arb(lam.mid()))
         radius = 0.6 * float(lam.rad()) + 1e-9  # the kink moves half as fast as lam

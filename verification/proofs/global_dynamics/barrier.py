@@ -3,12 +3,12 @@
 On a smooth closed convex curve with an invertible law the map is a homeomorphism of the strip `|phi| <= lam*pi/2` onto
 its image. It preserves orientation and has degree 1 in `theta`, so points below a closed curve around the strip go
 below the image of the curve. If the map takes the curve `phi = height(theta)` below itself, then points below the curve
-stay below it for ever. So the proof maps boxes along the curve only.
+stay below it for ever. So the proof needs only the images of boxes along the curve.
 
 The curve is a staircase with one step to each column of a grid. It starts as `phi = 0`, and a step is raised as long as
-the image of another step may reach it; the result is the least such staircase, or none. Where the map commutes with the
-mirror image `(theta, phi) -> (-theta, -phi)`, the mirrored curve is a barrier from above, and what lies between the two
-is a trapping region.
+the image of another step may reach it; the result is the least such staircase, or a failure. If the map commutes with
+the mirror image `(theta, phi) -> (-theta, -phi)`, the mirrored curve is a barrier from above, and the region between
+the two curves is trapping.
 """
 
 from collections.abc import Callable
@@ -38,9 +38,9 @@ COLUMNS = 8192
 
 @dataclass(frozen=True)
 class Barrier:
-    """The least staircase above `phi = 0` with `columns` steps in each part of the boundary that rotations repeat.
+    """The least staircase above `phi = 0`, with `columns` steps in the part of the boundary that rotations repeat.
 
-    It is a barrier for every contraction of the range `lam`; `heights` is None where none is proved.
+    It is a barrier for every contraction in the range `lam`; `heights` is None if no barrier is proved.
 
     >>> found = Barrier(Scene("egg", alpha="0.05"), (Fraction(1, 2), Fraction(1, 2)), 256)
     >>> bool(found.below(point(1.0, 0.0))), bool(found.above(point(1.0, 0.5)))
@@ -53,7 +53,7 @@ class Barrier:
 
     @cached_property
     def map(self) -> PinballImages:
-        """The map in boxes; `ValueError` unless it is proved to be a homeomorphism of the strip onto its image."""
+        """The map on boxes; `ValueError` unless it is proved to be a homeomorphism of the strip onto its image."""
         map = PinballImages(self.scene, self.lam)
         if not (map.closed and map.law is None and self.lam[0] > 0):
             raise ValueError(f"barrier: {map.label}; accepted: one smooth closed curve, the paper's law and lam > 0")
@@ -71,7 +71,7 @@ class Barrier:
 
     @cached_property
     def grid(self) -> Grid:
-        """The columns around the whole boundary, as a grid of one row."""
+        """The columns around the whole boundary, as a grid with one row."""
         return Grid(self.map.charts, self.columns * self.turns, 1)
 
     @cached_property
@@ -92,7 +92,7 @@ class Barrier:
         return heights
 
     def _raised(self, heights: Array, changed: Mask, proved: bool) -> Array | None:
-        """The staircase raised `ABOVE` the images of the `changed` steps and borders; None where one is lost."""
+        """The staircase, raised to `ABOVE` over the images of `changed` steps; None if an image is not enclosed."""
         boxes, raised = self._pieces(heights, changed | np.roll(changed, 1)), heights.copy()
         for start in range(0, boxes.chart.size, BLOCK):
             some = boxes.chosen(slice(start, start + BLOCK))
@@ -106,7 +106,7 @@ class Barrier:
         return raised
 
     def _pieces(self, heights: Array, wanted: Mask) -> Boxes:
-        """Boxes around the steps `wanted`, and around their left borders, no higher than two columns are wide."""
+        """Boxes around the steps `wanted` and the vertical borders at their left, each at most two columns high."""
         column = np.flatnonzero(wanted)
         zero, one = np.zeros_like(column), np.ones_like(column)
         left, right = self.grid.boxes(Cells(zero, column, zero, one)).x
@@ -146,7 +146,7 @@ class Barrier:
         return holds(height)
 
     def between(self, boxes: Boxes) -> Mask:
-        """A mask: which boxes lie in the trapping region below the staircase and above its mirror image."""
+        """Mask of the boxes proved to lie in the trapping region below the staircase and above its mirror image."""
         return self.below(boxes) & self.below(boxes.mirrored()) & self.mirrored
 
 
@@ -160,10 +160,11 @@ def point(theta: float, phi: float) -> Boxes:
 class BarrierBreaks(Theorem):
     """Between two contractions the last barrier above `phi = 0` and below an attracting cycle breaks.
 
-    They are the barrier's contraction and `high`. Boxes grown from `sink`, a point `(theta, phi)` near the cycle, are
-    trapping for each contraction between; at `high` the orbit of `(start, 0)` enters them. The contractions with a
-    barrier above `phi = 0` and below these boxes are an open set, so there is a first one without. It does not follow
-    that an attractor ends there: it may persist, with a basin that has lost the orbit from `(start, 0)`.
+    The two contractions are that of the barrier and `high`. Boxes grown from `sink`, a point `(theta, phi)` near the
+    cycle, are trapping for each contraction in between; at `high` the orbit of `(start, 0)` enters them. The
+    contractions with a barrier above `phi = 0` and below these boxes are an open set, so there is a first contraction
+    without one. It does not follow that an attractor ends there: it may persist, with a basin that has lost the orbit
+    from `(start, 0)`.
     """
 
     barrier: Barrier

@@ -25,7 +25,7 @@ OUTER = 16  # the radius of the disc on which the collision rule is bounded: fou
 
 
 class ManifoldSeries(NamedTuple):
-    """An enclosed unstable manifold: the series, a bound of its remainder, the bits of its balls, and the map."""
+    """An enclosed unstable manifold: its power series, a bound of the remainder, the number of bits, and the map."""
 
     series: Enclosed
     error: arb
@@ -33,7 +33,7 @@ class ManifoldSeries(NamedTuple):
     map: Pinball
 
     def points(self, side: int, low: Sequence[float], high: Sequence[float]) -> list[tuple[arb, arb]]:
-        """Boxes of phase points on one side, with `z` from `factor**(low - 1)` to `factor**(high - 1)`."""
+        """Boxes of phase points on one side of a saddle, with `z` from `factor**(low - 1)` to `factor**(high - 1)`."""
         found = []
         with working(self.bits):
             map, error = self.map.over(balls(self.bits)), arb(0, self.error)
@@ -48,10 +48,10 @@ class ManifoldSeries(NamedTuple):
 def unstable_branch(
     orbit: SaddleCycle, map: Pinball, lam: Fraction, bits: int, around: Saddle | None = None
 ) -> ManifoldSeries | None:
-    """The unstable manifold at one contraction, or None where it is not proved.
+    """The saddle's unstable manifold at one contraction, as an enclosed series; None if it is not proved.
 
-    With `around` the saddle must be the one enclosed there over a range of contractions; without it the branch may
-    belong to another cycle near `orbit`.
+    With `around`, the saddle must be the one that `around` encloses over a range of contractions; without it the branch
+    may belong to another cycle near `orbit`.
     """
     try:
         with working(bits):

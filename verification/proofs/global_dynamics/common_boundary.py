@@ -61,7 +61,7 @@ class Disc:
 
 
 def disc(map: PinballImages, centre: tuple[float, float], radius: float) -> Disc:
-    """A disc in a norm adapted to the derivative at `centre`, so that an attracting map may contract it; not proved."""
+    """A disc in a norm adapted to the derivative at `centre`, so that an attracting map is likely to contract it."""
     x, y = (np.array([value]) for value in centre)
     at = Boxes(np.array([0]), (x, x), (y, y))
     (a, b), (c, d) = ((float(np.ravel(x.m)[0]) for x in row) for row in matrix(map.derivatives(at)[0][1]))
@@ -74,7 +74,7 @@ def disc(map: PinballImages, centre: tuple[float, float], radius: float) -> Disc
 def attracts(map: PinballImages, disc: Disc, turn: float) -> bool:
     """True if one bounce, turned back by `turn` radians, is proved to contract the closed disc into its interior.
 
-    Then there is one fixed point in it, to which every orbit in it converges.
+    Then the turned-back map has one fixed point in the disc, and every orbit in the disc converges to it.
     """
     (x, y), (width, height) = disc.centre, disc.rectangle
     whole = Boxes(np.array([0]), *((np.array([c - h]), np.array([c + h])) for c, h in ((x, width), (y, height))))
@@ -104,7 +104,7 @@ def _length(x: BallArray, y: BallArray) -> Array:
 
 
 def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turns: Sequence[Fraction]) -> bool:
-    """True if the orbit of a phase point, followed in balls, is proved to enter the disc or a copy of it turned."""
+    """True if the orbit of a phase point, followed in balls, is proved to enter the disc or a rotated copy of it."""
     map = EnclosedMap(PinballMap(scene, lam=float(lam)), lam, BITS)
     (a, b), (c, d) = disc.inverse
     for here in map.orbit(map.start(*start), MOST_BOUNCES):
@@ -120,7 +120,7 @@ def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turn
 
 
 def entered_around(found: "CommonBoundary", which: int, theta: Fraction, phi: Fraction) -> bool:
-    """True if all orbits from a small box around a phase point enter the disc `which`, or a turned copy."""
+    """True if all orbits from a small box around a point are proved to enter the disc `which` or a rotated copy."""
     with working(BITS):
         x, y = (arb(fmpq(value.numerator, value.denominator)) + arb(0, SMALL) for value in (theta, phi))
     return enters(found.scene, found.lam, (x, y), found.discs[which], found.turns)
@@ -131,10 +131,10 @@ class CommonBoundary(Theorem):
     """The stable manifold of a saddle lies on the boundary of the basins of two attracting cycles.
 
     Each cycle, and the saddle, repeats after one bounce and a rotation of the table. The two `starts` are points of the
-    branch of the unstable manifold on one `side` (1 or -1), as numbers from 0 to 1 along a piece from a point to its
-    image. The orbit of the first enters the disc of this `radius` around the first of the `sinks`, phase points
-    `(theta, phi)`; that of the second the other disc. `turn` is, for each sink, the part of a full turn that a bounce
-    makes.
+    branch of the unstable manifold on one `side` (1 or -1), as numbers from 0 to 1 along the piece from a point to its
+    image. The `sinks` are two phase points `(theta, phi)`. The orbit of the first start enters the disc of this
+    `radius` around the first sink, and the orbit of the second start the disc around the second. `turn` has, for each
+    sink, the fraction of a full turn by which a bounce rotates the cycle.
     """
 
     scene: Scene
@@ -159,13 +159,13 @@ class CommonBoundary(Theorem):
 
     @property
     def turns(self) -> tuple[Fraction, ...]:
-        """The rotations that keep the table, as parts of a full turn, 0 included."""
+        """The rotations that map the table to itself, as fractions of a full turn, 0 included."""
         kept = {Fraction(*g.shift) % 1 for g in symmetries(self.scene.table) if g.turn == 1}
         return tuple(sorted({Fraction(0)} | kept))
 
     @cached_property
     def map(self) -> PinballImages:
-        """The map in boxes; `ValueError` unless the table is proved convex."""
+        """The enclosing map on boxes; `ValueError` unless the table is proved convex."""
         return PinballImages(self.scene, (self.lam, self.lam))
 
     @cached_property
@@ -175,12 +175,12 @@ class CommonBoundary(Theorem):
 
     @cached_property
     def plane(self) -> Pinball:
-        """The map given by its collision rule, composed with the rotation by which the saddle repeats."""
+        """The map, given by its collision rule and composed with the rotation by which the saddle repeats."""
         return Pinball(self.scene.table, turn=self.saddle.closure.shift[1])
 
     @cached_property
     def branch(self) -> ManifoldSeries | None:
-        """The enclosed unstable manifold of the saddle; None where it is not proved."""
+        """The enclosed unstable manifold of the saddle; None if it is not proved."""
         return unstable_branch(self.saddle, self.plane, self.lam, BITS)
 
     @hypothesis

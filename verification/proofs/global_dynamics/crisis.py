@@ -12,7 +12,7 @@ piece of the branch, from a point to its image after one round, with its rotated
 continuously, and every orbit of the branch meets it. So the good contractions are an open set that contains `LOW`.
 `HIGH` is not good, because orbits in `taken` stay there. Therefore there is a first contraction in `(LOW, HIGH]` that
 is not good. Where the boxes `kept` hold a chaotic attractor, this is its boundary crisis [GrebogiOttYorke1983]; that
-they do is not proved.
+the boxes do so is not proved.
 
 Both sets of boxes are grown from a few cells, so a document need not list them.
 """
@@ -63,11 +63,11 @@ Array = NDArray[np.float64]
 class BoundaryCrisis(Certified):
     """The branch on one `side` of a saddle's unstable manifold is trapped at `lam[0]` and escapes at `lam[1]`.
 
-    The saddle repeats after one bounce and a rotation of the table, as a regular polygon does. The law depends on `eta`
-    and `lam` only, and its exit angles stay below `pi/2` by a margin. `start`, from 0 to 1 along a piece of the branch
-    from a point to its image, is where the escaping orbit begins; the boxes `taken` are grown from `sink`, a phase
-    point `(theta, phi)`. Boxes are cells of a grid of `columns` by `rows`, each cut into `parts` by `parts` before it
-    is mapped.
+    The saddle repeats after one bounce and a rotation of the table, like a regular polygon. The law depends on `eta`
+    and `lam` only, and its exit angles stay below `pi/2` by a margin. The escaping orbit begins at `start`, a number
+    from 0 to 1 along the piece of the branch from a point to its image. The boxes `taken` are grown from `sink`, a
+    phase point `(theta, phi)`. Boxes are cells of a grid of `columns` by `rows`, each cut into `parts` by `parts`
+    before it is mapped.
     """
 
     kind = "boundary crisis"
@@ -108,7 +108,7 @@ class BoundaryCrisis(Certified):
 
     @cached_property
     def branches(self) -> tuple[ManifoldSeries, ManifoldSeries] | None:
-        """The enclosed unstable manifold at both contractions; None where it is not proved."""
+        """The enclosed unstable manifolds at the lower and the higher contraction; None if they are not proved."""
         if self.curve is None:
             return None
         below, above = (
@@ -119,7 +119,7 @@ class BoundaryCrisis(Certified):
 
     @cached_property
     def kept_boxes(self) -> AbsorbingSet | None:
-        """The trapping boxes grown from the branch at the lower contraction, or None."""
+        """The trapping boxes grown from the branch at the lower contraction; None if not proved."""
         if self.branches is None:
             return None
         ends, map = np.linspace(0, 1, PIECES + 1), PinballImages(self.scene, (self.lam[0],) * 2)
@@ -130,7 +130,7 @@ class BoundaryCrisis(Certified):
 
     @cached_property
     def taken_boxes(self) -> AbsorbingSet | None:
-        """The boxes grown from the sink, trapping for all contractions at once, or None."""
+        """The boxes grown from the sink, trapping for all contractions of the range at once; None if not proved."""
         seed = None if self.branches is None else bounding_boxes([(arb(self.sink[0]), arb(self.sink[1]))])
         return (
             None
@@ -175,15 +175,15 @@ class BoundaryCrisis(Certified):
 
     @property
     def map(self) -> Pinball:
-        """The map given by its collision rule, composed with the rotation by which the saddle repeats."""
+        """The map, given by its collision rule and composed with the rotation by which the saddle repeats."""
         return Pinball(self.scene.table, turn=self.saddle.closure.shift[1], law=self.scene.law)
 
     @cached_property
     def curve(self) -> tuple[Saddle, Saddle] | None:
-        """The saddle, enclosed over the first and the last part of the range of contractions; or None.
+        """The saddle, enclosed over the first and over the last subinterval of the range of contractions; or None.
 
-        None is returned unless both lie on one curve of cycles over the whole range, with the saddle at the lower end
-        near its given start.
+        None is returned unless both are proved to lie on one curve of cycles over the whole range, and the saddle at
+        the lower end to be near its given start.
         """
         ends = [self.lam[0] + (self.lam[1] - self.lam[0]) * Fraction(k, CUTS) for k in range(CUTS + 1)]
         map, orbit, parts = self.map.over(complex_balls(BITS)), self.saddle, list[Saddle]()
@@ -205,7 +205,7 @@ class BoundaryCrisis(Certified):
         return parts[0], parts[-1]
 
     def _turned(self, points: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
-        """Phase points with their rotated copies, one of which each orbit meets."""
+        """Phase points with the rotated copies by which the saddle repeats; each orbit meets one of these."""
         with working(BITS):
             turn = self.saddle.closure.angle(balls(BITS))
             copies = range(Fraction(*self.saddle.closure.shift).denominator)
@@ -221,8 +221,8 @@ def bracket(
 ) -> BoundaryCrisis:
     """A candidate for a crisis between two contractions; the escaping orbit is found by sampling in float64.
 
-    `grid` is columns, rows and parts. `ValueError` where no sample converges to a cycle at `lam[1]`. Nothing is proved
-    until its `checks` are read.
+    `grid` is columns, rows and parts. `ValueError` if no sampled orbit converges to a cycle at `lam[1]`. The candidate
+    is proved only if its `checks` say so.
 
     >>> from verification.proofs.manifolds.known import CONTACTS
     >>> triangle, ends = CONTACTS["boundary"].unstable, (Fraction(3, 5), Fraction(663, 1000))
@@ -264,7 +264,7 @@ def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], cells: Absorbing
 
 
 def bounding_boxes(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
-    """Boxes around phase points of a table of one component; None where one is not finite."""
+    """Boxes around phase points of a table of one component; None if a point is not finite."""
     (left, right), (bottom, top) = (
         [np.array([_outwards(x, up) for x in values]) for up in (False, True)] for values in zip(*points, strict=True)
     )
@@ -274,7 +274,7 @@ def bounding_boxes(points: Sequence[tuple[arb, arb]]) -> Boxes | None:
 
 
 def _next(map: PinballImages, boxes: Boxes) -> Boxes | None:
-    """The images of boxes, one for each; None where one is not enclosed."""
+    """The images of boxes, one box for each; None if an image is not enclosed or splits in two."""
     images = map.images(boxes)
     if images.lost.size or not np.array_equal(images.source, np.arange(boxes.chart.size)):
         return None
@@ -282,12 +282,12 @@ def _next(map: PinballImages, boxes: Boxes) -> Boxes | None:
 
 
 def _turned_back(boxes: Boxes) -> Boxes:
-    """The boxes with full turns of `theta` subtracted, rounded outwards."""
+    """The boxes, moved by full turns of `theta` so that they lie about 0, and rounded outwards."""
     turns = 2 * np.pi * np.rint((boxes.x[0] + boxes.x[1]) / (4 * np.pi))
     slack = SLACK * (1 + np.abs(turns))
     return boxes._replace(x=(boxes.x[0] - turns - slack, boxes.x[1] - turns + slack))
 
 
 def _outwards(x: arb, up: bool) -> float:
-    """A double above (or below, if not `up`) every number of a ball."""
+    """A double above every number of a ball if `up`, else below every number."""
     return float(np.nextafter(float(x.upper() if up else x.lower()), np.inf if up else -np.inf))

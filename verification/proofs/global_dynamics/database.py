@@ -1,15 +1,17 @@
-"""A database of Morse graphs: one for each box of contractions and values of one shape parameter; which continue.
+"""A database of Morse graphs: one for each box of contractions and values of a shape parameter, and which of them
+continue into each other.
 
-For all parameters of a box at once phase space is covered and mapped as for one scene, so each statement holds for all
-of them. A table with `n` rotation symmetries is taken modulo these, and so are its Morse sets: a set stands for one set
-of the table, or for several that the rotations exchange.
+Phase space is covered and mapped for all parameters of a box at once, so each statement holds for all of them. Phase
+space and Morse sets are taken modulo the table's rotations: a set stands for one set of the table, or for several that
+the rotations exchange.
 
-Two boxes with a common border are compared there. At a parameter of the border each chain recurrent orbit lies in one
-Morse set of either graph. So two sets without a common cell share no such orbit, and a set that meets no set of the
-other graph holds no such orbit there. Where the other sets match one to one, with the same order of walks between them,
-matched sets have the same recurrent orbits: these continue from box to box, as does their Conley index where the map is
-continuous. Boxes that are connected by such borders form a class. (Arai, Kalies, Kokubu, Mischaikow, Oka and Pilarczyk
-2009, A database schema for the analysis of global dynamics of multiparameter systems.)
+Two boxes of parameters with a common border are compared on the border. At a parameter of the border each chain
+recurrent orbit lies in one Morse set of either graph. So two sets without a common cell share no such orbit, and a set
+that meets no set of the other graph holds no such orbit at that parameter. If the remaining sets match one to one, with
+the same order of walks between them, matched sets have the same recurrent orbits. Such sets continue from box to box,
+as does their Conley index where the map is continuous. Boxes that are connected by such borders form a class. (Arai,
+Kalies, Kokubu, Mischaikow, Oka and Pilarczyk 2009, A database schema for the analysis of global dynamics of
+multiparameter systems.)
 """
 
 from collections.abc import Iterator, Sequence
@@ -41,7 +43,7 @@ TAKEN = {"sets", "attracting", "top", "cells", "leads", "row", "column", "from",
 
 @dataclass(frozen=True)
 class Graphs:
-    """A task of the sweep: the Morse graphs of some boxes of parameters."""
+    """A task of the sweep: to compute the Morse graphs of some boxes of parameters."""
 
     scene: str
     parameter: str
@@ -58,7 +60,9 @@ class Graphs:
         return {name: np.array([[box[i] for box in row] for row in made]) for i, name in enumerate(names)}
 
     def boxes(self, lams: Sequence[Range], shape: Range) -> Iterator[tuple[int, int, float, Cells, Cells]]:
-        """For each box: the numbers of Morse sets and trapping regions, strip height, cells and order of the sets."""
+        """For each box of parameters: the numbers of Morse sets and of trapping ones, the height of the strip, the
+        index of the Morse set at each cell, and the matrix of the order of the sets.
+        """
         first: ParameterBox | None = None
         for lam in lams:
             cells = np.full((self.rows, self.columns), -1, dtype=np.int8)
@@ -78,7 +82,7 @@ class Graphs:
 
 
 def _painted(graph: MorseGraph) -> NDArray[np.int8]:
-    """The index of the Morse set at each cell, as an array of rows and columns; -1 where there is none."""
+    """The index of the Morse set at each cell, as an array of rows and columns; -1 for a cell in no Morse set."""
     label = np.full(graph.transitions.count + 1, -1, dtype=np.int64)
     for index, members in enumerate(graph.sets):
         label[members] = index
@@ -89,7 +93,7 @@ def _painted(graph: MorseGraph) -> NDArray[np.int8]:
 
 
 def _ranges(borders: Sequence[str], middles: NDArray[np.float64]) -> Iterator[Range]:
-    """The interval between `borders` about each of the `middles`, as a pair of fractions."""
+    """For each of the `middles`, the interval between successive `borders` that holds it, as a pair of fractions."""
     ends = [Fraction(text) for text in borders]
     for middle in middles:
         index = int(np.searchsorted([float(end) for end in ends], middle)) - 1
@@ -108,7 +112,7 @@ def database(
     """The sweep over boxes of parameters between the `values` of a shape parameter and between the contractions `lams`.
 
     Each float stands for its shortest decimal. `columns` of cells lie along the boundary, modulo its rotation, and
-    `rows` across the strip of exit angles; a box begins with blocks of `coarsest` cells.
+    `rows` across the strip of exit angles; the subdivision begins with blocks of `coarsest` cells.
 
     >>> sweep = database(Scene("egg", alpha="1/20"), "alpha", [0.05, 0.06], [0.1, 0.2], 24, 16, 4)
     >>> found = sweep.task(sweep.part((0,) * 6))
@@ -209,10 +213,10 @@ def continued(found: "xr.Dataset") -> Numbers:
 def common(
     here: NDArray[np.int8], there: NDArray[np.int8], top_here: float, top_there: float, counts: tuple[int, int]
 ) -> NDArray[np.bool_]:
-    """A matrix: which sets of two graphs have overlapping cells. The strips' heights differ by a power of 2.
+    """A matrix that says which sets of two graphs have overlapping cells; the strips' heights differ by a power of 2.
 
-    `here` and `there` are the set of each cell, -1 for none; `counts` are the numbers of sets. Cells that share only a
-    border need not count: a point of the border lies in cells that overlap as well.
+    `here` and `there` have the index of the set of each cell, -1 for none; `counts` are the numbers of sets. Cells that
+    share only a border can be ignored, as each point of the border also lies in cells that overlap.
 
     >>> one, other = np.array([[0], [1]], dtype=np.int8), np.array([[0], [-1]], dtype=np.int8)
     >>> common(one, other, 1.0, 1.0, (2, 1)).tolist()
@@ -230,9 +234,9 @@ def common(
 
 
 def same_order(met: NDArray[np.bool_], here: NDArray[np.int8], there: NDArray[np.int8]) -> bool:
-    """True if sets that meet (by the matrix `met`) match one to one, and walks lead between the same ones of them.
+    """True if the sets that meet (by the matrix `met`) match one to one, and walks connect them in the same way.
 
-    `here` and `there` are matrices: which set of a graph leads to which.
+    `here` and `there` are matrices that say which set of a graph leads to which.
 
     >>> order = np.array([[1, 1], [0, 1]], dtype=np.int8)
     >>> same_order(np.eye(2, dtype=bool), order, order), same_order(np.ones((2, 2), dtype=bool), order, order)

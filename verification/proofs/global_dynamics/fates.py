@@ -1,12 +1,13 @@
 """The limit of almost every orbit: each Morse set holds one attracting cycle, or else only saddles.
 
 A *cluster* is a rectangle around boxes that lie close together; the graph of clusters has an edge where some of their
-boxes have one. An orbit stays in one Morse set from some bounce on, hence in one strongly connected component of the
+boxes have one. From some bounce on an orbit stays in one Morse set, hence in one strongly connected component of the
 graph of clusters. The derivative is enclosed over each cluster, whose landings must lie on one component of the table
-and less than a turn apart. A mean of derivatives along the segment between two points of a cluster maps their
-difference to that of their images; so two orbits that visit the same clusters are compared as if the map were linear.
+and less than a turn apart. The mean of the derivatives along the segment between two points of a cluster maps the
+difference of the points to the difference of their images. So two orbits that visit the same clusters are compared as
+if the map were linear.
 
-*Sink*: each cluster has one successor, and there are vectors `v > 0` of two entries, one to a cluster, with `|M|*v <=
+*Sink*: each cluster has one successor, and there is a vector `v > 0` of two entries for each cluster, with `|M|*v <=
 q*v'` and `q < 1` for the absolute values of the derivative's entries over the cluster of `v`, where `v'` is the vector
 of its successor. Then two orbits that visit the same clusters approach each other like `q**n`. If a cycle visits each
 cluster once in a round, every orbit that stays in the clusters converges to it.
@@ -63,8 +64,8 @@ class Cluster:
 
     In a sink distances shrink by `factor < 1` or more per bounce in some norm, so that it holds at most one cycle. In a
     saddle the points that stay for `WALKS` bounces make up at most the share `factor`, and vectors in the cones grow by
-    `exp(growth)` or more per bounce in the mean of `WALKS`, so that each cycle is unstable where `growth > 0`. None
-    where nothing is proved.
+    `exp(growth)` or more per bounce in the mean of `WALKS`, so that each cycle is unstable where `growth > 0`. A bound
+    is None if it is not proved.
     """
 
     boxes: Boxes
@@ -76,10 +77,11 @@ class Cluster:
 def clusters(
     map: PinballImages, graph: Transitions, near: int = NEAR, among: Mask | None = None
 ) -> list[Cluster] | None:
-    """The components of clusters in which orbits may return, with bounds for each; None where these are not proved.
+    """The components of clusters in which orbits may return, with bounds for each; None if not proved.
 
-    With a mask `among` only those vertices are used: no orbit stays outside of them. Boxes at most `2*near` cells apart
-    form one cluster. None is returned where a box is lost, or where a cluster may land on both sides of a join.
+    With a mask `among` only its vertices are used; no orbit may stay outside of them. Boxes at most `2*near` cells
+    apart form one cluster. None is returned if the image of a box is not enclosed, or if a cluster may land on both
+    sides of a join.
     """
     recurrent = graph.recurrent if among is None else among
     if graph.recurrent[-1] and np.any(graph.edges.indices[: graph.edges.indptr[-2]] == graph.count):
@@ -128,7 +130,7 @@ def clusters(
 
 
 def _named(graph: Transitions, cells: Cells, near: int) -> Indices:
-    """The index of the cluster of each box."""
+    """The index of the cluster to which each box belongs."""
     member = graph.grid.to_array(cells, np.ones(cells.chart.size, dtype=bool)).astype(bool)
     labels, count = np.zeros(member.shape, dtype=np.int64), 0
     for chart, mask in enumerate(member):
@@ -155,7 +157,7 @@ def _rectangles(graph: Transitions, cells: Cells, names: Indices, count: int) ->
 
 
 def _reach(ends: Array, source: Indices, count: int) -> Array:
-    """The largest entry of each cluster."""
+    """The largest of the `ends` for each cluster; `source` is the cluster of each entry."""
     found = np.full(count, -np.inf)
     np.maximum.at(found, source, ends)
     return found
@@ -170,7 +172,7 @@ def _contraction(s: Slopes, where: Indices, walks: csr_matrix) -> float:
 
 
 def _staying(found: Derivatives, walks: csr_matrix, chart: Indices) -> tuple[float | None, float | None]:
-    """The largest sum of inverse stretches over walks of `WALKS` clusters, and the least mean of their logarithms."""
+    """The largest sum of inverse stretches over walks of `WALKS` clusters, and the least mean of log stretches."""
     cones, entered = grown_cones(found, walks, chart)
     with np.errstate(all="ignore"):
         sign = np.sign(push_slopes(found.slopes, hull(*cones)[found.source])[0].m)
@@ -189,7 +191,7 @@ def _staying(found: Derivatives, walks: csr_matrix, chart: Indices) -> tuple[flo
 class RecurrentClusters(RangeTheorem):
     """A theorem about the clusters in which orbits return.
 
-    They come from a grid of `columns` by `rows` cells that starts with blocks of `coarsest` cells.
+    The clusters come from a grid of `columns` by `rows` cells that starts with blocks of `coarsest` cells.
     """
 
     grid: tuple[int, int]
@@ -202,12 +204,12 @@ class RecurrentClusters(RangeTheorem):
 
     @cached_property
     def parts(self) -> list[Cluster] | None:
-        """The components of clusters, for the whole range of contractions at once; None where not proved."""
+        """The components of clusters, for the whole range of contractions at once; None if they are not proved."""
         return clusters(self.map, self.graph)
 
     @property
     def saddle_parts(self) -> list[Cluster]:
-        """The components that are not sinks; `ArithmeticError` where the components are not known."""
+        """The components of clusters that are not sinks; `ArithmeticError` if the components are not proved."""
         if self.parts is None:
             raise ArithmeticError("clusters do not hold all that returns")
         return [part for part in self.parts if not part.sink]
@@ -238,7 +240,7 @@ class FewAttractingCycles(RecurrentClusters):
 
     @hypothesis
     def repelling(self) -> bool:
-        """In the other components vectors of a cone grow."""
+        """In the components that are not sinks, vectors of a cone grow."""
         return all((part.growth or 0) > 0 for part in self.saddle_parts)
 
 
@@ -267,7 +269,7 @@ class AlmostEveryOrbit(RecurrentClusters):
 
     @cached_property
     def parts(self) -> list[Cluster] | None:
-        """The components of clusters; None where they are not proved or the map may not be invertible."""
+        """The components of clusters; None if they are not proved or if the map may not be invertible."""
         return clusters(self.map, self.graph, self.near, self.staying) if invertible(self.map) else None
 
     @hypothesis
@@ -289,7 +291,7 @@ class AlmostEveryOrbit(RecurrentClusters):
 
     @hypothesis
     def saddles(self) -> bool:
-        """In the other components the points that stay for ever have measure 0."""
+        """In the components that are not sinks, the points that stay for ever have measure 0."""
         return all(part.factor is not None and part.factor < 1 for part in self.saddle_parts)
 
 
@@ -321,10 +323,10 @@ def exists(map: PinballImages, points: Sequence[Point]) -> bool:
 
 
 def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None:
-    """The sink each of whose clusters holds exactly one of the points in its interior; or None.
+    """The sink in which every cluster holds exactly one of the points in its interior; or None.
 
     Points are `(component, theta, phi)`. No cluster of another component may hold a point, even on its border:
-    rectangles may overlap, and the boxes around the cycle could belong to the other component.
+    rectangles may overlap, and the boxes around the cycle could belong to that other component.
     """
     for part in parts:
         if not part.sink:
@@ -338,7 +340,7 @@ def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None
 
 
 def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> NDArray[np.bool_]:
-    """A matrix of booleans: which cluster (column) holds which point (row)."""
+    """A matrix of booleans that says which cluster (column) holds which point (row)."""
     (left, right), (bottom, top) = part.boxes.x, part.boxes.y
     rows = [
         (part.boxes.chart == chart) & below(left, x) & below(x, right) & below(bottom, y) & below(y, top)

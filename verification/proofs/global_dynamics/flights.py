@@ -1,7 +1,8 @@
 """Flights from boxes of phase points: arcs that hold the landings, enclosures of the landings, and derivatives.
 
-Two signs of a cross product prove the arc, as `images` explains; within it the mean-value theorem encloses landing and
-incidence. `z0` is a start, `(v, w)` the direction of a flight, and a *bend* the rate at which the tangent turns.
+The signs of two cross products prove the arc, as `images` explains. Within the arc the mean-value theorem encloses
+landing and incidence. `z0` is a start, `(v, w)` the direction of a flight, and a *bend* the rate at which the tangent
+turns.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,7 +32,7 @@ CURVE = "x", "y", "dx", "dy", "ddx", "ddy"  # position, velocity and acceleratio
 
 
 class LandingArcs(NamedTuple):
-    """For some boxes the part of their arc of landings that lies on one component; `smooth` if it is the whole arc."""
+    """The part of the arc of landings that lies on one component, for some boxes; `smooth` if it is the whole arc."""
 
     on: Indices
     chart: Indices
@@ -43,8 +44,8 @@ class LandingArcs(NamedTuple):
 class Slopes(NamedTuple):
     """The landing's derivatives by `theta` and `phi`, the bends at start and landing, and the law's slopes.
 
-    With them `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = drift*d theta1 - law*d eta1`;
-    `drift` is 0 for a law that does not depend on the place.
+    With these derivatives `d eta1 = bend_there*d theta1 - bend_here*d theta0 + d phi0`, and `d phi1 = drift*d theta1 -
+    law*d eta1`; `drift` is 0 if the law does not depend on where the particle lands.
     """
 
     by_theta: BallArray
@@ -80,22 +81,22 @@ class Flights:
         self.last: tuple[BallArray, list[BallArray], BallArray] | None = None  # an arc, the boundary, and incidences
 
     def _leaving(self, theta: BallArray, phi: BallArray) -> dict[str, BallArray]:
-        """Values at the starts: boundary point, velocity, acceleration, speed, bend, and the direction of flight."""
+        """Values at the start of flights: boundary point, velocity, acceleration, speed, bend, and direction."""
         place = self.map.place(self.chart, theta)
         return dict(zip((*CURVE, "v", "w", "cos", "speed", "bend"), (*place, *departing(*place, phi)), strict=True))
 
     def among(self, places: Places, names: tuple[str, ...], on: Indices) -> list[BallArray]:
-        """The named values at the boxes `on`; without copying where these are all boxes."""
+        """The named values at the boxes `on`; they are not copied if these are all boxes."""
         return [places[name] for name in names] if on.size == self.chart.size else [places[name][on] for name in names]
 
     def sides(self, end: End, on: Indices) -> BallArray:
-        """Product `v x w` of direction and vector `w` to the point `end`, positive if it is left of a box's flights."""
+        """The product `v x w` of flight direction and vector to the point `end`: positive if left of the flights."""
         x, y, *_ = self.map.place(end[0], BallArray(end[1]))
         at, all_of = self.among(self.centre, SIDES[:4], on), self.among(self.whole, SIDES, on)
         return aside(x, y, *at, *all_of, self.reach[0][on], self.reach[1][on])[0]
 
     def arcs(self) -> tuple[End, End]:
-        """Both ends of an arc for each box that holds its landings; parameters are NaN where none is proved."""
+        """The two ends of an arc of landings for each box; a parameter is NaN if that end is not proved."""
         chart, theta, *widths = self.guess()
         found = []
         for sign, width in zip((-1, 1), widths, strict=True):
@@ -116,7 +117,7 @@ class Flights:
         return found[0], found[1]
 
     def guess(self) -> tuple[Indices, Array, Array, Array]:
-        """The landings of the midpoints in float64, and how far the box's landings may extend before and after them."""
+        """The landings of midpoints in float64, and guesses of how far a box's landings extend before and after."""
         ends = self.map.map.states.ends
         low, high = (np.array([end[i] for end in ends])[self.chart] for i in (0, 1))
         theta = self.theta.m if self.map.closed else np.clip(self.theta.m, low, high)
@@ -136,7 +137,7 @@ class Flights:
         return chart, landed, width, width
 
     def _moved(self, chart: Indices, theta: Array, by: Array) -> End:
-        """Boundary points moved along by a parameter; beyond a join, on the next component by the same length."""
+        """Boundary points with parameters moved by `by`; beyond a join, by the same length on the next component."""
         if self.map.closed:
             return chart, theta + by
         count = len(self.map.ends)
@@ -173,7 +174,7 @@ class Flights:
         return found
 
     def landing(self, piece: LandingArcs) -> Landing:
-        """Landing and incidence of the boxes of a piece.
+        """Landing parameter and incidence angle of the boxes of a piece.
 
         Where the piece is not `smooth`, it may not hold all landings of the box, and the mean-value theorem is not
         used.
@@ -187,7 +188,7 @@ class Flights:
         return piece, common_part(arc, theta), eta, phi
 
     def over(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[list[BallArray], BallArray]:
-        """The boundary over an arc and the incidence angles there; the last result is kept."""
+        """The boundary over an arc, and the incidence angles there; the last result is cached."""
         if self.last is None or self.last[0] is not arc:
             place = self.map.place(chart, arc)
             turn = turn_between(self.tangent(on, self.whole), place[2:4])
@@ -196,13 +197,13 @@ class Flights:
 
     @staticmethod
     def tangent(on: Indices, at: Places) -> list[BallArray]:
-        """The velocity at the starts of the boxes `on`: at their midpoints, or over all of each."""
+        """The velocity of the boundary at the starts of the boxes `on`: at their midpoints, or over whole boxes."""
         return [at["dx"][on], at["dy"][on]]
 
     def mean_value(
         self, on: Indices, chart: Indices, arc: BallArray, eta: BallArray
     ) -> tuple[BallArray, BallArray, BallArray | None]:
-        """Landing, incidence and, for a law of the place, exit angle, by the mean-value theorem about the midpoint."""
+        """Landing, incidence and (for a law that depends on the place) exit angle, by the mean-value theorem."""
         by_theta, by_phi, here, there, law, drift = self.slopes(on, chart, arc)
         reach = self.reach[0][on], self.reach[1][on]
         middle = self.midpoint(on, chart, arc)
@@ -222,15 +223,15 @@ class Flights:
 
     @cached_property
     def bend(self) -> BallArray:
-        """The rate at which the tangent turns over each box, by the parameter."""
+        """The rate at which the tangent turns with the boundary parameter, over each box."""
         return closer(lambda: self.whole["bend"], self.map, self.chart)
 
     def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
-        """For each arc the double at its middle, as centre for the mean-value theorem, and the boundary there."""
+        """The double at the middle of each arc, as centre for the mean-value theorem, and the boundary there."""
         return (at := BallArray(np.asarray(arc.m))), self.map.place(chart, at)
 
     def slopes(self, on: Indices, chart: Indices, arc: BallArray) -> Slopes:
-        """The derivatives over the boxes `on`, whose landings lie in an arc.
+        """The derivatives of the landings over the boxes `on`, whose landings lie in an arc.
 
         Along a flight from `z0` to `z1`, with its length `l`,
 
@@ -254,7 +255,7 @@ class Flights:
     def across(
         self, on: Indices, chart: Indices, arc: BallArray
     ) -> tuple[Places, list[BallArray], BallArray, BallArray]:
-        """Values at the boxes `on`; and over an arc the boundary's velocity, distance, and speed across the flights."""
+        """Values at the boxes `on`; and, over an arc, boundary velocity, distance, and speed across the flights."""
         at = {name: value[on] for name, value in self.whole.items()}
         (x, y, *velocity), _ = self.over(on, chart, arc)
         along = at["v"] * (x - at["x"]) + at["w"] * (y - at["y"])
@@ -274,7 +275,7 @@ class Flights:
 
 
 def turn_between(first: list[BallArray], last: list[BallArray]) -> BallArray:
-    """The angle from one tangent to another minus half a turn, modulo full turns."""
+    """The angle from the first tangent to the last, minus half a turn, modulo full turns."""
     return between(*first, *last)[0]
 
 
@@ -289,7 +290,7 @@ def between(a: BallArray, b: BallArray, c: BallArray, d: BallArray) -> list[Ball
 def departing(
     x: BallArray, y: BallArray, dx: BallArray, dy: BallArray, ddx: BallArray, ddy: BallArray, phi: BallArray
 ) -> list[BallArray]:
-    """Direction of flight, cosine of the exit angle, speed and bend, from the boundary and the exit angle."""
+    """Direction of flight, cosine of the exit angle, speed and bend, from the boundary curve and the exit angle."""
     square, (c, s) = dx * dx + dy * dy, turned(phi)
     v, w = (s * dx - c * dy) / (speed := OPS.sqrt(square)), (s * dy + c * dx) / speed
     return [v, w, c, speed, (dx * ddy - dy * ddx) / square]
@@ -297,7 +298,7 @@ def departing(
 
 @Compiled
 def aside(x: BallArray, y: BallArray, *known: BallArray) -> list[BallArray]:
-    """`v x (z - z0)` by the mean-value theorem; see `Flights.sides`."""
+    """The cross product `v x (z - z0)`, enclosed by the mean-value theorem; see `Flights.sides`."""
     (x0, y0, v0, w0), (x1, y1, v, w, cos, speed, bend), (by_theta, by_phi) = known[:4], known[4:11], known[11:]
     value = v0 * (y - y0) - w0 * (x - x0)
     along = v * (x - x1) + w * (y - y1)
@@ -314,7 +315,7 @@ def moved(middle: BallArray, phi: BallArray, turn: BallArray, *slopes: BallArray
 
 @Compiled
 def flown(*known: BallArray) -> list[BallArray]:
-    """Length, speed at the landing, and incidence, by the mean-value theorem; see `Flights.slopes`."""
+    """Length of the flight, speed at the landing, and incidence, by the mean-value theorem; see `Flights.slopes`."""
     there, start, first, last = known[:6], known[6:10], known[10:14], known[14:18]
     arc, at, wide, high, here, bend, phi, turn, rough_eta = known[18:]
     beside, gap = arc - at, [there[0] - start[0], there[1] - start[1]]
@@ -329,7 +330,7 @@ def flown(*known: BallArray) -> list[BallArray]:
 
 @Compiled
 def newton(guess: BallArray, arc: BallArray, *known: BallArray) -> list[BallArray]:
-    """One interval Newton step for a landing; the radius is infinite where the guess lies outside of the arc."""
+    """One interval Newton step for a landing; the radius is infinite if the guess lies outside the arc."""
     (x0, y0, v, w), (x, y), (dx, dy) = known[:4], known[4:6], known[6:]
     inside = (guess.m >= arc.m - arc.r) & (guess.m <= arc.m + arc.r)
     found = guess - (v * (y - y0) - w * (x - x0)) / (v * dy - w * dx)
@@ -337,10 +338,10 @@ def newton(guess: BallArray, arc: BallArray, *known: BallArray) -> list[BallArra
 
 
 def incidence(eta: BallArray) -> BallArray:
-    """Angles of incidence, with an infinite radius where full turns cannot be excluded.
+    """Angles of incidence; the radius is infinite where a shift by a full turn cannot be excluded.
 
-    They lie within a quarter turn of 0, and an enclosure within three quarters of a turn holds no two angles that
-    differ by a full turn.
+    True angles lie within a quarter turn of 0, and an enclosure within three quarters of a turn holds no two angles
+    that differ by a full turn.
     """
     return BallArray(eta.m, np.where(eta.magnitude() < 4.7, eta.r, np.inf))
 
@@ -353,7 +354,7 @@ def matrix(slopes: Slopes) -> Matrix:
 
 
 def turn_rate(place: list[BallArray]) -> BallArray:
-    """The rate at which the tangent turns, by the parameter, from velocity and acceleration."""
+    """The rate at which the tangent turns with the parameter, from velocity and acceleration."""
     _, _, dx, dy, ddx, ddy = place
     return (dx * ddy - dy * ddx) / (dx * dx + dy * dy)
 
@@ -364,12 +365,12 @@ def norm(ops: ArrayOps, vector: Sequence[BallArray]) -> BallArray:
 
 
 def speed(at: BallArray, rough: BallArray, place: Sequence[BallArray], beside: BallArray) -> BallArray:
-    """The speed of the parameter by the mean-value theorem, from its value at a point and a rough enclosure."""
+    """The speed of the parameter by the mean-value theorem, from its value at one point and a rough enclosure."""
     return common_part(rough, at + (place[2] * place[4] + place[3] * place[5]) / rough * beside)
 
 
 def closer(rough: Callable[[], BallArray], map: "PinballImages", chart: Indices) -> BallArray:
-    """The bend on a component: the exact constant where it is known to be constant, else the enclosure `rough()`."""
+    """The bend on a component: the exact value if it is known to be constant, else the enclosure `rough()`."""
     known = np.array([np.nan if x is None else float(x) for x in constant_bends(map.map.table)])[chart]
     held, given = ~np.isnan(known), BallArray(known, np.abs(known) * ROUNDING)
     if held.all():
@@ -380,7 +381,7 @@ def closer(rough: Callable[[], BallArray], map: "PinballImages", chart: Indices)
 
 @lru_cache(maxsize=16)
 def constant_bends(table: Table) -> tuple[Rational | None, ...]:
-    """The bend of each component by its parameter where SymPy finds it constant, else None.
+    """The bend of each component with respect to its parameter if SymPy finds it constant, else None.
 
     >>> from symbolic import tables
     >>> constant_bends(tables.cuspless)

@@ -1,14 +1,14 @@
 """Enclosures of the images of boxes under a pinball map: rectangles that hold the image of every point of a box.
 
 In a convex table the line of a flight cuts the boundary into two arcs. Counterclockwise from the start, boundary points
-before the landing lie to the right of the line, and those after it to the left. So two points, guessed in float64,
-enclose the landings of a whole box once one is proved to lie to the right of every flight and the other to the left, by
-signs of cross products; no equation is solved. Within that arc the mean-value theorem gives a closer enclosure. The
-exit angle depends only on the angles `tau` of the tangents,
+before the landing lie to the right of the line, and those after the landing to the left. So two points, guessed in
+float64, enclose the landings of a whole box once one is proved to lie to the right of every flight and the other to the
+left, by the signs of cross products; no equation is solved. Within the arc between the two points the mean-value
+theorem gives a closer enclosure. The exit angle depends only on the angles `tau` of the tangents,
 
     phi1 = -lam*eta1,    eta1 = phi0 + tau(theta1) - tau(theta0) - pi,
 
-or another law of `eta`, `lam` and the landing's `theta`, of period `2*pi` on a closed curve.
+or `phi1` is another function of `eta1`, `lam` and `theta1`, of period `2*pi` in `theta1` on a closed curve.
 
 Where the arc holds a join, the image is given for both sides of it. Paper: section 2.
 """
@@ -51,8 +51,9 @@ def compiled_curve(program: Program) -> Compiled:
 class PinballImages:
     """The map of a scene whose table is proved convex, for every contraction from `lam[0]` to `lam[1]`.
 
-    Phase space is the strip `|phi| <= top`, in which every particle is after one bounce: `lam*pi/2` for the paper's
-    law, a bound in balls for others. A landing on a join has no next bounce; its images are those of both sides.
+    Phase space is the strip `|phi| <= top`, in which every particle is after one bounce: `top` is `lam*pi/2` for the
+    paper's law, and a bound computed in balls for others. A landing on a join has no next bounce, so its images are
+    those from both sides.
 
     >>> egg = PinballImages(Scene("egg", alpha="0.08", lam="1/2"))
     >>> egg.label
@@ -96,7 +97,7 @@ class PinballImages:
         raise ValueError(f"law = {law}: |phi| is not proved to stay below pi/2 by a margin, as boxes need it")
 
     def incidences(self) -> Iterator[tuple[BallArray, BallArray]]:
-        """All incidence angles, in pieces, with each piece of the boundary on which the law may differ."""
+        """All incidence angles, in pieces, each with the pieces of the boundary on which the law may differ."""
         angles = np.linspace(-1, 1, STEPS + 1) * float((self.ops.pi / 2).upper())
         ends, cuts = (self.ends, PLACES) if self.placed else (self.ends[:1], 1)
         for start, end in ends:
@@ -104,7 +105,7 @@ class PinballImages:
                 yield hull(angles[:-1], angles[1:]), hull(near, far)
 
     def exit(self, eta: BallArray, theta: BallArray) -> BallArray:
-        """The exit angles, by the mean-value theorem about the midpoints of incidence angles and places."""
+        """The exit angles, by the mean-value theorem about the midpoints of incidence angles and landing parameters."""
         if self.law is None:
             return -(self.lam * eta)
         with np.errstate(all="ignore"):
@@ -115,7 +116,7 @@ class PinballImages:
             return found + drift * (theta - place) if self.placed else found
 
     def slopes(self, eta: BallArray, theta: BallArray) -> tuple[BallArray, BallArray]:
-        """`-d phi/d eta` and `d phi/d theta` over incidence angles and places."""
+        """The slopes `-d phi/d eta` and `d phi/d theta` of the law, over incidence angles and landing parameters."""
         if self.law is None:
             return self.lam, BallArray(0.0)
         slope, drift = self.law.slopes(self.ops, eta, self.lam, theta if self.placed else BallArray(0.0))
@@ -140,7 +141,7 @@ class PinballImages:
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of components: the end of the first is the start of the second; none on a single closed curve."""
+        """Pairs of components: the end of the first is the start of the second; none for a single closed curve."""
         count = len(self.ends)
         return () if self.closed else tuple((i, (i + 1) % count) for i in range(count))
 
@@ -151,10 +152,12 @@ class PinballImages:
 
     @cached_property
     def homeomorphism(self) -> bool:
-        """True if the map is proved continuous across joins and one-to-one, with a determinant not 0 where smooth.
+        """True if the map is proved continuous across joins and one-to-one, with nonzero determinant where it is
+        smooth.
 
-        At each join there is one tangent, so flights that land there leave alike, under a law that does not depend on
-        the place; and a reversed flight ends at one place, as the table is convex.
+        The proof: the tangents agree at each join, so a flight that lands there leaves in the same direction for both
+        components, if the law does not depend on the place. And a reversed flight has a single end, as the table is
+        convex.
         """
         turns = tangents(self.map.table)
         alike = not self.placed and all(bool(a.is_zero and b.is_positive) for a, b in turns)
@@ -180,7 +183,7 @@ class PinballImages:
 
     @cached_property
     def curves(self) -> list[Compiled]:
-        """For each component the function that gives point, velocity and acceleration from parameter and shape."""
+        """For each component, the function that gives point, velocity and acceleration from parameter and shape."""
         return [compiled_curve(part.curve) for part in self.map.ir.parts]
 
     def flights(self, boxes: Boxes) -> Flights:
@@ -194,7 +197,7 @@ class PinballImages:
         return collected(rows, boxes.chart.size)
 
     def row(self, piece: LandingArcs, theta: BallArray, eta: BallArray, phi: BallArray | None) -> Row:
-        """The image rectangle of each box of a piece."""
+        """The image rectangle of each box in a piece of landings."""
         on, chart, low, high, smooth = piece
         exit, top = self.exit(eta, theta), self.top
         phi = exit if phi is None else common_part(phi, exit)
@@ -207,7 +210,7 @@ class PinballImages:
         return on[~none], chart[~none], left[~none], right[~none], low_y[~none], high_y[~none]
 
     def derivatives(self, boxes: Boxes) -> list[tuple[LandingArcs, Slopes]]:
-        """The derivative over whole boxes, for each piece of their arcs; an infinite radius means not proved."""
+        """The derivatives over boxes, for each piece of their arcs; an infinite radius means that nothing is proved."""
         with np.errstate(all="ignore"):
             pieces = (flights := self.flights(boxes)).pieces(*flights.arcs())
             return [(p, flights.slopes(p.on, p.chart, hull(p.low, p.high))) for p in pieces if p.on.size]

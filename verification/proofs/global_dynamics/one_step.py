@@ -2,13 +2,13 @@
 
 S is the set of phase points whose flights land at the cusp; `C`, `x`, `c0` and `c1` are coordinates near it, defined in
 `symbolic.cycles.cusp`. Let a curve with tangents in the cone lie in the strip `abs(phi) <= lam*pi/2` and have at most
-the length `share*(1 - lam)**3`. Away from S a bounce stretches it by `expansion` at least. It crosses S at most once,
-and then:
+the length `share*(1 - lam)**3`. Away from S a bounce stretches the curve by `expansion` at least. The curve crosses S
+at most once, and then:
 
-- *the piece that passes* begins with `C = 0`, and `C**3 <= 3*(1 + lam)*u` after a length `u`. So `C <= turn` on all
-  of it, and there `least() >= passing`;
-- *the piece that lands* has `c1**3 <= 3*(1 + lam)*u`, and `c0 >= 1 - lam - u/3`, since S has `c0 >= 1 - lam` and `da =
-  du/3`. So `x >= near` on all of it, and there `least() >= landing`.
+- *the piece that passes the cusp* begins with `C = 0`, and `C**3 <= 3*(1 + lam)*u` after a length `u`. So `C <= turn`
+  on all of it, and there `least() >= passing`;
+- *the piece that lands at it* has `c1**3 <= 3*(1 + lam)*u`, and `c0 >= 1 - lam - u/3`, since S has `c0 >= 1 - lam` and
+  `da = du/3`. So `x >= near` on all of it, and there `least() >= landing`.
 
 Then `1/passing + 1/landing < 1/expansion` at every contraction.
 """
@@ -30,10 +30,10 @@ EVERY = {lam: Interval(0, 1)}  # all contractions
 class OneStepExpansion(Theorem):
     """A short curve is cut by the cusp in at most two pieces, and `1/passing + 1/landing` is below `1/expansion`.
 
-    It holds for each `0 <= lam < 1` and each curve in the strip `abs(phi) <= lam*pi/2` of the cardioid with tangents in
-    the cone and a length of at most `share*(1 - lam)**3` in `|K|*ds`. `passing` and `landing` are the least stretches
-    of the piece that passes the cusp, where `C <= turn`, and of the one that lands at it, where `x >= near`; a flight
-    from `theta0` to `theta1` has `C = cos((theta1 - theta0)/2)` and `x = cos(theta0/2)/cos(theta1/2)`.
+    The statement holds for each `0 <= lam < 1` and each curve in the strip `abs(phi) <= lam*pi/2` of the cardioid with
+    tangents in the cone and a length of at most `share*(1 - lam)**3` in `|K|*ds`. `passing` and `landing` are the least
+    stretches of the piece that passes the cusp, where `C <= turn`, and of the piece that lands at it, where `x >=
+    near`; a flight from `theta0` to `theta1` has `C = cos((theta1 - theta0)/2)` and `x = cos(theta0/2)/cos(theta1/2)`.
 
     >>> OneStepExpansion(Rational(1, 48000), Rational(7, 5), 5, Rational(1, 5), 19).proved
     True

@@ -1,8 +1,8 @@
 """Images of boxes for all parameters of a box at once: a range of contractions and a range of a shape parameter.
 
-On a smooth closed curve the shape parameter is a third coordinate of the mean-value theorem: the boundary moves by its
-derivative with respect to it, and so do landing and incidence. Phase space is taken modulo the rotation symmetry of the
-table. Landings do not depend on the contraction, so boxes of parameters that differ in it alone share them.
+On a smooth closed curve the shape parameter is a third coordinate of the mean-value theorem: boundary, landing and
+incidence have derivatives with respect to it. Phase space is taken modulo the rotation symmetry of the table. Landings
+do not depend on the contraction, so boxes of parameters that differ only in the contraction share them.
 """
 
 from collections.abc import Callable
@@ -61,7 +61,7 @@ class ParameterBox(PinballImages):
         self.shared = BoxLandings() if self.closed and not self.placed else None
 
     def at(self, lam: Range) -> "ParameterBox":
-        """The map for the same shapes and another range of contractions; computed landings are shared."""
+        """The map for the same range of shapes and another range of contractions; computed landings are shared."""
         other = copy(self)
         other.range = lam
         other.contract()
@@ -77,7 +77,7 @@ class ParameterBox(PinballImages):
             return collected([self.row(*self.shared.of(boxes, self.landed))], boxes.chart.size)
 
     def landed(self, boxes: Boxes) -> Landing:
-        """The landings of boxes, computed anew."""
+        """The landings of boxes, computed without the cache."""
         flights = self.flights(boxes)
         (piece,) = flights.pieces(*flights.arcs())
         return flights.landing(piece)
@@ -92,7 +92,7 @@ class ParameterBox(PinballImages):
 
     @property
     def height(self) -> float:
-        """Half the height of the charts: a quarter turn, halved as long as it bounds all exit angles.
+        """Half the height of the charts: a quarter turn, halved as often as it still bounds all exit angles.
 
         So the cells for different contractions coincide, or are parts of one another.
         """
@@ -124,7 +124,7 @@ class BoxLandings:
         self.known = np.empty((6, 0))  # ends of the arc; midpoints and radii of landing and incidence
 
     def of(self, boxes: Boxes, find: Callable[[Boxes], Landing]) -> Landing:
-        """The landings of the boxes, where `find` computes those that are new."""
+        """The landings of the boxes; `find` computes those that are not in the cache yet."""
         keys = np.stack([*boxes.x, *boxes.y], axis=-1).view("V32").ravel().tolist()
         new = {key: i for i, key in enumerate(keys) if key not in self.index}  # equal boxes once
         if new:
@@ -138,7 +138,7 @@ class BoxLandings:
 
 
 class ParameterFlights(Flights):
-    """Flights in a table whose shape parameter lies in a range, and is a third coordinate."""
+    """Flights in a table whose shape parameter lies in a range; the parameter is a third coordinate of the boxes."""
 
     map: ParameterBox
 
@@ -168,7 +168,7 @@ class ParameterFlights(Flights):
         return theta, common_part(eta, incidence(fine)), None
 
     def _by_shape(self, on: Indices, chart: Indices, arc: BallArray, start: BallArray) -> tuple[BallArray, BallArray]:
-        """The landing's derivative by the shape parameter, and that of the tangent's turn between start and landing."""
+        """Derivatives by the shape parameter of the landing, and of the tangent's turn between start and landing."""
         at, (dx, dy, *_), along, slope = self.across(on, chart, arc)
         here, there = (self._rates(place) for place in (start, arc))
         dx0, dy0 = self.map.place(self.chart[on], start)[2:4]
@@ -185,7 +185,8 @@ class ParameterFlights(Flights):
 
 @lru_cache(maxsize=256)
 def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]:
-    """The order of a table's rotation symmetry over a range of one parameter, and a program for derivatives by it.
+    """The order of a table's rotation symmetry for a range of a parameter, and a program for derivatives by the
+    parameter.
 
     The program gives the derivatives of point and velocity of the first component. `ValueError` where the table is not
     proved convex.
@@ -203,9 +204,9 @@ def _over(text: str, parameter: str, low: str, high: str) -> tuple[int, Program]
 
 
 def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
-    """The table with one parameter free; `ValueError` where that moves ends of components, or enters the law.
+    """The table with one parameter free; `ValueError` if the parameter moves ends of components or enters the law.
 
-    Charts must have the same ends for all boxes of parameters, and one law serves them all.
+    All boxes of parameters must have the same charts and the same law.
     """
     table: Table = scene.over(parameter, low, high)
     if any(parameter in map(str, S(end).free_symbols) for part in table.components for end in (part.start, part.end)):

@@ -1,20 +1,21 @@
 """Theorems on a set of boxes: it is a trapping region, and the larger Lyapunov exponent of its orbits is bounded.
 
 A trapping region is a set of boxes that the map takes into its interior: the enclosed image of each box meets no cell
-outside of the set. Every orbit that enters it stays, with its limit set, and disjoint regions hold different
-attractors. On a table with joins this concerns orbits that never land on one.
+outside of the set. Every orbit that enters the region stays in it, with its limit set, and disjoint regions hold
+different attractors. On a table with joins this concerns only orbits that never land on a join.
 
 The larger exponent of every orbit in a set of boxes is bounded below by cones and the least mean over walks. Each box
 has a range of slopes `dphi/dtheta`, its cone. If over each box the derivative takes the cone into those of all boxes
 where the image may lie, then vectors of the cones stay in them along every orbit. Each box has a least factor by which
 `|dtheta|` grows along these vectors. So over `n` bounces the logarithm grows by at least the least sum over all walks
-of `n` steps, and in the long run by that mean per bounce. One bounce may shrink vectors as long as no long walk does.
-The greatest factors give the upper bound: a cone with interior holds two vectors that span the plane, so the derivative
-of `n` bounces grows no faster than the greatest sum over walks. The boundary parameter replaces arc length, which
-changes lengths by bounded factors and no long-time mean.
+of `n` steps, and in the long run by the corresponding mean per bounce. One bounce may shrink vectors as long as no long
+walk does. The greatest factors give an upper bound in the same way: a cone with interior holds two vectors that span
+the plane, so the derivative of `n` bounces grows no faster than the greatest sum over walks. The boundary parameter
+replaces arc length, which changes lengths by bounded factors and no long-time mean.
 
 With `p = bend0 - slope0` the derivative takes a slope to `-sigma*(bend1 - p/(by_theta + by_phi*slope0))`, the mirror
-equation of a law with the slope `-sigma`, which is `-lam` for the paper's; a law of the place adds its drift.
+equation of a law with the slope `-sigma`, which is `-lam` for the paper's; a law that depends on the place adds its
+drift.
 """
 
 from collections.abc import Iterator, Mapping
@@ -52,7 +53,7 @@ MOST_PARTS, MOST_BOXES = 16, 1 << 24
 
 
 def _runs(cells: Cells) -> Iterator[list[int]]:
-    """The cells as entries `[chart, size, column, row, how many]`, one for each stack of blocks in a column."""
+    """The cells as entries `[chart, size, column, row, count]`, one for each stack of `count` blocks in a column."""
     order = np.lexsort((cells.row, cells.column, cells.size, cells.chart))
     chart, column, row, size = (values[order].tolist() for values in cells)
     run: list[int] = []
@@ -68,7 +69,7 @@ def _runs(cells: Cells) -> Iterator[list[int]]:
 
 
 def _unrolled(runs: Any, region: Mapping[str, Any]) -> Cells:
-    """The cells of such entries; `ValueError` where one does not fit the grid of the `region` document."""
+    """The cells that such entries describe; `ValueError` if an entry does not fit the grid of the `region` document."""
     charts, columns, rows = len(region["scene"].table.components), region["columns"], region["rows"]
     given = [[whole_number("a run", x, LARGEST, 0) for x in run] for run in runs]
     if {len(run) for run in given} != {5} or not 1 <= sum(run[4] for run in given) <= MOST_BOXES:
@@ -87,8 +88,8 @@ def _unrolled(runs: Any, region: Mapping[str, Any]) -> Cells:
 class Region(RangeTheorem, Certified):
     """A union of blocks of cells in the strip `|phi| <= HIGH*pi/2` is trapping for every `lam` of a range `LOW:HIGH`.
 
-    Each box is cut into `parts` by `parts` before it is mapped. In the document adjacent blocks of a column are one
-    run.
+    Each box is cut into `parts` by `parts` before it is mapped. In the document adjacent blocks of a column are joined
+    to a single entry.
     """
 
     kind = "trapping region"
@@ -106,7 +107,7 @@ class Region(RangeTheorem, Certified):
 
     @cached_property
     def mapped(self) -> tuple[Grid, Rectangles, Mask]:
-        """The grid, the cells that the images meet, and a mask of the blocks that are lost."""
+        """The grid, the cells that the images meet, and a mask of the blocks whose images are not enclosed."""
         grid = Grid(self.map.charts, self.columns, self.rows)
         return grid, *mapped(self.map, grid, self.cells, self.parts)
 
@@ -128,7 +129,8 @@ class Region(RangeTheorem, Certified):
 
 
 def region(map: PinballImages, graph: MorseGraph, index: int, parts: int = 1) -> Region | None:
-    """The trapping region of the Morse set `index`, to be mapped in pieces of boxes, `parts` by `parts`; or None.
+    """The trapping region of the Morse set `index`, whose boxes are cut into `parts` by `parts` before mapping; or
+    None.
 
     None is returned when walks from the set lead outside.
     """
@@ -142,7 +144,8 @@ def region(map: PinballImages, graph: MorseGraph, index: int, parts: int = 1) ->
 def shares(graph: MorseGraph, index: int) -> tuple[float, float]:
     """A lower and an upper bound of the share of phase space (by area) whose orbits end in a trapping region.
 
-    The lower is the area of the boxes from which every walk ends there, the upper of those from which some walk does.
+    The lower bound is the area of the boxes from which every walk ends in the region, the upper bound that of the boxes
+    from which some walk does.
     """
     block = graph.trapping(index)
     cells, grid = graph.transitions.cells, graph.transitions.grid
@@ -157,7 +160,7 @@ def shares(graph: MorseGraph, index: int) -> tuple[float, float]:
 def sampled_share(map: PinballImages, graph: MorseGraph, index: int) -> tuple[float, float] | None:
     """The share of random starts (by area) in a trapping region after `LONG` bounces, and its standard error.
 
-    It is a sample, for comparison with the bounds of `shares`; None for a range of contractions.
+    The share is sampled, for comparison with the bounds of `shares`; None for a range of contractions.
     """
     if map.range[0] != map.range[1]:
         return None
@@ -183,7 +186,7 @@ WIDENED = 1.02  # by which a cone that grows is widened, so that fewer rounds ar
 
 
 class Derivatives(NamedTuple):
-    """Derivatives over boxes, several rows for a box: the box, the chart of the landing, and the slopes."""
+    """Derivatives over boxes, as rows of box, chart of the landing, and slopes; a box may have several rows."""
 
     source: Indices
     chart: Indices
@@ -192,7 +195,7 @@ class Derivatives(NamedTuple):
 
 @dataclass(frozen=True)
 class ExponentBounds:
-    """Bounds `low <= nu_plus <= high` for every orbit that stays in a set; infinite where no cones were found.
+    """Bounds `low <= nu_plus <= high` for every orbit that stays in a set of boxes; infinite if no cones were found.
 
     `cones` are the ranges of slopes for each box; `steps` is the length of the walks.
     """
@@ -207,11 +210,11 @@ class SmoothMap(BoxMap, Protocol):
     """A map of charts with enclosed images and derivatives."""
 
     def derivatives(self, boxes: Boxes) -> list[tuple[LandingArcs, Slopes]]:
-        """The derivative over whole boxes, for each chart in which they land."""
+        """The derivatives over whole boxes, for each chart in which they land."""
 
 
 def derivatives(map: SmoothMap, grid: Grid, cells: Cells, parts: int) -> Derivatives:
-    """The derivatives over blocks, each cut into `parts` by `parts`."""
+    """The derivatives over blocks of cells, each block cut into `parts` by `parts`."""
     rows: list[list[NDArray[Any]]] = []
     step = max(1, BLOCK // parts**2)
     for start in range(0, cells.chart.size, step):
@@ -224,7 +227,7 @@ def derivatives(map: SmoothMap, grid: Grid, cells: Cells, parts: int) -> Derivat
 
 
 def push_slopes(found: Slopes, slope: BallArray) -> tuple[BallArray, BallArray]:
-    """The growth of `dtheta` along vectors of a given slope `dphi/dtheta`, and the slope of their images."""
+    """Factor by which `dtheta` grows along vectors of a given slope `dphi/dtheta`, and the slope of their images."""
     stretch = found.by_theta + found.by_phi * slope
     return stretch, found.drift - found.law * (found.bend_there - (found.bend_here - slope) / stretch)
 
@@ -234,8 +237,8 @@ def expansion(
 ) -> ExponentBounds:
     """Bounds for the larger exponent `nu_plus` of every orbit that stays in the leaves `members`.
 
-    Walks have `steps` bounces, and derivatives are taken over `parts` by `parts` pieces of boxes. Cones begin as the
-    images of horizontal vectors, and grow until each holds the images of the cones with an edge to it.
+    Walks have `steps` bounces, and derivatives are enclosed over `parts` by `parts` pieces of each box. Cones begin as
+    the images of horizontal vectors, and grow until each holds the images of all cones from which an edge leads to it.
     """
     chosen = members[:-1] & graph.leaf
     cells = graph.chosen(members)
@@ -255,10 +258,10 @@ def expansion(
 
 
 def grown_cones(found: Derivatives, inner: csr_matrix, chart: Indices) -> tuple[tuple[Array, Array], Mask | None]:
-    """Cones of slopes that the derivative maps into each other, and a mask of the sets that edges lead to; or None.
+    """Cones of slopes that the derivative maps into each other; and a mask of the sets to which edges lead, or None.
 
-    They begin as the images of horizontal vectors and grow. The mask is None where some cone does not hold all images
-    that reach it. `chart` is that of each set, `inner` the adjacency matrix of the sets.
+    The cones begin as the images of horizontal vectors and grow. The mask is None if some cone does not hold all images
+    that reach it. `chart` has the chart of each set; `inner` is the adjacency matrix of the sets.
     """
     low, high = np.full(chart.size, np.inf), np.full(chart.size, -np.inf)
     first = arriving(found, inner, chart, (np.zeros(chart.size), np.zeros(chart.size)))
@@ -277,7 +280,7 @@ def grown_cones(found: Derivatives, inner: csr_matrix, chart: Indices) -> tuple[
 
 
 def arriving(found: Derivatives, inner: csr_matrix, chart: Indices, cones: tuple[Array, Array]) -> tuple[Array, Array]:
-    """The range of slopes of the images that reach each set along edges; infinite where it is not known."""
+    """The range of slopes of the images that reach each set along edges; infinite if a slope is not enclosed."""
     count, charts = chart.size, int(max(chart.max(), found.chart.max(initial=0))) + 1
     slope = hull(*cones)[found.source]
     with np.errstate(all="ignore"):
@@ -296,7 +299,7 @@ def arriving(found: Derivatives, inner: csr_matrix, chart: Indices, cones: tuple
 
 
 def factors(found: Derivatives, cones: tuple[Array, Array], count: int) -> tuple[Array, Array]:
-    """For each box the logarithms of the least and the greatest factor by which vectors of its cone grow."""
+    """For each box, the logarithms of the least and the greatest factor by which vectors in its cone grow."""
     with np.errstate(all="ignore"):
         stretch, _ = push_slopes(found.slopes, hull(*cones)[found.source])
         known, middle = np.isfinite(stretch.r), np.abs(stretch.m)

@@ -1,9 +1,9 @@
 """A proof in balls that the two margins of `symbolic.cycles.returns` are positive, by bisection of a box.
 
 Paper: section 5. The box is that of `(u, v, lam)`, where the exit angle at the arc is `phi = (2*u - 1)*lam*pi/2`, and
-the start has the polar angle `theta0` with `3/2*theta0 = v*(phi + pi/2)`. With `u` and `v` in `[0, 1]` these are all
-flights to the wall whose start is not below the axis, since `eta = phi - 3/2*theta0` is above `-pi/2`. Undecided boxes
-are halved along each side.
+the start has the polar angle `theta0` with `3/2*theta0 = v*(phi + pi/2)`. With `u` and `v` in `[0, 1]` the box holds
+all flights to the wall whose start is not below the axis, since `eta = phi - 3/2*theta0` is above `-pi/2`. Undecided
+boxes are halved along each side.
 """
 
 from dataclasses import dataclass
@@ -28,14 +28,14 @@ LEAST = 2.0**-9  # the bound to prove for the margins; it is above 0, so that th
 
 @dataclass(frozen=True)
 class Margins:
-    """`positive`: True if both margins are proved to be at least `LEAST`, else None; `boxes`: the number of boxes."""
+    """Result: `positive` is True if both margins are proved to be at least `LEAST`, else None; `boxes` is the count."""
 
     positive: bool | None
     boxes: int
 
 
 def program(*formulas: Expr) -> Program:
-    """Formulas in `theta0/2`, the exit angle and `lam` as a program for any number system."""
+    """The formulas, in `theta0/2`, the exit angle and `lam`, as a program for any number system."""
     builder = Builder(*map(str, LETTERS))
     nodes = dict(zip(LETTERS, builder.nodes, strict=True))
     return builder.program(*(converted(builder, formula, nodes) for formula in formulas))
@@ -73,7 +73,7 @@ def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fra
 def every_return() -> SignFinding:
     """The finding that every return to the arc stretches, for `LOWEST <= lam <= HIGHEST`.
 
-    It joins the exact identities of `symbolic.cycles.returns` and the margins proved in balls.
+    The finding combines the exact identities of `symbolic.cycles.returns` with the margins proved in balls.
     """
     found = positive_margins()
     reason = f"both margins by way of the wall are at least {LEAST} in {found.boxes} boxes"

@@ -35,7 +35,7 @@ STATEMENT = (
 class Tangency(Certified):
     """Manifolds of a table of one smooth curve touch at one contraction within `10**-digits` of `near`.
 
-    `contact` says which manifolds, and where to start.
+    `contact` names the manifolds and gives starts for Newton's method.
     """
 
     kind = "tangency"
@@ -56,7 +56,7 @@ class Tangency(Certified):
 
     @cached_property
     def map(self) -> Pinball:
-        """The map of the table, with the table's rotations where the law has them as symmetries."""
+        """The table's map; it includes the table's rotations if they are symmetries of the law too."""
         return pinball(self.table, self.law)
 
     @cached_property
@@ -88,7 +88,7 @@ class Tangency(Certified):
 
     @property
     def follows(self) -> dict[str, Theorem]:
-        """The theorem that strange attractors exist nearby."""
+        """The theorem that strange attractors exist nearby, as a dictionary."""
         return {"strange_attractors": self.strange}
 
     @property
@@ -98,12 +98,12 @@ class Tangency(Certified):
 
     @property
     def evidence(self) -> dict[str, Any]:
-        """The checklist and, where the theorem is proved, the orbit bounce by bounce, for a checker without series."""
+        """The checklist and, if proved, the orbit bounce by bounce, for a checker without power-series arithmetic."""
         chain = ContactChain(self.contact, self.map, self.near, self.digits).entries() if self.proved else {}
         return chain | {"checks": self.checks}
 
     def to_dict(self) -> dict[str, Any]:
-        """The statement as a JSON document; its contraction is an entry of `contact`, with the other starts."""
+        """Statement as a JSON document, in which the contraction is an entry of `contact`, beside the other starts."""
         scene, contact = scene_said(self.table, self.law), contact_said(self.contact) | {"value": self.near}
         check_size(scene)
         words = STATEMENT.format(scene=title_of(scene))
@@ -112,7 +112,7 @@ class Tangency(Certified):
 
     @classmethod
     def read(cls, given: Mapping[str, Any]) -> Self:
-        """The theorem that a document of this version states; `ValueError` where an entry is out of range."""
+        """The theorem that a document of this version states; `ValueError` if an entry is out of range."""
         digits, value = int(given["digits"]), str(given["contact"]["value"])
         if not 10 <= digits <= LARGEST_DIGITS or not DECIMAL.fullmatch(value):
             raise ValueError(f"certificate: digits = {digits} or value = {value[:30]} is out of range")
@@ -123,7 +123,7 @@ class Tangency(Certified):
 
 
 def contact_said(contact: Contact) -> dict[str, Any]:
-    """A contact as entries of a certificate, in which its parameter is called `letter`.
+    """A contact as entries of a certificate; the entry for the parameter is called `letter`.
 
     >>> orbit = SaddleCycle("triangle", (-0.16,), Closure(1, (1, 3)))
     >>> contact = Contact(orbit, orbit, 5, 1, 0.03, -0.02, 0.66)
@@ -136,7 +136,7 @@ def contact_said(contact: Contact) -> dict[str, Any]:
 
 
 def contact_of(given: Mapping[str, Any]) -> Contact:
-    """The contact that such entries describe; `ValueError` names the entry that is out of range."""
+    """The contact that the entries of a certificate describe; `ValueError` names an entry that is out of range."""
     unstable, stable = (orbit_of(given[name]) for name in ("unstable", "stable"))
     bounces, sign = int(given["bounces"]), int(given["sign"])
     if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
@@ -148,12 +148,12 @@ def contact_of(given: Mapping[str, Any]) -> Contact:
 
 
 def orbit_said(orbit: SaddleCycle) -> dict[str, Any]:
-    """A cycle as entries of a certificate: its name, starts for Newton's method, and how it repeats."""
+    """A cycle as entries of a certificate: name, starts for Newton's method, and the symmetry by which it repeats."""
     return {"name": orbit.name, "start": orbit.start, "sign": orbit.closure.turn, "shift": orbit.closure.shift}
 
 
 def orbit_of(given: Mapping[str, Any]) -> SaddleCycle:
-    """The cycle that such entries describe; `ValueError` where one is out of range."""
+    """The cycle that the entries of a certificate describe; `ValueError` if an entry is out of range."""
     start, sign = tuple(float(x) for x in given["start"]), int(given["sign"])
     turns, parts = (int(x) for x in given["shift"])
     if not 1 <= len(start) <= LARGEST_PERIOD or sign not in (1, -1) or not 1 <= parts <= LARGEST_TURN:

@@ -1,14 +1,15 @@
 """A numerical search for earlier contacts of the same manifolds, in all flights of up to a given number of bounces.
 
 A homoclinic contact is the first in a range of parameters only if no other flight from the unstable manifold to the
-stable one touches before. The function `earlier` follows a fundamental domain of the unstable branch, at the contact's
-parameter, bounce by bounce, and inserts points where neighbours separate. After each bounce, for each rotation and
-reflection of the table, the gap to the local stable manifold is a function on the unstable one. All its local extrema
-are found, with their derivatives in the parameter. Where linear extrapolation makes an extremum 0 within the range, the
-secant method of `tangency` starts, from the smallest such parameters.
+stable one touches it at a smaller parameter. The function `earlier` follows a fundamental domain of the unstable
+branch, at the contact's parameter, bounce by bounce, and inserts points where neighbours separate. After each bounce,
+for each rotation and reflection of the table, the gap to the local stable manifold is a function on the unstable one.
+All its local extrema are found, with their derivatives in the parameter. If linear extrapolation in the parameter makes
+an extremum 0 within the range, the secant method of `tangency` is started there, for the smallest such parameters
+first.
 
 It is a search in float64. It may miss folds smaller than the spacing of points, flights with more bounces, and gaps
-larger than `NEAR`, and it does not distinguish contacts closer than `RESOLUTION`. So it finds earlier contacts, and
+larger than `NEAR`, and it does not distinguish contacts closer than `RESOLUTION`. So it finds earlier contacts, but
 does not prove that there is none.
 """
 
@@ -44,9 +45,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Extrema:
-    """Local extrema of the gap after a number of bounces: intervals of `z` that hold them, and which are minima.
+    """Local extrema of the gap after a number of bounces: intervals of `z` that hold them, and a mask of the minima.
 
-    `end` is the parameter on the stable manifold.
+    `end` has the parameters of the extrema on the stable manifold.
     """
 
     bounces: int
@@ -61,8 +62,8 @@ class Extrema:
 class Earlier:
     """The result of a search: earlier contacts in the range, in order of their parameters, with error estimates.
 
-    Flights of up to `bounces` bounces were followed, and their gaps have `extrema` extrema. At `lost` of those that
-    seem to vanish in the range no contact was computed.
+    Flights of up to `bounces` bounces were followed, and their gaps have `extrema` extrema. For `lost` of the extrema
+    that seem to vanish in the range, no contact could be computed.
     """
 
     contact: Contact
@@ -75,7 +76,7 @@ class Earlier:
 
     @property
     def first(self) -> Touch | None:
-        """The contact with the smallest parameter; None where none was found."""
+        """The contact with the smallest parameter; None if none was found."""
         return self.contacts[0] if self.contacts else None
 
     def __str__(self) -> str:
@@ -89,8 +90,9 @@ class Earlier:
 def earlier(contact: Contact, map: PlaneMap, low: float, bounces: int) -> Earlier:
     """A search for contacts of the same manifolds at parameters from `low` up to that of a homoclinic contact.
 
-    Flights have at most `bounces` bounces, fewer where that needs too many points. The spacing is refined until the
-    contact itself is among the extrema found, and then once more by `CLOSER`. `ValueError` where it is never found.
+    Flights have at most `bounces` bounces, or fewer if so many would need too many points. The spacing is refined until
+    the contact itself is among the extrema found, and then once more by `CLOSER`. `ValueError` if it is never among
+    them.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
@@ -138,7 +140,7 @@ def earlier(contact: Contact, map: PlaneMap, low: float, bounces: int) -> Earlie
 def _seen(
     contact: Contact, here: "BranchImages", before: "BranchImages", bounces: int, spacing: float
 ) -> tuple[int, int, list[Contact]]:
-    """The number of bounces followed, the number of extrema, and guesses of contacts not above this one."""
+    """Number of bounces followed, the number of extrema, and guesses of contacts at parameters up to this contact's."""
     reached, extrema, guesses = bounces, 0, list[Contact]()
     for side in here.sides:
         count = 0
@@ -161,12 +163,16 @@ class BranchImages:
         self.end = INSIDE / abs(made.stable)
 
     def at(self, z: Array, bounces: int) -> tuple[Array, Array]:
-        """The images in the plane, after `bounces` bounces, of the points `z` of the unstable manifold."""
+        """Images in the plane, after `bounces` bounces, of the points with parameters `z` on the unstable manifold."""
         x, y = self.map.plane(*self.out.points(z))
         return self.map.advanced(np.asarray(x), np.asarray(y), self.parameter, bounces)
 
     def gap(self, points: tuple[Array, Array], sign: int) -> tuple[Array, Array]:
-        """The gap at points of the plane, or at their mirror images if `sign` is -1; NaN where they are not near."""
+        """The gap at points of the plane, or at their mirror images if `sign` is -1, and the parameter on the stable
+        manifold.
+
+        Both are NaN at points that are not near the stable manifold.
+        """
         turn = self.map.turn
         away = sign * points[0] - self.ends[2]
         if turn:
@@ -180,14 +186,14 @@ class BranchImages:
 
     @cached_property
     def ends(self) -> tuple[float, float, float]:
-        """The range of the first coordinate on the local stable manifold, relative to the saddle's, and the latter."""
+        """Range of the first coordinate on the local stable manifold, relative to the saddle's, and the saddle's."""
         here, following = self.into.points(np.linspace(-self.end, self.end, 201))
         x = np.asarray(self.map.plane(here, following)[0])
         middle = float(x[100])
         return float(np.min(x)) - middle, float(np.max(x)) - middle, middle
 
     def extrema(self, side: int, bounces: int, spacing: float) -> Iterator[Extrema]:
-        """Extrema of the gap after 1 to `bounces` bounces, where `z` has the sign `side`; stops at `POINTS` points."""
+        """Extrema of the gap after 1 to `bounces` bounces, for `z` of the sign `side`; stops at `POINTS` points."""
         z = side * elementary.exp(np.linspace(-math.log(abs(float(self.out.factor))), 0, START))
         x, y = self.at(z, 0)
         for count in range(1, bounces + 1):
@@ -202,7 +208,7 @@ class BranchImages:
                 return
 
     def filled(self, z: Array, x: Array, y: Array, count: int, spacing: float) -> tuple[Array, Array, Array]:
-        """`z`, `x` and `y` with points inserted where images under `count` bounces are more than `spacing` apart."""
+        """The arrays `z`, `x`, `y` with points inserted where images under `count` bounces are over `spacing` apart."""
         away = np.diff(x)
         if self.map.turn:
             away = np.remainder(away + np.pi, 2 * np.pi) - np.pi
@@ -221,7 +227,7 @@ class BranchImages:
         return z, x, y
 
     def values(self, found: Extrema) -> tuple[Array, Array]:
-        """The gap at the extrema, and their places, by repeated subdivision of their intervals."""
+        """The gap at each extremum, and the `z` at which it is attained, by repeated subdivision of their intervals."""
         low, high, kind = found.low, found.high, np.where(found.minimum, 1.0, -1.0)
         shares, which = np.linspace(0, 1, SHARES)[:, None], np.arange(low.size)
         for _ in range(DIVIDED):
@@ -233,7 +239,7 @@ class BranchImages:
 
 
 def _guesses(contact: Contact, found: Extrema, here: BranchImages, before: BranchImages) -> list[Contact]:
-    """Guesses of contacts not above a given one, where linear extrapolation makes an extremum vanish."""
+    """Guesses of contacts at parameters up to the given one's, where linear extrapolation makes an extremum vanish."""
     if not found.low.size:
         return []
     (value, z), (earlier, _) = here.values(found), before.values(found)

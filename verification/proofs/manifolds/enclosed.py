@@ -6,22 +6,23 @@ since each order is a linear system whose right side has only lower orders. The 
 truncation error, as follows.
 
 Let `P[i]`, `0 <= i < p`, be the polynomials of order `N`, continued to all `i` by `P[i+p](z) = sign*P[i](mu*z) +
-shift`. Sought are functions `h[i]`, analytic on the unit disc, without terms up to order `N` and continued likewise,
+shift`. We look for functions `h[i]`, analytic on the unit disc, without terms up to order `N` and continued likewise,
 such that `P + h` obeys the rule. Let `m` be the multiplier outwards: `mu` for the unstable manifold, `1/mu` for the
 stable one. Going outwards, each rule is solved for its outermost point:
 
-1. The rule along `P` is an analytic function without terms up to order `N`. So on the unit disc it is at
-   most `R**-(N+1)` times its bound on the disc of radius `R` (Schwarz's lemma): one evaluation in balls.
-2. One round nearer to the saddle the functions are `sign*h[i](z/m)`, at most `abs(m)**-(N+1)` times the bound of
-   `h[i]` (Schwarz again). This makes the sought functions small on the right side, and no inverse is needed.
-3. Where the two inner points of a rule are off by at most `e1` and `e2`, the outermost one is off by at most
-   `(defect + slope1*e1 + slope2*e2)/slope0`. The slopes are bounded over a convex tube around `P`, and `slope0`
-   is not 0 there, so such a point exists and is the only one in the tube (an interval Newton step).
+1. The rule along `P` is an analytic function without terms up to order `N`. So on the unit disc it is at most
+   `R**-(N+1)` times its bound on the disc of radius `R` (Schwarz's lemma), which takes one evaluation in balls.
+2. One round nearer to the saddle the functions are `sign*h[i](z/m)`, at most `abs(m)**-(N+1)` times the bound of `h[i]`
+   (Schwarz again). This makes the sought functions small on the right side, and no inverse is needed.
+3. Where the two inner points of a rule are off by at most `e1` and `e2`, the outermost one is off by at most `(defect +
+   slope1*e1 + slope2*e2)/slope0`. The slopes are bounded over a convex tube around `P`, and `slope0` is not 0 there, so
+   such a point exists and is the only one in the tube (an interval Newton step).
 
 So a round outwards maps bounds `e[0], ..., e[p-1]` to bounds `E(e)`, and `E` is affine and monotone. It is checked that
 `E(e) <= e < TUBE` for `e = 2*E(0)`. Then functions bounded by `e` are mapped to functions bounded by `e`, and distances
 in the norm weighted by `e` are at least halved. The unique fixed point is `h`. It is analytic in the parameter, and
-real for real parameters. Dividing `z` by `m` repeatedly leads along an orbit to the saddle: this is the manifold.
+real for real parameters. Repeated division of `z` by `m` moves along an orbit to the saddle, so these functions
+describe the manifold.
 """
 
 from collections.abc import Callable, Sequence
@@ -54,7 +55,7 @@ Rows = list[list[Any]]
 
 
 class TooWideError(ValueError):
-    """Balls are too wide for a step of the proof; `item` is the hypothesis that stays open."""
+    """Balls are too wide for a step of the proof; `item` is the hypothesis that is left unproved."""
 
     def __init__(self, item: str, message: str) -> None:
         super().__init__(message)
@@ -90,18 +91,18 @@ def _analytic(word: str, defined: Callable[[acb], bool] | None) -> Callable[[Any
 
 
 def around_zero(radius: arb) -> acb:
-    """A complex ball (a square) that contains all numbers of at most this absolute value."""
+    """A complex ball (a square) that contains all numbers of absolute value at most `radius`."""
     half = arb(0, radius.abs_upper())
     return acb(half, half)
 
 
 def size(x: Any) -> arb:
-    """An upper bound of the absolute value."""
+    """An upper bound of the absolute value of a ball."""
     return arb(abs(x).abs_upper())
 
 
 def enclosed_saddle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> Saddle:
-    """The one saddle near the start for every parameter in a ball, with real multipliers; else `TooWideError`."""
+    """Enclosure of the saddle near the start for all parameters in a ball; `TooWideError` unless it is proved."""
     found = enclosed_cycle(orbit, map, parameter)
     stable, unstable = multipliers_of(orbit, map, found, parameter)
     if not (abs(stable) < 1 and abs(unstable) > 1):
@@ -110,7 +111,7 @@ def enclosed_saddle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> Saddle
 
 
 def enclosed_cycle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> list[acb]:
-    """The points of the one cycle near the start, for every parameter in a ball; else `TooWideError`."""
+    """Enclosure of the points of the unique cycle near the start, for all parameters in a ball; else `TooWideError`."""
 
     def rule(x: Sequence[acb]) -> tuple[list[acb], Rows]:
         ring = padded(orbit, map, x)
@@ -121,7 +122,7 @@ def enclosed_cycle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> list[ac
 
 
 def attracting(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> bool | None:
-    """True if there is one cycle near the start and its multipliers lie inside the unit circle; else None."""
+    """True if there is a unique cycle near the start, with multipliers inside the unit circle; None if not proved."""
     try:
         points = enclosed_cycle(orbit, map, parameter)
     except TooWideError:
@@ -150,7 +151,7 @@ def only_zero(rule: Callable[[Sequence[acb]], tuple[list[acb], Rows]], start: Se
 
 
 def tried(middle: Sequence[acb], steps: Sequence[acb]) -> list[acb]:
-    """A box around the points `middle` that may hold a zero: four times as wide as Newton's method moves them."""
+    """A box around the points `middle` that may hold a zero: four times as wide as the Newton steps `steps`."""
     least = arb(2) ** (-ctx.prec + 8)
     return [x + around_zero(4 * size(step) + least) for x, step in zip(middle, steps, strict=True)]
 
@@ -169,7 +170,7 @@ def multipliers_of(orbit: SaddleCycle, map: PlaneMap, points: Sequence[acb], par
 class Enclosed:
     """The enclosed series of a local manifold to some order; `z = 1` is `unit` along the eigenvector.
 
-    The eigenvector has 1 as its entry `chief`. `coefficients` holds those of each bounce.
+    The eigenvector has 1 as its entry `chief`. `coefficients` has the coefficients of the series of each bounce.
     """
 
     saddle: Saddle
@@ -183,7 +184,7 @@ class Enclosed:
         return len(self.coefficients[0]) - 1
 
     def over(self, i: int, radius: arb) -> acb:
-        """An enclosure of the polynomial of bounce `i`, any integer, over the disc of this radius."""
+        """An enclosure of the polynomial of bounce `i`, for any integer `i`, over the disc of the given radius."""
         closure, (rounds, place) = self.saddle.orbit.closure, divmod(i, len(self.coefficients))
         x, *rest = self.coefficients[place]
         reach = radius * size(self.factor**rounds)
@@ -191,18 +192,18 @@ class Enclosed:
         return moved + around_zero(horner([arb(0), *(size(c) for c in rest)], reach))
 
     def ring(self) -> list[Jet]:
-        """The polynomials of the bounces, with one more on either side, as jets."""
+        """The polynomials of the bounces of a round, and of one more bounce on either side, as jets."""
         powers = [self.factor**k for k in range(self.order + 1)]
         return neighbours(self.saddle, [list(c) for c in self.coefficients], powers)
 
     def pair(self) -> tuple[Jet, Jet]:
-        """Two neighbours whose parameters stay in the disc: bounces -1 and 0 if unstable, else 0 and 1."""
+        """Polynomials of two successive bounces with values in the disc: bounces -1 and 0 if unstable, else 0 and 1."""
         ring = self.ring()
         return (ring[0], ring[1]) if self.unstable else (ring[1], ring[2])
 
 
 def enclosed(saddle: Saddle, unstable: bool, order: int, unit: float, chief: int) -> Enclosed:
-    """The series of a local manifold to `order`, with enclosed coefficients; entry `chief` of the eigenvector is 1."""
+    """The series of a local manifold to `order`, with enclosed coefficients; the eigenvector's entry `chief` is 1."""
     factor = saddle.unstable if unstable else saddle.stable
     found = direction(saddle, slopes(saddle.orbit, saddle.map, saddle.points, saddle.parameter), factor)
     series = [[x, v / found[chief]] for x, v in zip(saddle.points, found, strict=True)]
@@ -216,7 +217,7 @@ TUBE = "1e-6"  # the radius of the tube over which slopes are bounded; the remai
 
 
 def remainder(made: Enclosed, outer: int) -> arb:
-    """A bound of all bounces' remainders on the unit disc, from the rule on radius `outer`, or `TooWideError`."""
+    """A bound of the remainders of all bounces on the unit disc, from the rule on radius `outer`, or `TooWideError`."""
     if not vanishing(made):
         raise TooWideError("remainder", "the rule has terms of low order; these are no coefficients of a manifold")
     slopes = round_outwards(made, outer)
@@ -229,7 +230,7 @@ def remainder(made: Enclosed, outer: int) -> arb:
 
 
 def vanishing(made: Enclosed) -> bool:
-    """True if the coefficients of the rules along the series contain 0, up to the order of the series."""
+    """True if all enclosed coefficients of the rules along the series contain 0, up to the order of the series."""
     map, ring = made.saddle.map, made.ring()
     triples = [ring[i : i + 3] for i in range(len(ring) - 2)]
     rules = [map.rule_along(triple, made.saddle.parameter) for triple in triples]
@@ -240,7 +241,7 @@ Outwards = list[tuple[int, arb, arb, arb]]  # for each bounce: defect, slopes by
 
 
 def round_outwards(made: Enclosed, outer: int) -> Outwards:
-    """For each bounce of a round, the defect of its rule and two slopes, in units of `slope0`."""
+    """For each bounce of a round, its index, and the defect of its rule and two slopes, each divided by `slope0`."""
     map, parameter, p = made.saddle.map, made.saddle.parameter, len(made.coefficients)
     inside = -1 if made.unstable else 1
     found: Outwards = []
@@ -258,7 +259,7 @@ def round_outwards(made: Enclosed, outer: int) -> Outwards:
 
 
 def bounds(made: Enclosed, slopes: Outwards, errors: list[arb]) -> list[arb]:
-    """The bounds `E(e)` of the module docstring, one round outwards from `errors`."""
+    """The bounds `E(e)` of the module docstring: the result of one round outwards from the bounds `errors`."""
     p, inside = len(errors), -1 if made.unstable else 1
     shrink = size(1 / made.factor if made.unstable else made.factor) ** (made.order + 1)
     known: dict[int, arb] = {}

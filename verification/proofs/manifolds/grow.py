@@ -1,8 +1,8 @@
 """Invariant manifolds in float64, grown from their local series to a given length, and candidates for tangencies.
 
-The parameter `z` of the series extends to the whole branch: a point far out is one near the saddle, some rounds of the
-map later (or earlier, on a stable manifold). So points can be inserted where neighbours are too far apart or the curve
-turns too much, without interpolation.
+The parameter `z` of the series extends to the whole branch: a point far out is the image of a point near the saddle
+after some rounds of the map (or its preimage, on a stable manifold). So points can be inserted where neighbours are too
+far apart or the curve turns too much, without interpolation.
 
 Tangencies are sought near extrema of the gap between an unstable and a stable manifold. A fundamental domain of the
 unstable branch, on both sides of the saddle, is followed bounce by bounce. Where its points fall into the neighbourhood
@@ -52,7 +52,8 @@ class ManifoldCurve:
 def branch(local: Local, side: int, length: float, spacing: float = 0.02, turning: float = 0.2) -> ManifoldCurve:
     """One branch of a manifold, `side` 1 or -1, until it is `length` long.
 
-    It ends sooner where it leaves the domain of the map, or where a round adds less than ten times `spacing` (a sink).
+    The branch ends sooner where it leaves the domain of the map, or where a round adds less than ten times `spacing` (a
+    sink).
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
@@ -82,7 +83,7 @@ def branch(local: Local, side: int, length: float, spacing: float = 0.02, turnin
 
 
 def _piece(local: Local, side: int, low: float, high: float, spacing: float, turning: float) -> ManifoldCurve:
-    """The points with `low <= ln(abs(z)) < high`."""
+    """The points of a branch with `low <= ln(abs(z)) < high`."""
     made = _points(local, side, np.linspace(low, high, FIRST))
     for _ in range(PASSES):
         dx, dy = np.diff(made.x), np.diff(made.y)
@@ -115,7 +116,7 @@ def _points(local: Local, side: int, logarithm: Array) -> ManifoldCurve:
 
 
 def far(local: Local, z: Array, rounds: int) -> tuple[Any, Any]:
-    """The points at `z` of the manifold, by iterating points that are `rounds` rounds nearer to the saddle."""
+    """Points of the manifold with parameters `z`, as images of points that are `rounds` rounds nearer to the saddle."""
     map, orbit, parameter = local.saddle.map.over(ARRAYS), local.saddle.orbit, float(local.saddle.parameter)
     outwards = abs(float(local.factor)) > 1
     factor = float(local.factor) if outwards else 1 / float(local.factor)
@@ -148,7 +149,8 @@ def touches(
 ) -> list[Touch]:
     """The homoclinic tangencies found near a parameter, within `rounds` rounds, in the order of their parameters.
 
-    The `most` candidates with the smallest gaps are tried; they come after whole rounds, or after `any_bounce`.
+    The `most` candidates with the smallest gaps are tried. Gaps are examined after whole rounds, or after every bounce
+    if `any_bounce`.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
@@ -170,7 +172,7 @@ def touches(
 def candidates(
     orbit: SaddleCycle, map: PlaneMap, parameter: float, rounds: int, any_bounce: bool = False
 ) -> list[Contact]:
-    """Contacts at extrema of the gap along both branches of the unstable manifold, smallest gap first."""
+    """Candidate contacts at extrema of the gap along both branches of the unstable manifold, smallest gap first."""
     at = saddle(orbit, map.over(FLOAT64), parameter)
     out, into = local(at, True), local(at, False)
     found: list[tuple[float, Contact]] = []
@@ -186,7 +188,7 @@ def candidates(
 
 
 def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterator[tuple[Array, int, Array, Array]]:
-    """A fundamental domain of each branch of an unstable manifold, mapped bounce by bounce.
+    """The images of a fundamental domain of each branch of an unstable manifold, bounce by bounce.
 
     It yields the parameters on the manifold, the number of bounces made, and the points with their next bounces.
     """
@@ -199,7 +201,7 @@ def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterat
 
 
 def gaps(into: Local, here: Array, following: Array, small: float = SMALL) -> tuple[Array, Array]:
-    """The gap to a local stable manifold, NaN where it is no graph or not `small`, and the parameter on it."""
+    """The gap to a local stable manifold, NaN if it is not `small` or undefined; and the parameter on the manifold."""
     at, ring = into.saddle, into.saddle.around()
     if at.map.turn:
         unit = 2 * np.pi / at.map.turn

@@ -2,35 +2,35 @@
 
 A cycle that shadows a homoclinic tangency stays some rounds near the saddle, leaves along the unstable manifold and
 returns along the stable one. Such cycles appear in a fold, at a parameter that approaches the tangency like
-`unstable**-rounds`. The fold is a problem of the chord system, solved to any number of digits, and provable; a long
-cycle gives the tangency itself.
+`unstable**-rounds`. The fold is a problem of the chord system, which can be solved to any number of digits and proved;
+for a long cycle its parameter approximates that of the tangency.
 
 The mean time that a particle stays near an attractor just above a homoclinic crisis follows from the multipliers of the
-saddle. [GrebogiOttRomeirasYorke1987] derive the power law in the limit. The same argument at a finite distance: at the
-distance `e` above the crisis, the unstable manifold reaches beyond the stable one by `e`, over a length `sqrt(e)`, and
-particles that land there leave. Its preimage after `n` rounds near the saddle is as high as the attractor,
-`e*stable**-n = 1`, and at the distance `unstable**-n` from the stable manifold. So a particle must first come that
-near, where the manifolds touch, and then hit a part `sqrt(e)` of it:
+saddle. [GrebogiOttRomeirasYorke1987] derive the power law in the limit. The same argument works at a finite distance.
+At the distance `e` above the crisis, the unstable manifold reaches beyond the stable one by `e`, over a length
+`sqrt(e)`, and particles that land there leave. Its preimage after `n` rounds near the saddle is as high as the
+attractor, `e*stable**-n = 1`, and at the distance `unstable**-n` from the stable manifold. So a particle must first
+come as near as that to the stable manifold, and then hit the fraction `sqrt(e)` of this neighbourhood:
 
     leaves(e) = sqrt(e) * leaves(unstable**-n),    n = floor(ln(e)/ln(stable)),
 
 and `leaves(e) = sqrt(e)` when `n = 0`. For large `n`, not rounded, this is the power law with the exponent `ln|stable|
-/ (2*ln|stable*unstable|)`. With `n` rounded, the logarithms have slope 1/2 with a step for each further passage, which
-explains the measured oscillation about the power law. The unit of distance is the only fitted number.
+/ (2*ln|stable*unstable|)`. With `n` rounded, `ln(leaves)` has slope 1/2 against `ln(e)`, with a step for each further
+passage, which explains the measured oscillation about the power law. The unit of distance is the only fitted number.
 
 Starts are given at `alpha = 0.08`. Two crises undo a period doubling and a symmetry breaking, when the unstable
-manifold of the cycle that had bifurcated touches its own stable manifold: eight chaotic bands near one end of a
-diameter become four at the cycle of period 4, and two mirror images become one attractor at the symmetric cycle of
-period 4.
+manifold of the cycle that had bifurcated touches the stable manifold of the same cycle: eight chaotic bands near one
+end of a diameter become four at the cycle of period 4, and two mirror images become one attractor at the symmetric
+cycle of period 4.
 
 Boundary crisis: the saddle is the triangle near the vertices, born at the fold of period 3. Its stable manifold bounds
 the basin of the attracting triangle; its unstable manifold runs to the chaotic attractor, forms its outermost fold, and
-touches the stable one. Merging crisis: the saddle is a cycle of period 8, which equals its mirror image after 4
+touches the stable manifold. Merging crisis: the saddle is a cycle of period 8, which equals its mirror image after 4
 bounces. It is the cycle of the fractal basin boundary that is accessible from the attractor near a diameter. Other
 shapes follow by continuation.
 
 A crisis is computed to many digits by two methods that share only the chord equation. The value comes from the fold of
-a long cycle that shadows the tangency; a cycle with four rounds more gives the error. The tangency of the manifolds
+a long cycle that shadows the tangency, and its error from a cycle with four more rounds. The tangency of the manifolds
 themselves (`tangency`) must agree.
 """
 
@@ -63,14 +63,14 @@ from verification.proofs.manifolds.windows import WINDOWS, homoclinic
 
 @dataclass(frozen=True)
 class Shadow:
-    """A cycle near a homoclinic tangency: the problem of its fold, and a start for Newton's method."""
+    """A cycle near a homoclinic tangency: the problem of its fold, and a starting point for Newton's method."""
 
     problem: Problem
     start: list[float]
 
 
 def shadow(contact: Contact, map: Pinball, parameter: float, rounds: int) -> Shadow:
-    """The fold problem of a cycle with at least about `rounds` rounds near the saddle; `ValueError` if heteroclinic."""
+    """The fold problem of a cycle with about `rounds` or more rounds near the saddle; `ValueError` if heteroclinic."""
     if contact.unstable != contact.stable:
         raise ValueError("shadow: the tangency is heteroclinic; a cycle shadows homoclinic ones only")
     floats = map.over(FLOAT64)
@@ -84,7 +84,7 @@ def shadow(contact: Contact, map: Pinball, parameter: float, rounds: int) -> Sha
 
 
 def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball, parameter: float) -> Shadow:
-    """The problem of the fold of a cycle that repeats after its points, rotated or reflected."""
+    """The fold problem of a cycle made of `points` and their images under a rotation or reflection."""
     sign, turns = image
     unit = 2 * math.pi / map.turn
     if sign == -1:  # a reflection: rotated so that its axis is theta = 0
@@ -141,7 +141,7 @@ def log_stay(distance: float, stable: float, unstable: float) -> float:
 
 
 def exponent(distances: Array, unit: float, stable: float, unstable: float) -> float:
-    """The slope of a straight line fitted to `log_stay` against the logarithms of these distances."""
+    """The slope of a straight line fitted to `log_stay` against the logarithms of the given distances."""
     logs = [log_stay(float(d) / unit, stable, unstable) for d in distances]
     return -float(np.polyfit(elementary.log(distances), logs, 1)[0])
 
@@ -149,8 +149,8 @@ def exponent(distances: Array, unit: float, stable: float, unstable: float) -> f
 def unit(points: Sequence[tuple[float, float]], stable: float, unstable: float) -> tuple[float, float]:
     """The unit of distance by least squares, and the root mean square of the residuals of `ln(stay)`.
 
-    `points` are pairs of distance and mean stay. The steps lie at `unit*stable**n`; units are sought from the largest
-    distance up to 1.
+    `points` are pairs of distance and mean stay. The steps lie at `unit*stable**n`; the unit is sought between the
+    largest distance and 1.
     """
     distances, logs = np.array(points)[:, 0], elementary.log(np.array(points)[:, 1])
     tried = elementary.exp(np.linspace(float(elementary.log(distances.max())), 0.0, TRIED))
@@ -195,10 +195,10 @@ def table(alpha: Expr, law: Law = PAPERS_LAW) -> Pinball:
 
 
 def contact(kind: str, alpha: Expr, law: Law = PAPERS_LAW) -> Contact:
-    """A contact by its name at a shape and under a law, followed there from `alpha = 0.08` and the paper's law.
+    """The contact of this name at a shape and under a law, continued from `alpha = 0.08` and the paper's law.
 
-    The laws on the way are `-lam*eta + share*(phi + lam*eta)` with `share` from 0 to 1. `ValueError` where the contact
-    is lost.
+    The laws on the way are `-lam*eta + share*(phi + lam*eta)` with `share` from 0 to 1. `ValueError` if the contact is
+    lost on the way.
     """
     if kind not in CONTACTS:
         raise ValueError(f"crisis: {kind!r} is not known; accepted: {', '.join(CONTACTS)}")
@@ -231,9 +231,10 @@ def followed(
     map: Callable[[Expr], Pinball],
     lost: Callable[[Expr, Exception], str],
 ) -> Contact:
-    """A contact followed from one end of a family of maps to the other; `steps` are the largest and the least step.
+    """A contact, continued from one end of a family of maps to the other; `steps` are the largest and the smallest
+    step.
 
-    `lost` makes the message of the `ValueError` raised where no step succeeds.
+    `lost` makes the message of the `ValueError` that is raised if even the smallest step fails.
     """
     (place, goal), (step, least) = ends, steps
     whole, last, before = goal - place, step, here
@@ -253,14 +254,14 @@ def followed(
 
 
 def extrapolated(before: Contact, here: Contact, share: float) -> Contact:
-    """A contact with its starts extrapolated by `share` times the last change."""
+    """The contact `here`, with its starts changed by `share` times the change from `before`."""
     names = ("parameter", "z", "end")
     moved = {name: getattr(here, name) + share * (getattr(here, name) - getattr(before, name)) for name in names}
     return replace(here, **moved)
 
 
 def settled(guess: Contact, map: Pinball) -> Contact:
-    """The contact that Newton's method finds from a guess, with starts taken from it."""
+    """The contact that Newton's method finds from a guess; its starts are those of the solution."""
     parameter = tangency(guess, map, 8).parameter
     return Gap(guess, map.over(FLOAT64), parameter, 28, 1e-16).contact()
 
@@ -272,9 +273,9 @@ SPARE = 4  # rounds by which the second cycle is longer
 
 @dataclass(frozen=True)
 class KnownCrisis:
-    """A crisis at `parameter` with an error estimate, from a fold of `cycle` and from the tangency `touch`.
+    """A crisis: its `parameter` from the fold of a long `cycle`, with an error estimate, and the tangency `touch`.
 
-    `apart` is the distance of the two values.
+    `apart` is the difference between the parameters that the two give.
     """
 
     kind: str
@@ -319,7 +320,7 @@ def heteroclinic_exponent(stable: float, unstable: float) -> float:
 
 
 def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> KnownCrisis:
-    """The `merging` or the `boundary` crisis of the egg with `K = 3`, to `digits` digits, not proved.
+    """The `merging` or the `boundary` crisis of the egg with `K = 3`, to `digits` digits, without a proof.
 
     >>> from sympy import Rational
     >>> mpmath.nstr(crisis("boundary", Rational(2, 25), 10).parameter, 10)
@@ -346,9 +347,9 @@ def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> KnownC
 
 
 def proof(found: KnownCrisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> Tangency:
-    """The theorem that the manifolds have a tangency within `10**-digits` or less of the value.
+    """The theorem that the manifolds have a tangency within `10**-digits` of the value found.
 
-    It concerns the contact of the manifolds, not the end of the attractor.
+    The theorem concerns the contact of the manifolds, not the end of the attractor.
     """
     digits, map, touch = max(LEAST_DIGITS, digits), table(alpha, law), found.touch
     try:
@@ -359,7 +360,8 @@ def proof(found: KnownCrisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -
 
 
 def boundary(alpha: Expr) -> Tangency:
-    """The theorem on the boundary tangency at a shape of `BOUNDARY`, within 1e-12 of its contraction.
+    """The theorem on the boundary tangency at a shape listed in `BOUNDARY`, within 1e-12 of the contraction listed
+    there.
 
     >>> boundary(Rational(1, 20)).strange.proved
     True
@@ -410,7 +412,7 @@ SEARCHED["band-merging-4"] = SEARCHED["band-merging"]
 
 
 def touching(kind: str) -> Tangency:
-    """The theorem on a contact of `PROVED`, by its name, at `alpha = 0.08`.
+    """The theorem on a contact listed in `PROVED`, by its name, at `alpha = 0.08`.
 
     >>> touching("window-merging-9").strange.proved
     True
@@ -425,7 +427,7 @@ BANDS = homoclinic(  # `window-merging-9`, followed from alpha = 0.08 to 1/10, t
 
 
 def bands() -> Tangency:
-    """The theorem on the tangency `BANDS`, at `alpha = 1/10`."""
+    """The theorem on the tangency named `BANDS`, at `alpha = 1/10`."""
     return Tangency(BANDS, egg(3).at(alpha=Rational(1, 10)), "0.295643212521289641615402176260", 12)
 
 
@@ -447,10 +449,10 @@ EARLIEST = homoclinic(  # where 64 chaotic bands become 32, at 0.08
 
 
 def earliest() -> Tangency:
-    """The theorem on `EARLIEST`, the tangency of the cascade at the smallest contraction that is proved."""
+    """Theorem on the tangency named `EARLIEST`: of those proved in the cascade, the one at the smallest contraction."""
     return Tangency(EARLIEST, egg(3).at(alpha=SHAPE), "0.3935614580718190283027611189356978401518", 30)
 
 
 def decimals(found: KnownCrisis) -> tuple[str, str]:
-    """The value and its error as decimals, with all digits of the value."""
+    """The value of a crisis with all its digits, and its error, as decimals."""
     return str(found.parameter), mpmath.nstr(found.error, 3)

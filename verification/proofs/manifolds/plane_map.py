@@ -1,8 +1,8 @@
 """Planar maps as one equation in three successive points of an orbit, for the computation of invariant manifolds.
 
-Along every orbit `rule(previous, here, following, parameter) = 0`. Solved for either end it gives the map and its
-inverse. The parameter is the contraction of the pinball map, or `a` of the Henon map. A map works over one kind of
-number: floats, arrays, mpmath numbers or balls, or jets of these.
+Along every orbit `rule(previous, here, following, parameter) = 0`. Solved for `following` the rule gives the map, and
+solved for `previous` its inverse. The parameter is the contraction of the pinball map, or `a` of the Henon map. A map
+object works over one kind of number: floats, arrays, mpmath numbers or balls, or jets of these.
 """
 
 from abc import ABC, abstractmethod
@@ -35,11 +35,11 @@ Array = NDArray[np.float64]
 
 
 class PlaneMap(Protocol):
-    """A map of the plane over one kind of number, given by its rule."""
+    """A map of the plane over one kind of number, given by a rule for three successive points."""
 
     @property
     def words(self) -> Arithmetic:
-        """The functions of the kind of number."""
+        """The arithmetic functions for the kind of number."""
 
     @property
     def label(self) -> str:
@@ -47,17 +47,17 @@ class PlaneMap(Protocol):
 
     @property
     def turn(self) -> int:
-        """The order of the rotation symmetry of the table; 0 where points are not angles."""
+        """The order of the rotation symmetry of the table; 0 if points are not angles."""
 
     def over(self, words: Arithmetic) -> Self:
         """The same map over another kind of number."""
 
     @property
     def lifted(self) -> Self:
-        """The map over jets of its numbers."""
+        """The same map over jets of its numbers."""
 
     def rule(self, near: Sequence[Any], parameter: Any) -> Any:
-        """The rule at three successive points: 0 if they belong to an orbit."""
+        """The rule at three successive points; its value is 0 if they belong to an orbit."""
 
     def slopes(self, near: Sequence[Any], parameter: Any) -> tuple[Any, Any, Any]:
         """The derivatives of the rule by its three points."""
@@ -81,15 +81,15 @@ class PlaneMap(Protocol):
         """The coordinates in which the map is usually drawn: `(theta, phi)` of a pinball map."""
 
     def advanced(self, x: Array, y: Array, parameter: float, bounces: int) -> tuple[Array, Array]:
-        """Points in the coordinates of `plane` after `bounces` bounces, in float64; angles modulo full turns."""
+        """Points in the coordinates of `plane`, mapped by `bounces` bounces in float64; angles are modulo `2*pi`."""
 
     def neighbours(self, x: Array, y: Array, parameter: float) -> tuple[Any, Any]:
-        """Points in the coordinates of `plane` as pairs `here, following`, in float64."""
+        """Points given in the coordinates of `plane`, as pairs `here, following`, in float64."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Bound(ABC):
-    """A plane map from a recurrence with one rule, over one kind of number."""
+    """A plane map from a recurrence with a single rule, over one kind of number."""
 
     words: Arithmetic = field(default_factory=lambda: ARRAYS, kw_only=True)
     free: ClassVar = "lam"  # the name of the parameter in the recurrence
@@ -104,7 +104,7 @@ class _Bound(ABC):
     @property
     @abstractmethod
     def ring(self) -> Recurrence:
-        """The recurrence that the map belongs to."""
+        """The recurrence from which the map is made."""
 
     def at(self, parameter: Any) -> dict[str, Any]:
         """All parameters of the recurrence, by name."""
@@ -147,7 +147,7 @@ class _Bound(ABC):
 
 @dataclass(frozen=True, eq=False)
 class Henon(_Bound):
-    """The Henon map `x' = 1 - a*x**2 + y`, `y' = b*x`, that is `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`, with parameter `a`.
+    """The Henon map `x' = 1 - a*x**2 + y`, `y' = b*x`, or `x[n+1] = 1 - a*x[n]**2 + b*x[n-1]`, with parameter `a`.
 
     >>> from sympy import Rational
     >>> Henon(Rational(3, 10)).following(0.5, 1.0, 1.5)
@@ -192,11 +192,12 @@ class Henon(_Bound):
 
 @dataclass(frozen=True, eq=False)
 class Pinball(_Bound):
-    """The pinball map of a table of one component, with parameter `lam`; its points are angles that count full turns.
+    """The pinball map of a table of one component, with parameter `lam`; its points are angles, not reduced modulo
+    `2*pi`.
 
     Forwards, a particle lands where the chord makes the exit angle of the law with the normal; in a table that is not
-    convex it is the first such place, and float64 only. Backwards, the chord makes the angle `-phi/lam`, or the angle
-    that another, decreasing law maps to `phi` (float64 only); where this exceeds `pi/2`, the result is NaN.
+    convex it is the first such place, computed in float64 only. Backwards, the chord makes the angle `-phi/lam`, or the
+    angle that another, decreasing law maps to `phi` (float64 only); where this exceeds `pi/2`, the result is NaN.
 
     >>> from symbolic.tables import circle
     >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)
@@ -214,7 +215,7 @@ class Pinball(_Bound):
 
     @cached_property
     def exit(self) -> Callable[..., Any]:
-        """The exit angle of a law other than the paper's, as a function of incidence angle, parameter and place."""
+        """The exit angle of a law other than the paper's, as a function of incidence angle, parameter and landing."""
         made = load(law_kernel(self.law, 0), self.words)
         return lambda *at: made(*at)[0]
 
@@ -255,7 +256,7 @@ class Pinball(_Bound):
         return chord_angles(self.table, self.words)(0, 0, 1)
 
     def _other_end(self, here: Any, phi: Any, turns: int) -> Any:
-        """The other end, at most a turn after `here + 2*pi*turns`, of the chord from `here` at the angle `phi`."""
+        """The other end of the chord from `here` at the angle `phi`, in the turn that begins at `here + 2*pi*turns`."""
         arrive = landing if convex(self.table) else first_landing
         start = arrive(self.table, floating(here), floating(phi), turns)
         if self.words is ARRAYS:
@@ -296,7 +297,7 @@ def _elastic(table: Table) -> PinballMap:
 
 
 def first_landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
-    """As `landing`, for any table of one component: the first hit, by the float64 kernels; NaN where there is none.
+    """As `landing`, for any table of one component: the first hit, by the float64 kernels; NaN if there is none.
 
     >>> from symbolic.tables import circle
     >>> round(first_landing(circle, 0.0, 0.5), 12)
@@ -312,7 +313,7 @@ def first_landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
 
 
 def share(step: Any, x: Any) -> Any:
-    """A Newton correction `step` relative to `1 + abs(x)`, for jets coefficient by coefficient.
+    """A Newton correction `step` divided by `1 + abs(x)`; for jets, coefficient by coefficient.
 
     Along an unstable manifold derivatives grow from bounce to bounce, and so does the rounding of their corrections.
     """

@@ -1,16 +1,16 @@
 """The theorem that manifolds of saddles have a generic tangency at one parameter of an interval, proved in balls.
 
-An interval Newton step for the system of `touching` proves that it has one zero in a box: the manifolds touch at one
-parameter of it. Let `A` be the derivative of the orbit's equations there, `v` its right null vector, and `u` its left
-null vector with last entry 1. The last equation, with the others solved for all unknowns but `z`, is the gap between
-the manifolds, a function `g` of `z` and the parameter. At the tangency `g_z = 0`,
+An interval Newton step for the system of `touching` proves that it has one zero in a box, so the manifolds touch at one
+parameter in the box. Let `A` be the derivative of the orbit's equations there, `v` its right null vector, and `u` its
+left null vector with last entry 1. The last equation, with the others solved for all unknowns but `z`, is the gap
+between the manifolds, a function `g` of `z` and the parameter. At the tangency `g_z = 0`,
 
     g_zz = u.(A'v)v,    g_parameter = u.(the equations' derivative by the parameter).
 
-The first is not 0: the contact is quadratic. The second is not 0: the gap passes 0 as the parameter varies.
+If `g_zz` is not 0, the contact is quadratic. If `g_parameter` is not 0, the gap passes 0 as the parameter varies.
 
-Under a law other than the paper's a symmetry of the table need not be one of the map: `objection` says what is missing.
-Everything else holds for any law, which enters through the rule and its derivatives.
+Under a law other than the paper's a symmetry of the table need not be a symmetry of the map: `objection` says what is
+missing. Everything else holds for any law, which enters through the rule and its derivatives.
 
 `StrangeAttractors` adds the hypotheses of Mora and Viana. Then every neighbourhood of the parameter contains a set of
 positive measure for whose parameters the map has a strange attractor: it attracts an open set, and holds a dense orbit
@@ -51,10 +51,10 @@ STEPS = ("saddle", "remainder", "exists")  # the steps of an enclosure, in order
 
 
 class EnclosedContact(NamedTuple):
-    """Enclosed data of a contact; the first `steps` of `STEPS` are proved.
+    """Enclosed data of a contact; of the steps of the proof in `STEPS`, the first `steps` are proved.
 
     `bend` and `speed` are the derivatives `g_zz` and `g_parameter` of the gap, `multipliers` the stable and the
-    unstable one of the saddle that the orbit leaves.
+    unstable multiplier of the saddle that the orbit leaves.
     """
 
     parameter: arb
@@ -84,12 +84,12 @@ class ManifoldsTouch(Theorem):
 
     @cached_property
     def precision(self) -> Precision:
-        """The bits, orders and radii for this number of digits."""
+        """The bits, orders and radii that a proof to this number of digits uses."""
         return Precision(self.digits)
 
     @cached_property
     def enclosed(self) -> EnclosedContact:
-        """The enclosed manifolds and their contact, by an interval Newton step; a long flight in halves first."""
+        """Enclosed manifolds and their contact, by an interval Newton step; long flights are solved by halves first."""
         with working(self.precision.bits):
             parameter = arb(self.near).mid()
             try:
@@ -191,7 +191,7 @@ def admissible(map: PlaneMap) -> bool | None:
 
 
 def objection(contact: Contact, map: PlaneMap, parameter: float) -> str:
-    """The reason why a contact does not fit its table or law, or ''.
+    """The reason why a contact does not fit its table or law; empty if it does.
 
     The table or the law may lack a symmetry of the contact, or the law may not be proved valid near the parameter.
 
@@ -226,7 +226,7 @@ def _nonzero(x: arb) -> bool | None:
 
 
 def settled(system: Touching, precision: Precision) -> OrbitPoint:
-    """The zero of the system by Newton's method, with manifolds affine in the parameter; not proved."""
+    """The zero of the system by Newton's method, with manifolds affine in the parameter; without a proof."""
 
     def correction(unknowns: Vector) -> Vector:
         linear = system.linear(OrbitPoint.of(unknowns))
@@ -240,7 +240,7 @@ def settled(system: Touching, precision: Precision) -> OrbitPoint:
 
 
 def sharpened(contact: Contact, map: PlaneMap, value: str, digits: int) -> str:
-    """The parameter of a contact to ten more than `digits` digits, from a value near it; not proved."""
+    """The parameter of a contact to ten digits more than `digits`, from a value near it; without a proof."""
     precision, before = Precision(digits), arb(1)
     with working(precision.bits):
         parameter = arb(value).mid()
@@ -259,7 +259,8 @@ RESONANCES = 100  # the order up to which resonances are excluded, for smooth li
 class StrangeAttractors(Theorem):
     """Near the parameter, on a set of parameters of positive measure, the map has strange attractors (Mora and Viana).
 
-    `touches` is True where the tangency is proved; `multipliers` are the stable and the unstable one of its saddle.
+    `touches` is True where the tangency is proved; `multipliers` are the stable and the unstable multiplier of its
+    saddle.
 
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
     >>> ManifoldsTouch(CONTACTS["boundary"], table(SHAPE), "0.66214427335822441948", 10).strange.proved
@@ -274,7 +275,7 @@ class StrangeAttractors(Theorem):
 
     @property
     def sizes(self) -> tuple[arb, ...]:
-        """Absolute values of the multipliers; `ArithmeticError` where they are not enclosed."""
+        """Absolute values of the multipliers; `ArithmeticError` if they are not enclosed."""
         if not self.multipliers:
             raise ArithmeticError("no multipliers are enclosed")
         return tuple(abs(x) for x in self.multipliers)
@@ -321,7 +322,7 @@ def smooth(map: PlaneMap, parameter: arb | None = None) -> bool | None:
 
 
 def falling(law: Law, parameter: arb | None) -> bool:
-    """True if the law is proved analytic with a negative derivative by `eta`, for all angles and places at `parameter`.
+    """True if the law is proved analytic and decreasing in `eta`, for all angles and landings at `parameter`.
 
     >>> falling(Law("-lam*eta + eta**3/40"), arb("0.6")), falling(Law("-lam*eta + eta**3/10"), arb("0.6"))
     (True, False)

@@ -1,14 +1,15 @@
 """Saddles, cycles modulo a symmetry of the table, and the Taylor series of their local invariant manifolds.
 
 After its bounces `x[0] ... x[p-1]` the cycle repeats as its image `x[i+p] = turn*x[i] + shift`: a triangle is one
-bounce and a turn by a third, a chord between two mirror images is one bounce and a reflection. The multipliers are
-those of the map followed by the inverse of that symmetry.
+bounce and a third of a full turn, a chord between two mirror images is one bounce and a reflection. The multipliers are
+those of the map followed by the inverse of the symmetry.
 
 The manifolds come from the parameterisation method, with the map acting as `z -> mu*z` on the series. Each bounce of a
 saddle has a series `P[i](z)` with `P[i](0) = x[i]` and, after a round, `P[i+p](z) = sign*P[i](mu*z) + shift`. The rule
 at three neighbours, as a power series in `z`, has to vanish: order `k` is the linearised rule on displacements with the
 factor `mu**k`, singular at `k = 1` only, where it gives the direction. Newton's method on whole series doubles the
-orders that hold. With `mu` the unstable multiplier this is the unstable manifold, with the stable one the stable.
+orders that hold. With the unstable multiplier as `mu` the result is the unstable manifold, with the stable multiplier
+the stable manifold.
 """
 
 import math
@@ -29,7 +30,7 @@ LARGEST_LOG = 640.0  # of the largest power of a multiplier: just below the larg
 
 @dataclass(frozen=True)
 class SaddleCycle:
-    """A cycle modulo a symmetry: starts for its bounces, and the symmetry after which it repeats."""
+    """A cycle modulo a symmetry: starting values for its bounces, and the symmetry after which it repeats."""
 
     name: str
     start: tuple[float, ...]
@@ -48,7 +49,7 @@ class Saddle:
     unstable: Any
 
     def around(self) -> list[Any]:
-        """The points, with one more on either side."""
+        """The points of a round, with one more point on either side."""
         return padded(self.orbit, self.map, self.points)
 
 
@@ -75,7 +76,7 @@ def matrix(orbit: SaddleCycle, rows: Sequence[tuple[Any, Any, Any]], factor: Any
 
 
 def saddle(orbit: SaddleCycle, map: PlaneMap, parameter: Any) -> Saddle:
-    """The saddle near `orbit.start` at this value of the parameter, by Newton's method in the numbers of the map.
+    """The saddle near `orbit.start` at a value of the parameter, by Newton's method in the map's kind of number.
 
     >>> from sympy import Rational
     >>> from verification.proofs.manifolds.plane_map import Henon
@@ -99,7 +100,7 @@ def saddle(orbit: SaddleCycle, map: PlaneMap, parameter: Any) -> Saddle:
 
 
 def multipliers(orbit: SaddleCycle, map: PlaneMap, points: Sequence[Any], parameter: Any) -> tuple[Any, Any]:
-    """The smaller and the larger multiplier in absolute value; `ValueError` where they are complex."""
+    """The smaller and the larger multiplier in absolute value; `ValueError` if they are complex."""
     trace, determinant = trace_and_determinant(slopes(orbit, map, points, parameter), orbit.closure.turn)
     square = trace * trace - 4 * determinant
     if not square > 0:
@@ -128,11 +129,11 @@ class Local:
 
     @property
     def order(self) -> int:
-        """The highest power of `z`."""
+        """The highest power of `z` in the series."""
         return len(self.coefficients[0]) - 1
 
     def points(self, z: Any) -> tuple[Any, Any]:
-        """Two neighbours of the orbit through `z`, in any kind of number that contains the coefficients."""
+        """Two successive points of the orbit through `z`, in any kind of number that contains the coefficients."""
         here = horner(self.coefficients[0], z)
         if len(self.coefficients) > 1:
             return here, horner(self.coefficients[1], z)
@@ -165,7 +166,7 @@ def local(saddle: Saddle, unstable: bool, order: int = 24, tail: float = 1e-16) 
 
 
 def direction(saddle: Saddle, rows: Sequence[tuple[Any, Any, Any]], factor: Any) -> list[Any]:
-    """The eigenvector with largest entry 1: the null vector of the linearised rules."""
+    """The eigenvector with largest entry 1, as the null vector of the linearised rules."""
     entries = matrix(saddle.orbit, rows, factor)
     p = len(entries)
     if p == 1:
@@ -177,7 +178,7 @@ def direction(saddle: Saddle, rows: Sequence[tuple[Any, Any, Any]], factor: Any)
 
 
 def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
-    """The series to `length` coefficients by one Newton step, from series that are correct to half as many."""
+    """The series to `length` coefficients by one Newton step, from series with half as many correct coefficients."""
     known, orbit = len(series[0]), saddle.orbit
     powers = _powers(factor, length)
     ring = neighbours(saddle, [[*c, *[0] * (length - known)] for c in series], powers)
@@ -203,7 +204,7 @@ def doubled(saddle: Saddle, factor: Any, series: Series, length: int) -> Series:
 
 
 def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Jet]:
-    """The series of the bounces as jets, with one more on either side."""
+    """The series of the bounces as jets, with the series of one more bounce on either side."""
     sign, shift = saddle.orbit.closure.turn, saddle.orbit.closure.angle(saddle.map.words)
     before = [sign * c / m for c, m in zip(series[-1], powers, strict=True)]
     after = [sign * c * m for c, m in zip(series[0], powers, strict=True)]
@@ -212,7 +213,7 @@ def neighbours(saddle: Saddle, series: Series, powers: Sequence[Any]) -> list[Je
 
 
 def around(orbit: Any, step: Sequence[Any], power: Any) -> list[Any]:
-    """The coefficients `step` of the bounces, with one more on either side: a round later they grow by `power`."""
+    """The coefficients `step` of the bounces, with one more on either side; a round multiplies them by `power`."""
     return [orbit.closure.turn * step[-1] / power, *step, orbit.closure.turn * step[0] * power]
 
 
@@ -225,7 +226,7 @@ def reach(series: Series, tail: float) -> float:
 
 
 def log_of(x: Any) -> float:
-    """The natural logarithm of `abs(x)`, for floats or mpmath numbers beyond their range."""
+    """The natural logarithm of `abs(x)`, for a float, or for an mpmath number beyond the range of floats."""
     return math.log(abs(x)) if isinstance(x, float) else float(x.context.log(abs(x)))
 
 

@@ -1,10 +1,10 @@
 """Tangencies of an unstable and a stable manifold in mpmath, and enclosures of bounces on local manifolds in balls.
 
 *Balls.* Two neighbouring bounces on a local manifold are enclosed as functions of its parameter `z` and of the
-contraction. Their polynomials are enclosed at one contraction, at a second one beside it, and over a complex disc of
-contractions. The derivative by the contraction is the difference quotient, with an error from Cauchy's bound of the
-second derivative on the disc. The remainder is bounded over that disc and the unit disc of `z`; so Cauchy's bounds give
-its derivatives for `abs(z) <= 1/2`.
+contraction. Their polynomials are enclosed at one contraction, at a second contraction beside it, and over a complex
+disc of contractions. The derivative by the contraction is the difference quotient, with an error from Cauchy's bound of
+the second derivative on the disc. The remainder is bounded over the disc of contractions and the unit disc of `z`, so
+Cauchy's bounds give its derivatives for `abs(z) <= 1/2`.
 
 *mpmath.* An orbit from `z` on the local unstable manifold is followed for some bounces, into the neighbourhood where
 the local stable manifold is a graph `following = S(here)`. The gap `following - S(here)` is a function of `z`,
@@ -55,12 +55,12 @@ class Precision:
 
     @property
     def outer(self) -> int:
-        """The radius of the disc on which the rule is bounded, so that each order gains three digits or more."""
+        """The radius of the disc on which the rule is bounded, chosen so that each order gains three digits or more."""
         return int(10 ** (3 + self.digits // 100))
 
     @property
     def order(self) -> int:
-        """The order of the series, so that `outer**-order` is small beside the box even after a long flight."""
+        """The order of the series, chosen so that `outer**-order` is small beside the box even after a long flight."""
         return math.ceil((self.digits + 20) / math.log10(self.outer))
 
     @property
@@ -76,7 +76,7 @@ class Precision:
 
 @dataclass(frozen=True)
 class Near:
-    """A bounce near a saddle: its place, and derivatives by `z` (first, second), by the parameter, and by both."""
+    """A bounce near a saddle: its `place`, and derivatives by `z` (two), by the parameter, and mixed."""
 
     place: arb
     first: arb
@@ -103,10 +103,10 @@ class Scale:
 class Coefficients:
     """Two neighbouring bounces on a local manifold, as enclosed polynomials in `z`.
 
-    They are bounces -1 and 0 of the unstable manifold, or 0 and 1 of the stable one. `places` are the coefficients at
-    the parameter itself, `slopes` their derivatives by it, up to two steps away. `error` bounds the remainder for all
-    parameters up to `margin` beyond; `saddle` is enclosed for the same parameters. `tube` encloses the bounces of a
-    round and their neighbours for `abs(z) <= 1/2`.
+    The two are bounces -1 and 0 of the unstable manifold, or 0 and 1 of the stable one. `places` are the coefficients
+    at the parameter itself, `slopes` their derivatives by it, valid up to two steps away. `error` bounds the remainder
+    for all parameters up to `margin` farther; `saddle` is enclosed for the same parameters. `tube` encloses the bounces
+    of a round and their neighbours for `abs(z) <= 1/2`.
     """
 
     saddle: Saddle
@@ -118,7 +118,7 @@ class Coefficients:
     tube: list[arb]
 
     def at(self, i: int, z: arb, away: arb) -> Near:
-        """Bounce `i` (0 or 1) at `z` over a ball of parameters, `away` from the parameter of `places`."""
+        """Enclosure of bounce `i` (0 or 1) at `z`, for parameters that differ by `away` from that of `places`."""
         if not abs(z) < 0.5:
             raise TooWideError("exists", "the parameter leaves the disc of radius 1/2")
         slopes, e = self.slopes[i], self.error
@@ -157,9 +157,9 @@ def _reach(made: Local) -> float:
 
 
 def smaller(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Coefficients:
-    """`pair` with the largest unit, from that of `scale` down, for which the remainder is bounded.
+    """The result of `pair` with the largest unit, from that of `scale` downwards, for which the remainder is bounded.
 
-    Smaller units have more orders. Along long cycles the radii of coefficients grow by up to 100 per order in the
+    Smaller units come with more orders. Along long cycles the radii of coefficients grow by up to 100 per order in the
     largest unit. Where a multiplier is near 1, only many orders outweigh the product of the slopes along a round.
     """
     for k in range(SMALLER):
@@ -172,24 +172,24 @@ def smaller(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, pre
 
 
 def shrunk(scale: Scale, times: int) -> Scale:
-    """The scale with a tenth of the unit and ten orders more, `times` times."""
+    """The scale after `times` steps, each of which divides the unit by ten and adds ten orders."""
     return replace(scale, unit=scale.unit / 10**times, more=10 * times)
 
 
 def one_cycle(around: Saddle, here: Saddle) -> bool:
-    """True if the cycle at one parameter is the one that is unique over a ball of parameters: its balls lie within."""
+    """True if the cycle at one parameter is the unique cycle over a ball of parameters, as its balls lie within."""
     return all(ball.contains(x) for ball, x in zip(around.points, here.points, strict=True))
 
 
 def multipliers_at(parameter: arb, around: Saddle, map: PlaneMap, precision: Precision) -> tuple[arb, arb]:
-    """The stable and unstable multiplier at one parameter, closer than those over the whole disc."""
+    """The stable and unstable multiplier at one parameter, enclosed more closely than over the whole disc."""
     at = enclosed_saddle(around.orbit, map.over(complex_balls(precision.bits)), acb(parameter))
     found = at if one_cycle(around, at) else around
     return found.stable.real, found.unstable.real
 
 
 def pair(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Coefficients:
-    """Bounces on a local manifold near an exact parameter; saddle and remainder are proved over the disc about it."""
+    """Two bounces on a local manifold near an exact parameter; saddle and remainder are proved over a disc."""
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc
     if not disc > 2 * step:
@@ -222,7 +222,8 @@ NOISE = 1e4  # times the goal: below this distance secants and steps are roundin
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact of two manifolds: the saddles, and starts for `z`, for `end` on the stable manifold, and the parameter.
+    """A contact of two manifolds: the saddles, and starting values for `z`, for `end` on the stable manifold, and the
+    parameter.
 
     `z` and `end` are displacements along the eigenvectors. After `bounces` bounces the point is reflected (`sign = -1`)
     and rotated with the table, and then compared with the stable manifold.
@@ -242,14 +243,14 @@ class Contact:
         return "homoclinic" if self.unstable == self.stable else "heteroclinic"
 
     def mirrored(self, early: int, late: int) -> int:
-        """The sign after `early` more rounds at the start and `late` at the end, each of which may reflect."""
+        """The sign after `early` more rounds at the start and `late` more at the end; each round may reflect."""
         turns: int = self.unstable.closure.turn**early * self.stable.closure.turn**late
         return self.sign * turns
 
 
 @dataclass(frozen=True)
 class Touch:
-    """A tangency: the parameter with an error estimate, and the numbers that make it generic."""
+    """A tangency: the parameter with an error estimate, the derivatives that make it generic, and the multipliers."""
 
     contact: Contact
     parameter: Any
@@ -261,7 +262,7 @@ class Touch:
 
 
 class Gap:
-    """The gap to the stable manifold, along orbits that start on the unstable one, at one parameter."""
+    """The gap between orbits that start on the unstable manifold and the stable manifold, at one parameter."""
 
     def __init__(self, contact: Contact, map: PlaneMap, parameter: Any, order: int, tail: float) -> None:
         self.old, self.map, self.parameter = contact, map, parameter
@@ -291,7 +292,7 @@ class Gap:
         return found
 
     def where(self, here: Jet) -> Jet:
-        """The parameter on the stable manifold whose first point is `here`."""
+        """The parameter of the point on the stable manifold whose first coordinate is `here`."""
         c = self.into.coefficients[0]
         slope = [k * x for k, x in enumerate(c)][1:]
         relative = 1.0
@@ -324,7 +325,7 @@ class Gap:
         return (*found.x, *self.at(*found.x))
 
     def contact(self) -> Contact:
-        """The same contact with the starts found here."""
+        """The same contact, with the starting values found by this search for the extremum."""
         z, _, end = self.extremum()
         unstable, stable = (
             replace(made.saddle.orbit, start=tuple(float(x) for x in made.saddle.points))
@@ -335,12 +336,12 @@ class Gap:
 
 
 def rounds(z: float, factor: float) -> int:
-    """The number of divisions of `z` by `factor` after which `abs(z) <= 1`."""
+    """How many times `z` must be divided by `factor` until `abs(z) <= 1`."""
     return max(0, math.ceil(math.log(abs(z)) / math.log(abs(factor))))
 
 
 def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
-    """A pair of neighbours, rotated with the table to the place nearest to the saddle."""
+    """Two successive points, rotated by a symmetry of the table to lie as near to the saddle as possible."""
     map, ring = into.saddle.map, into.saddle.around()
     if not map.turn:
         return here, following
@@ -352,7 +353,7 @@ def turned(into: Local, here: Any, following: Any) -> tuple[Any, Any]:
 
 
 def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
-    """The tangency of a contact, with its parameter to about `digits` digits.
+    """The tangency that Newton's method and the secant method find from a contact, to about `digits` digits.
 
     The error estimate is the last secant step plus the tolerance of the iteration.
     """
@@ -371,7 +372,7 @@ def tangency(contact: Contact, map: PlaneMap, digits: int = 12) -> Touch:
 
 
 def secant(contact: Contact, map: PlaneMap, order: int, tail: float, parameters: tuple[Any, Any], goal: float) -> Touch:
-    """The tangency by the secant method: the parameter at which the extremum of the gap is 0."""
+    """The tangency by the secant method, which varies the parameter until the extremum of the gap is 0."""
     a, b = parameters
     last = a, Gap(contact, map, a, order, tail).extremum()[1]
     steps: list[Touch] = []

@@ -5,11 +5,11 @@ parameter `w` where it arrives on the stable one. With the series `P` and `Q` of
 
     y[0] = P[-1](z),  y[1] = P[0](z),  rule(y[k-1], y[k], y[k+1]) = 0,  sign*y[n] = Q[0](w),  sign*y[n+1] = Q[1](w)
 
-up to rotations of the table. At a fixed parameter of the map the zeros are the points where the manifolds meet. The
-linearised equations, for a vector with `1` at `z`, hold exactly where the tangents agree. Both together, with the map's
-parameter as the last unknown, are as many equations as unknowns. Like the chord system of a cycle the system has one
-equation for each bounce, so balls do not grow along the orbit. Newton's method starts at a float64 orbit from the
-series near the saddles and the map in between.
+up to rotations of the table. At a fixed parameter of the map the zeros are the points where the manifolds meet. A
+vector with entry 1 at `z` solves the linearised equations exactly where the tangents agree. Both sets of equations
+together, with the map's parameter as the last unknown, are as many equations as unknowns. Like the chord system of a
+cycle the system has one equation for each bounce, so balls do not grow along the orbit. Newton's method starts at a
+float64 orbit from the series near the saddles and the map in between.
 """
 
 import math
@@ -33,9 +33,10 @@ from verification.proofs.manifolds.tangency import Coefficients, Contact, Gap, N
 
 @dataclass(frozen=True)
 class Flight:
-    """An orbit in float64 from bounce -1 on the unstable manifold to bounce 1 on the stable one, as jets in `z`.
+    """An orbit in float64, from bounce -1 on the unstable manifold to bounce 1 on the stable manifold, as jets in `z`.
 
-    `z` and `w` are the parameters at its ends, displacements along the eigenvectors; `w` is a jet in `z`.
+    `z` and `w` are the parameters of its ends on the manifolds, as displacements along the eigenvectors; `w` is a jet
+    in `z`.
     """
 
     bounces: list[Jet]
@@ -46,7 +47,7 @@ class Flight:
 def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int, late: int) -> Flight:
     """The orbit from `early` rounds before the start of the contact to `late` rounds after its end.
 
-    `out` is the unstable manifold's series, `into` the stable one's; the ends have to lie in their domains.
+    `out` and `into` are the series of the unstable and the stable manifold; the ends must lie in their domains.
 
     >>> from verification.arithmetic.balls import FLOAT64
     >>> from verification.proofs.manifolds.known import CONTACTS, SHAPE, table
@@ -79,7 +80,7 @@ def flight(contact: Contact, map: PlaneMap, out: Local, into: Local, early: int,
 
 
 def bounce(local: Local, j: int, z: Jet) -> Jet:
-    """Bounce `j`, any integer, of the orbit through a displacement `z` along the eigenvector."""
+    """Bounce `j`, for any integer `j`, of the orbit through a displacement `z` along the eigenvector."""
     closure, (rounds, place) = local.saddle.orbit.closure, divmod(j, len(local.coefficients))
     x: Jet = horner(local.coefficients[place], z * (float(local.factor) ** rounds / local.unit))
     moved: Jet = closure.carried(x, closure.angle(local.saddle.map.words), rounds)
@@ -93,7 +94,7 @@ Vector = list[arb]
 
 @dataclass(frozen=True)
 class OrbitPoint:
-    """Values of the unknowns: `orbit` is `z, y[0], ..., y[n+1], w`, and `along` the tangent vector."""
+    """Values of the unknowns: `orbit` is the list `z, y[0], ..., y[n+1], w`, and `along` is the tangent vector."""
 
     orbit: Vector
     along: Vector
@@ -101,12 +102,12 @@ class OrbitPoint:
 
     @property
     def unknowns(self) -> Vector:
-        """The unknowns in one list, without the entry of `along` that is 1."""
+        """The unknowns in one list, without the entry of `along` that is always 1."""
         return [*self.orbit, *self.along[1:], self.parameter]
 
     @staticmethod
     def of(unknowns: Vector) -> "OrbitPoint":
-        """The point with these unknowns."""
+        """The point whose unknowns are given in one list."""
         m = len(unknowns) // 2
         return OrbitPoint(unknowns[:m], [arb(1), *unknowns[m:-1]], unknowns[-1])
 
@@ -115,8 +116,9 @@ class OrbitPoint:
 class Linear:
     """The equations and their derivatives at a point, or over a box.
 
-    `values` are those of the orbit's equations, `along` those of the vector's. `rows` are the derivatives of the former
-    by the orbit, which are also those of the latter by the vector; `bent` those of the latter by the orbit.
+    `values` are the residuals of the equations for the orbit, `along` those of the equations for the tangent vector.
+    `rows` are the derivatives of the first by the orbit, and also of the second by the vector; `bent` are the
+    derivatives of the second by the orbit.
     """
 
     values: Vector
@@ -135,11 +137,11 @@ class Linear:
         return arb_mat(upper + [[*bent, *row[1:], h] for bent, row, h in lower])
 
     def step(self, values: Vector, algorithm: Literal["approx", "precond"]) -> Vector:
-        """The Newton correction of the unknowns, where the system has these `values`.
+        """The Newton correction of the unknowns, for residuals `values` of the system.
 
-        The derivative of the orbit's equations by the orbit is singular at a tangency; with its first column replaced
-        by the derivative by the parameter it is not. With `halves` two systems of half the size are solved with
-        approximate inverses in floats, which is faster and less sharp.
+        The derivative of the orbit's equations by the orbit is singular at a tangency; it is regular after its first
+        column is replaced by the derivative by the parameter. With `halves` two systems of half the size are solved
+        with approximate inverses in floats, which is faster and less sharp.
         """
         if not self.halves:
             try:
@@ -200,7 +202,7 @@ class Touching:
         self.turns, self.start = self._from(flight(contact, map.over(FLOAT64), out.rough, into.rough, early, late))
 
     def _from(self, flight: Flight) -> tuple[int, OrbitPoint]:
-        """The rotation of the table at the end of an orbit, and the start of Newton's method."""
+        """The rotation between the end of an orbit and the stable manifold, and a start for Newton's method."""
         map, units = self.map, [made.scale.unit for made in self.pairs]
         apart = self.sign * flight.bounces[-2] - bounce(self.pairs[1].scale.rough, 0, flight.w)
         turns = round(apart.c[0] * map.turn / (2 * math.pi))
@@ -209,7 +211,7 @@ class Touching:
         return turns, OrbitPoint([arb(x) for x in orbit], [arb(x) for x in along], self.parameter)
 
     def linear(self, at: OrbitPoint) -> Linear:
-        """The equations at a point with the middle parameter, or over a box around it."""
+        """The equations and their derivatives, at a point with the middle parameter or over a box around it."""
         out, into = ([made.at(i, z, at.parameter - self.parameter) for i in (0, 1)] for made, z in self._ends(at))
         m = len(at.orbit)
         made = Linear([], [], [], [], [], [], self.halves)
@@ -223,7 +225,7 @@ class Touching:
         return made
 
     def clear(self, at: OrbitPoint) -> bool:
-        """True if every chord of the orbit, and of those near both saddles, is proved to meet nothing on its way."""
+        """True if all chords of the orbit, and of the orbits near both saddles, are proved to meet nothing between."""
         turn, runs = 2 * self.map.words.pi, [at.orbit[1:-1], *(made.tube for made in self.pairs)]
         placed = [[(0, x - turn * round(float(x.mid()) / (2 * math.pi))) for x in run] for run in runs]
         return isinstance(self.map, Pinball) and all(unobstructed(self.map.table, run) for run in placed)
@@ -249,7 +251,7 @@ def _ended(made: Linear, at: OrbitPoint, here: int, end: int, sign: int, shift: 
 
 
 def _add(made: Linear, values: Sequence[arb], rows: list[Vector], by_parameter: Sequence[arb]) -> None:
-    """Adds one equation for the orbit, and its linearisation for the vector."""
+    """Adds one equation for the orbit, and its linearisation as an equation for the tangent vector."""
     for column, x in zip((made.values, made.along), values, strict=True):
         column.append(x)
     for matrix, row in zip((made.rows, made.bent), rows, strict=True):
@@ -266,7 +268,7 @@ Image = tuple[int, int]  # the symmetry `x -> sign*x + turns*unit`
 
 
 def composed(first: Image, second: Image) -> Image:
-    """The symmetry `first` after `second`.
+    """The composition of two symmetries: `second` is applied before `first`.
 
     >>> composed((-1, 2), (-1, 5))
     (1, -3)
@@ -283,10 +285,11 @@ def exact_number(x: Any, bits: int) -> list[str]:
 
 @dataclass(frozen=True)
 class SaddleFrame:
-    """The bounces of a saddle in the order of the flight, its exit angle at the first one, and two slopes there.
+    """The bounces of a saddle in the order of the flight, its exit angle at the first bounce, and two slopes there.
 
-    `along` is the derivative of the angle by the place on the manifold of the flight, `across` that of the place by the
-    angle on the other manifold; a round stretches distances on the manifold by `stretch`.
+    `along` is the derivative of the exit angle by the boundary parameter on the manifold of the flight, `across` that
+    of the boundary parameter by the exit angle on the other manifold. A round multiplies distances on the manifold by
+    `stretch`.
     """
 
     saddle: list[Any]
@@ -297,7 +300,8 @@ class SaddleFrame:
 
 
 class ContactChain:
-    """A contact as a chain of bounces, for a checker without series; docs/certificate_format.md defines the entries.
+    """A contact as a chain of bounces, for a checker that has no power series; docs/certificate_format.md defines the
+    entries.
 
     The orbit begins and ends so near to the saddles that the manifolds are close to parabolas there. Nothing is proved
     here: the checker proves it.
@@ -327,12 +331,12 @@ class ContactChain:
         return said | {"radius": radius} | sides | {"orbit": orbit, "meets": meets}
 
     def _whole(self, x: Any) -> Any:
-        """An angle modulo full turns."""
+        """An angle, reduced modulo full turns."""
         turns = x / (2 * self.map.words.pi)
         return 2 * self.map.words.pi * (turns - turns.context.nint(turns))
 
     def _orbit(self) -> tuple[list[Any], int, Image]:
-        """The bounces from saddle to saddle, the index of one far from both, and the symmetry at the second saddle."""
+        """Bounces from saddle to saddle, the index of a bounce far from both, and the symmetry at the second saddle."""
         gap, out, into = self.gap, self.gap.out, self.gap.into
         image, found = (1, 0), list[Any]()
 
@@ -354,13 +358,13 @@ class ContactChain:
         return found, meets, image
 
     def _once(self, local: Local) -> Image:
-        """The symmetry by which a saddle's bounces repeat after a round."""
+        """The symmetry by which the bounces of a saddle repeat after one round."""
         closure = local.saddle.orbit.closure
         p, q = closure.shift
         return closure.turn, p * self.map.turn // q
 
     def _frame(self, side: Local, lam: Any, image: Image, back: bool) -> SaddleFrame:
-        """The frame of a saddle; with `back` time is reversed, and the stable direction stretches."""
+        """Frame of a saddle; with `back` time is reversed, so that the stable direction is the one that stretches."""
         made = saddle(side.saddle.orbit, self.map, lam)
         rows, points, here, count = slopes(made.orbit, self.map, made.points, lam), list[Any](), image, 0
         while not count or here[0] != image[0] or (here[1] - image[1]) % self.map.turn:
@@ -379,7 +383,7 @@ class ContactChain:
         return SaddleFrame([self._whole(x) for x in order], angle, along, 1 / other, stretch)
 
     def _side(self, back: bool, image: Image, chain: Sequence[Any]) -> tuple[dict[str, Any], Any]:
-        """The entries of one manifold, and the place on it where the orbit along `chain` begins."""
+        """The entries of one manifold, and the coordinate on it at which the orbit along `chain` begins."""
         side, step = self.gap.into if back else self.gap.out, self.lam.context.mpf(10) ** -(self.digits // 2)
         frame, after, before = (self._frame(side, self.lam + move, image, back) for move in (0, step, -step))
         a, b = self._whole(chain[0] - frame.saddle[0]), self.map.angle(chain[0], chain[1])[0] - frame.angle

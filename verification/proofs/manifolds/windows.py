@@ -1,7 +1,7 @@
 """Starts of the contacts in windows of periodic attractors and small families, at `alpha = 0.08`.
 
-They end a family, join its bands, or widen the attractors of the main cascade; `docs/crises.md` explains each one. The
-starts were found numerically and refined by `tangency`.
+These contacts end a family, join its bands, or widen the attractors of the main cascade; `docs/crises.md` explains each
+one. The starts were found numerically and refined by `tangency`.
 """
 
 from verification.cycles.recurrence import Closure

@@ -1,19 +1,19 @@
 """Further proofs on cycles: elliptic islands, cycles over an interval of contractions, doubling of the egg's diameters.
 
 **Islands.** An elliptic cycle of the elastic map with a twist that is not 0 is surrounded by invariant curves. Moser's
-twist theorem [Moser1962] [SiegelMoser1971] requires of an area-preserving analytic map a multiplier `mu` on the unit
-circle whose first four powers are not 1, and a normal form `w -> mu*w*(1 + i*twist*|w|^2 + ...)` with `twist` not 0.
-Both are proved in balls on an enclosed cycle. The theorem itself is taken from the literature.
+twist theorem [Moser1962] [SiegelMoser1971] requires that an area-preserving analytic map has a multiplier `mu` on the
+unit circle whose first four powers are not 1, and a normal form `w -> mu*w*(1 + i*twist*|w|^2 + ...)` with `twist` not
+0. Both are proved in balls on an enclosed cycle. The theorem itself is taken from the literature.
 
-**An interval of contractions** is covered by small balls of `lam`. For each the interval Newton operator proves one
-cycle near a given one, and balls for trace and determinant of the monodromy matrix prove that it attracts, or is a
-saddle.
+**An interval of contractions** is covered by small balls of `lam`. For each ball the interval Newton operator proves
+one cycle near a given one, and balls for trace and determinant of its monodromy matrix prove that the cycle attracts,
+or that it is a saddle.
 
 **Doubling.** The egg's diameters undergo a supercritical period doubling all along `alpha-tilde`. On that curve the
-multiplier is -1 by a closed form, so only signs are to be proved, in balls that cover `0 <= lam <= 1`. With the vertex
-first, `turn = -(1 - lam**2)*u0*u1/d0` exactly, where `u`, `d` are the entries of the chain: its zero at `lam = 1` is
-divided out analytically. The flip is supercritical when `bend` and `turn` differ in sign; at `lam = 1` the second
-multiplier is -1 too, and a flip has no side there.
+multiplier is -1 by a closed form, so only signs remain to be proved, in balls that cover `0 <= lam <= 1`. With the
+vertex first, `turn = -(1 - lam**2)*u0*u1/d0` exactly, where `u`, `d` are entries of the chain, so the zero of `turn` at
+`lam = 1` is divided out analytically. The flip is supercritical when `bend` and `turn` differ in sign; at `lam = 1`
+both multipliers are -1, and a flip is neither super- nor subcritical.
 """
 
 import math
@@ -48,7 +48,7 @@ Checks = dict[str, bool | None]
 
 @dataclass(frozen=True)
 class Twist:
-    """Trace and twist of an elliptic cycle; `drift`, the cubic coefficient's real part, is 0 if area is preserved."""
+    """Trace and twist of an elliptic cycle; `drift` is the real part of the cubic coefficient, 0 if areas are kept."""
 
     trace: arb
     twist: arb
@@ -62,7 +62,7 @@ class Twist:
 
 
 def twist(points: Table, components: Sequence[int], bounces: Sequence[arb], bits: int) -> Twist:
-    """The twist of the elastic cycle through enclosed boundary parameters on these components.
+    """The twist of an elastic cycle whose bounces are enclosed boundary parameters on the given components.
 
     >>> from symbolic.tables import ellipse
     >>> axis = twist(ellipse.at(a=3), (0, 0), [-arb.pi() / 2, arb.pi() / 2], 100)  # trace 4*(1 - 2/9)^2 - 2
@@ -109,7 +109,7 @@ def birkhoff_normal_form(map: Map) -> Twist:
 
 @cache
 def _jet(table: Table, index: int, bits: int) -> Any:
-    """A function for the Taylor coefficients, to order 4, of `x` and then of `y` on a component."""
+    """A function that gives the Taylor coefficients, to order 4, of `x` and then of `y` on a component."""
     x, y = table.components[index].point
     terms = {f"{name}{k}": diff(f, theta, k) / factorial(k) for name, f in (("x", x), ("y", y)) for k in range(5)}
     return load(kernel("jet", [theta], terms), balls(bits))
@@ -121,7 +121,7 @@ SMALLEST = 2.0**-40  # above it halves are exact in floats
 
 @dataclass(frozen=True)
 class Sign:
-    """`supercritical` is True when proved for all contractions, None when the budget ended; `balls` counts them."""
+    """Result: `supercritical` is True if proved for all contractions, else None; `balls` is the number of balls."""
 
     supercritical: bool | None
     balls: int
@@ -163,7 +163,7 @@ ROUNDING = 2.0**-50  # so that neighbouring balls of lam overlap in spite of rou
 
 
 class Stability(Enum):
-    """The position of a cycle's two multipliers."""
+    """The position of a cycle's two multipliers relative to the unit circle."""
 
     ATTRACTING = "inside the unit circle"
     SADDLE = "one outside [-1, 1], one inside"
@@ -172,7 +172,7 @@ class Stability(Enum):
 
 @dataclass(frozen=True)
 class OverInterval:
-    """The proof over an interval: `proved` is True when `reached`, counted from the first end, is the other end."""
+    """Result: contractions from the first end to `reached` are done; `proved` is True if that is the other end."""
 
     proved: bool
     reached: float
@@ -220,7 +220,7 @@ def over_interval(
 
 
 def _radii(moved: list[float], theta: list[float], share: float) -> list[float]:
-    """A guess of the radii of bounces in the next step, from their last displacements."""
+    """A guess of the radii of the box of bounces in the next step, from their last displacements."""
     reaches = [abs((x - y) * share) for x, y in zip(moved, theta, strict=True)]
     return [0.7 * reach + 0.2 * max(reaches) + 1e-12 for reach in reaches]
 
@@ -246,7 +246,7 @@ def _proved(
 
 
 def _slopes(problem: Problem, zero: list[arb]) -> tuple[arb, arb] | None:
-    """The derivatives of trace and determinant by `lam`, along the cycle, over the ball of `lam`; or None."""
+    """The derivatives of trace and determinant by `lam` along the family of cycles, over a ball of `lam`; or None."""
     at = Linearised(problem, balls(BITS_OF_INTERVAL), zero)
     try:
         motion = dense(at.plain).solve(arb_mat([[-x] for x in at.terms.by["lam"]]))

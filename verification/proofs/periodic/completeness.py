@@ -1,20 +1,20 @@
 """The proof that a list of cycles of a short period is complete: every other closed chain of chords is excluded.
 
 Around each known cycle Krawczyk's operator proves a neighbourhood without a second one. All other chains are covered by
-boxes in the first bounce and the gaps (differences of `theta`) between bounces. A box is empty when one collision rule,
-or one linear combination of the rules, is proved not 0 in it, by enclosure or by the mean value theorem; the
+boxes in the first bounce and the gaps (differences of `theta`) between bounces. A box is excluded if one collision
+rule, or one linear combination of the rules, is proved not 0 in it, by enclosure or by the mean value theorem; the
 combinations are the rows of the inverse of the derivative at the midpoint, as in Krawczyk's operator. Other boxes are
 halved.
 
-On a convex table the chord's angle decreases as its end moves on, so gaps are excluded at which it exceeds every exit
-angle of the law: `lam*pi/2` for the paper's, for others a bound of `|phi|` over all incidence angles and places. A law
-that depends on `theta` must have the period `2*pi`, and rotated copies of its cycles are no cycles. A law in arc
-length, where that is an integral, jumps where the parameter closes; in a box that may reach the jump, the rules on both
-sides must be excluded by enclosure.
+On a convex table the chord's angle decreases as its end moves on, so gaps are excluded at which the angle exceeds every
+exit angle of the law: `lam*pi/2` for the paper's law, a bound of `|phi|` over all incidence angles and places for
+others. A law that depends on `theta` must have the period `2*pi`, and rotated copies of its cycles are not cycles in
+general. A law in terms of arc length, if that is an integral, jumps where the parameter closes; in a box that may reach
+the jump, the rules on both sides must be excluded by enclosure.
 
-A boundary of several components that join with one tangent has one parameter for all (`BoundaryChart`). A box that
-reaches over a join has the hull of values and slopes on both sides: the rules are continuous there, so the mean value
-theorem holds with it (`verification.maps.one_sided`).
+A boundary of several components that join with one tangent has one parameter for all (`BoundaryChart`). For a box that
+reaches over a join the hull of values and slopes on both sides is taken: the rules are continuous there, so the mean
+value theorem holds with this hull (`verification.maps.one_sided`).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -62,7 +62,7 @@ Reflection = Callable[[BallArray, BallArray], list[tuple[BallArray, BallArray, B
 
 @dataclass(frozen=True)
 class Completeness:
-    """`complete` is True if the `known` cycles are proved to be all of this period, None when the budget ended."""
+    """Result: `complete` is True if the `known` cycles are proved to be all of this period, None if undecided."""
 
     period: int
     complete: bool | None
@@ -73,7 +73,7 @@ class Completeness:
 def proofs(
     catalogue: Catalogue, lam: Expr, highest: int, budget: int, tick: Tick = lambda said: None
 ) -> Iterator[Completeness]:
-    """The completeness of the periods from 2 up to `highest`, until one stays open."""
+    """The completeness results for the periods from 2 up to `highest`, until one of them stays undecided."""
     for n in range(2, highest + 1):
         found = no_others(catalogue, lam, n, budget, tick)
         yield found
@@ -86,7 +86,7 @@ def no_others(
 ) -> Completeness:
     """The proof that the catalogue is complete for period `n`, on a convex table of one smooth component.
 
-    Chains are taken modulo the table's rotations where the catalogue has all rotated copies of its cycles.
+    Chains are taken modulo the table's rotations if the catalogue has all rotated copies of its cycles.
 
     >>> from sympy import Rational
     >>> from symbolic.tables import ellipse
@@ -133,9 +133,9 @@ def no_others(
 
 
 def one_smooth_curve(table: Table, law: Law) -> bool:
-    """Is the boundary one closed curve with a tangent everywhere, and none of its components straight?
+    """Is the boundary one closed curve that has a tangent everywhere and no straight component?
 
-    Several components are covered for laws that are the same at all places.
+    With several components, the law must also be independent of the place.
     """
     joined = len(curves(table)) == 1 and not (table.shapes or law.placed or table.undefined)
     bent = all(any(x.diff(letter, 2) != 0 for x in part.point) for part in table.components)
@@ -144,9 +144,9 @@ def one_smooth_curve(table: Table, law: Law) -> bool:
 
 @dataclass(frozen=True)
 class BoundaryChart:
-    """A closed curve of several components by one parameter `t` from 0 to `2*pi`, about arc length.
+    """A closed curve of several components with one parameter `t` from 0 to `2*pi`, roughly proportional to arc length.
 
-    On each component `theta = start + (t - low)*scale`, from `low` to `high`.
+    On each component `theta = start + (t - low)*scale` for `t` from `low` to `high`.
     """
 
     table: Table
@@ -157,7 +157,7 @@ class BoundaryChart:
 
     @classmethod
     def of(cls, table: Table) -> "BoundaryChart":
-        """The parameter of a table."""
+        """The chart of a table's boundary."""
         ends = [(enclosed(part.start), enclosed(part.end)) for part in table.components]
         shares = np.array([rough_length(part) for part in table.components])
         cuts = np.rint(2 * pi * np.cumsum(shares)[:-1] / np.sum(shares) * CUTS) / CUTS
@@ -168,17 +168,17 @@ class BoundaryChart:
 
     @property
     def least(self) -> float:
-        """The length of the shortest component."""
+        """The length of the shortest component in `t`."""
         return float(min(b.m - a.m for a, b in zip(self.low, self.high, strict=True)))
 
     def of_bounces(self, parts: Sequence[int], theta: Array) -> Array:
-        """The parameters of bounces, in float64."""
+        """The values of `t` at bounces, in float64."""
         columns = (np.array([float(ball[part].m) for part in parts]) for ball in (self.low, self.start, self.scale))
         low, start, scale = columns
         return np.asarray(low + (theta - start) / scale)
 
     def radii(self, parts: Sequence[int], radius: float) -> list[float]:
-        """Radii in the components' own parameters that hold those of `t`, on either side of a join."""
+        """Radii in the components' own parameters that hold a radius in `t`, on either side of a join."""
         known, found = joins(self.table), []
         for part in parts:
             beside = [self.scale[known.beyond[part, k]].m / known.ratio[part, k] for k in (0, 1)]
@@ -186,7 +186,7 @@ class BoundaryChart:
         return found
 
     def places(self, t: BallArray) -> Iterator[tuple[int, Mask, BallArray]]:
-        """The components that balls meet, which balls, and where these lie on them."""
+        """For each component, a mask of the balls of `t` that meet it, and the balls of its own parameter."""
         turn = WIDE.pi * 2
         t = t - turn * np.floor(t.m / turn.m)
         for shift, part in product((-1, 0, 1), range(len(self.scale))):
@@ -196,7 +196,7 @@ class BoundaryChart:
             yield part, meets, self.start[part] + (own - low) * self.scale[part]
 
     def angle(self, here: BallArray, there: BallArray) -> list[BallArray]:
-        """The angle of a chord and its slopes by both parameters: the hull over all components that may be met."""
+        """The angle of a chord and its slopes by both parameters, as hulls over the components the ends may lie on."""
         both = np.broadcast(np.atleast_1d(here.m), here.r, there.m, there.r)
         here, there = (spread(x, np.empty(both.shape)) for x in (here, there))
         low, high = np.full((3, *both.shape), np.inf), np.full((3, *both.shape), -np.inf)
@@ -213,7 +213,7 @@ class BoundaryChart:
 
 
 def rough_length(part: Component) -> float:
-    """The length of a component, by straight sides."""
+    """The approximate length of a component, by a polygon."""
     x, y = part.point
     point = load(kernel("point", [letter], {"x": x, "y": y}), FLOAT64)
     rows = np.array([point(float(at)) for at in np.linspace(float(part.start), float(part.end), 33)])
@@ -221,7 +221,7 @@ def rough_length(part: Component) -> float:
 
 
 def start(turn: int, n: int, gap: float) -> Cuboids:
-    """A box of all chains: the first bounce modulo rotations of the table, each gap from the least to the largest."""
+    """One box that holds all chains: the first bounce modulo rotations of the table, and gaps between their bounds."""
     reach, middle = np.ceil(2**10 * pi / turn) / 2**10, 3.125
     half = np.ceil(2**10 * (2 * pi - gap - middle)) / 2**10
     return Cuboids(np.array([[0.0] + [middle] * (n - 1)]), np.array([[reach] + [half] * (n - 1)]))
@@ -230,7 +230,7 @@ def start(turn: int, n: int, gap: float) -> Cuboids:
 def reflection(law: Law, contraction: BallArray, table: Table) -> Reflection:
     """A function from balls of `eta` and `theta` to a list of `(phi, -d phi/d eta, d phi/d theta)`.
 
-    The list has one entry; or two if the law contains arc length, which jumps at one place: one for each side of the
+    The list has one entry; if the law contains arc length, which jumps at one place, it has one for each side of the
     jump.
     """
     if law.uniform:
@@ -255,7 +255,7 @@ def measure(length: Lengths, theta: BallArray) -> BallArray:
 
 
 def ball_array(found: Sequence[arb]) -> BallArray:
-    """An array of balls from a sequence."""
+    """An array of float64 balls that hold the given balls."""
     m = np.array([float(x.mid()) for x in found])
     far = [float((x - arb(at)).abs_upper()) for x, at in zip(found, m, strict=True)]
     return BallArray(m, np.nextafter(np.array(far), np.inf))
@@ -268,7 +268,8 @@ def one_sided(theta: BallArray) -> Mask:
 
 
 def parted(theta: BallArray) -> list[BallArray]:
-    """Balls of parameters with midpoints reduced to `[-pi, pi]`; and again, shifted by a turn if they may pass an end.
+    """Balls of parameters with midpoints reduced to `[-pi, pi]`; and the same, shifted by a turn where they may pass an
+    end.
 
     >>> [x.m.round(2).tolist() for x in parted(BallArray(np.array([0.0, 3.0, 3.1, 6.3]), 0.1))]
     [[0.0, 3.0, 3.1, 0.02], [0.0, 3.0, -3.18, 0.02]]
@@ -295,14 +296,14 @@ def stays_below(law: Law, lam: Any, table: Table) -> bool:
 
 
 def enclosed(lam: Expr) -> BallArray:
-    """A number as a ball of float64."""
+    """A float64 ball that holds an exact number."""
     with working(BITS):
         found = ball_array([real_ball(lam)])
     return BallArray(found.m[0], found.r[0])
 
 
 def least_gap(angle: Any, largest: float) -> float:
-    """A gap up to which every chord, in either direction, leaves more steeply than `largest`; 0 if none is found."""
+    """A gap up to which every chord, in either direction, has an angle greater than `largest`; 0 if none is found."""
     pieces, gap = 256, 1.5
     starts = BallArray(2.0 * np.arange(pieces) + 1, 1.0) * WIDE.pi / pieces
     while gap > 0:
@@ -316,7 +317,7 @@ def least_gap(angle: Any, largest: float) -> float:
 def uniqueness_boxes(
     catalogue: Catalogue, problem: Problem, chart: BoundaryChart | None = None
 ) -> list[tuple[Array, float]]:
-    """Centres and radii of boxes that hold one cycle each, for each bounce of a known cycle as the first."""
+    """Centres and radii of boxes that hold exactly one cycle each, one box for each choice of first bounce."""
     n, found = problem.period, []
     for cycle in catalogue.of(n):
         own, parts = np.tile(cycle.theta, n // cycle.period), cycle.components * (n // cycle.period)
@@ -334,9 +335,10 @@ def uniqueness_boxes(
 
 
 def turned_copies(known: Sequence[tuple[Array, float]], problem: Problem, angle: float) -> bool:
-    """True if each known cycle, rotated by an angle, is proved to be a known one.
+    """True if each known cycle, rotated by an angle, is proved to be a known cycle.
 
-    A cycle lies within `CLOSE` of its digits, and these, rotated, within `ALIKE` of those of another, hence in its box.
+    A cycle lies within `CLOSE` of its digits, and the rotated digits within `ALIKE` of those of another cycle, hence in
+    the box of that cycle.
     """
     places = np.array([theta for theta, _ in known]).reshape(-1, problem.period)
     for theta in places:
@@ -351,7 +353,7 @@ def turned_copies(known: Sequence[tuple[Array, float]], problem: Problem, angle:
 
 @dataclass(frozen=True)
 class Cover:
-    """The data that exclude boxes of chains: the chord's angle, the law, and the least gap between bounces."""
+    """The functions and bounds that exclude boxes of chains: chord angle, law, and least gap between bounces."""
 
     angle: Any
     reflected: Reflection
@@ -361,7 +363,7 @@ class Cover:
 
     @classmethod
     def of(cls, table: Table, law: Law, lam: Expr) -> "Cover":
-        """The data of a table, a law and a contraction."""
+        """The cover for a table, a law and a contraction."""
         chart, contraction = BoundaryChart.of(table) if len(table.components) > 1 else None, enclosed(lam)
         angle = chart.angle if chart else load(chord_kernel(table, 0, 0, 1), WIDE)
         reflected = reflection(law, contraction, table)
@@ -370,7 +372,7 @@ class Cover:
             return cls(angle, reflected, least_gap(angle, float(largest)), law, chart)
 
     def empty(self, boxes: Cuboids, turns: int, known: Sequence[tuple[Array, float]] = ()) -> Mask:
-        """A mask: which boxes hold no cycle that goes round `turns` times, or lie in a box of `known`."""
+        """A mask of the boxes that hold no cycle with this number of `turns`, or that lie in a box of `known`."""
         n = boxes.middle.shape[1]
         wide = [BallArray(boxes.middle[:, k], boxes.half[:, k]) for k in range(n)]
         last = 2 * turns * WIDE.pi - total(wide[1:])
@@ -388,7 +390,7 @@ class Cover:
         return gone
 
     def _impossible(self, boxes: Cuboids, middle: Array, reach: Array) -> Mask:
-        """A mask: where a rule fails by enclosure or the mean value theorem, or a combination by the latter."""
+        """A mask of the boxes where one of the rules or of their linear combinations is proved not 0."""
         n, gone, smooth = boxes.middle.shape[1], np.zeros(boxes.size, dtype=bool), np.ones(boxes.size, dtype=bool)
         centre = [BallArray(middle[:, k]) for k in range(n)]
         theta = [BallArray(middle[:, k], reach[:, k]) for k in range(n)]
@@ -427,12 +429,12 @@ def total(terms: Iterable[BallArray]) -> BallArray:
 
 
 def apart(x: BallArray) -> Mask:
-    """A mask: which balls do not contain 0."""
+    """A mask of the balls that do not contain 0."""
     return x.positive() | x.negative()
 
 
 def inverses(slopes: list[list[BallArray]]) -> Array:
-    """Approximate inverses of matrices of midpoints, as rows; 0 where a matrix is singular."""
+    """Approximate inverses of matrices, given by balls whose midpoints are used, as rows; 0 for a singular matrix."""
     matrix = np.array([[s.m for s in row] for row in slopes]).transpose(2, 0, 1)
     good = np.all(np.isfinite(matrix), axis=(1, 2))
     good[good] = np.linalg.det(matrix[good]) != 0

@@ -4,10 +4,10 @@ The hypotheses, and how each is proved:
 
 - `exists`, `unique`: the interval Newton operator maps the box into its interior;
 - `precise`: the radius of the value is below `10**-digits`;
-- `admissible`: bounces inside their components, every chord first-hits the next one, and the law maps the half circle
-  of angles into itself;
-- `minimal_period`: no shorter cycle;
-- `simple_multiplier`, `transversal`, `nondegenerate`: the numbers of the normal form are not 0;
+- `admissible`: the bounces lie inside their components, every chord hits the next bounce first, and the law maps
+  `[-pi/2, pi/2]` into itself;
+- `minimal_period`: the cycle does not repeat a shorter one;
+- `simple_multiplier`, `transversal`, `nondegenerate`: the corresponding numbers of the normal form are not 0;
 - `other_multiplier_stable`: the other multiplier lies inside the unit circle.
 
 A cycle that passes all of them bifurcates as its kind says, at the enclosed value and nowhere else in the box.
@@ -57,13 +57,13 @@ BETWEEN = 2**40  # denominators of fractions that enclose a ball
 
 @dataclass(frozen=True, repr=False)
 class SolutionInBox(UniqueZero):
-    """A theorem with a document: a system of equations of a scene has exactly one solution in the box."""
+    """A theorem with a certificate: a system of equations of a scene has exactly one solution in a box."""
 
     schema = SCHEMA
     beside = ("checks",)
 
     def in_box(self, exact: Expr) -> bool:
-        """True if the ball of the last unknown holds a value known in closed form."""
+        """True if the enclosure of the last unknown holds the closed form `exact`."""
         with working(self.bits):
             return bool((self.centre[-1] + arb(0, self.radius)).overlaps(closed_form(exact, self.digits + 5)))
 
@@ -74,14 +74,14 @@ class SolutionInBox(UniqueZero):
 
     @property
     def statement_in_words(self) -> str:
-        """The sentence that the document states."""
+        """The sentence that the certificate states."""
         said = self.subject
         n = "{} bounces, and then their mirror images," if said["mirror"] else "its {} bounces"
         scene, count = title_of(said["scene"]), n.format(len(said["components"]))
         return STATEMENTS[said["kind"]].format(scene=scene, n=count, free=said["free"])
 
     def to_dict(self) -> dict[str, Any]:
-        """The statement as a JSON document; `ValueError` where it exceeds the limits of certificate checkers."""
+        """The statement as a JSON document; `ValueError` if it exceeds the limits of certificate checkers."""
         said = self.subject
         if self.bits > LARGEST_BITS or self.digits > LARGEST_DIGITS or len(said["components"]) > LONGEST:
             given = f"{self.digits} digits, {self.bits} bits or {len(said['components'])} bounces"
@@ -104,7 +104,7 @@ class SolutionInBox(UniqueZero):
 
     @classmethod
     def read(cls, given: Mapping[str, Any]) -> Self:
-        """The theorem that a document of this version states; `ValueError` where an entry is out of range."""
+        """The theorem that a document of this version states; `ValueError` if an entry is out of range."""
         bits, digits = int(given["bits"]), int(given["digits"])
         if not 16 <= bits <= LARGEST_BITS or not 1 <= digits <= LARGEST_BITS:
             wanted = f"bits from 16 and digits from 1, both up to {LARGEST_BITS}"
@@ -119,7 +119,7 @@ class SolutionInBox(UniqueZero):
 
     @classmethod
     def about(cls, given: Mapping[str, Any], lam: Expr | None, box: Box) -> Self:
-        """The theorem about the system that a document describes, with this box."""
+        """The theorem about the system that a document describes, for the given box."""
         raise NotImplementedError
 
 
@@ -165,7 +165,7 @@ class UniqueCycle(SolutionInBox):
 
     @property
     def system(self) -> Problem:
-        """The equations of the problem."""
+        """The equations of the problem, as a system."""
         return self.problem
 
     @hypothesis(refutable=True)
@@ -175,12 +175,12 @@ class UniqueCycle(SolutionInBox):
 
     @property
     def theta(self) -> list[arb]:
-        """The bounces; only half of them where their mirror images complete the cycle."""
+        """The bounces of the box; only half of them if their mirror images complete the cycle."""
         return self.enclosure.zero[: self.problem.period]
 
     @property
     def whole(self) -> tuple[tuple[int, ...], list[arb]]:
-        """Components and bounces of the whole cycle, with the mirror images where these complete it."""
+        """Components and bounces of the whole cycle, with the mirror images if they complete it."""
         bounces = self.theta + [-x for x in self.theta] if self.problem.mirror else self.theta
         return self.problem.components * (len(bounces) // self.problem.period), bounces
 
@@ -199,9 +199,10 @@ class UniqueCycle(SolutionInBox):
 
     @cached_property
     def sides(self) -> list[Side]:
-        """The bounces by the components on which they may lie: more than one way where the box reaches over joins.
+        """The ways to assign the bounces to components on which they may lie; several if the box reaches over joins.
 
-        With the slopes of their parameters by those of the bounces. Nothing where there are too many ways.
+        Each way has the components, the parameters on them, and the derivatives of these by the bounces' own
+        parameters. The list is empty if there are too many ways.
         """
         table = self.problem.table
         several = self.problem.kind is None and len(table.components) > 1
@@ -212,14 +213,14 @@ class UniqueCycle(SolutionInBox):
 
     @property
     def one_sided(self) -> OneSided | None:
-        """What the derivatives on all sides show, where the box reaches over a join; None where it does not."""
+        """The verdict of the one-sided derivatives if the box reaches over a join; else None."""
         if not (self.found and len(self.sides) > 1):
             return None
         with working(self.bits):
             return verdict([self.derivative(*side) for side in self.sides])
 
     def derivative(self, parts: Sequence[int], theta: list[arb], slopes: list[arb]) -> Matrix:
-        """That of the return map in two successive bounces, on one side of each join, their speeds matched there."""
+        """Derivative of the return map in two successive bounces, for one assignment of the bounces to components."""
         words = balls(self.bits)
         ring = Chords(self.problem.table, tuple(parts), law=self.problem.law)
         terms = ring.bounces(words, IDENTITY.padded(theta, 0), self.problem.at(words, self.enclosure.zero), 2)
@@ -227,16 +228,16 @@ class UniqueCycle(SolutionInBox):
 
     @property
     def form(self) -> NormalForm | None:
-        """The normal form of the bifurcation; None for a cycle without one."""
+        """The normal form of the bifurcation; None for a cycle without a bifurcation."""
         return None
 
     @property
     def supercritical(self) -> Verdict:
-        """True when a flip gives birth to a stable cycle beside the unstable one; None when not decided."""
+        """True if a flip gives birth to a stable cycle beside the unstable one; None if not decided."""
         return self.form.supercritical if self.form else None
 
     def first_hits(self) -> Verdict:
-        """True if bounces lie inside their components and no chord meets the boundary on its way; else None."""
+        """True if the bounces lie inside their components and no chord meets the boundary on its way; else None."""
         problem, law, (parts, whole) = self.problem, self.problem.law, self.whole
         shape = (self.value,) if problem.table.shapes else ()  # else lam, or a letter of the law, is free
         turns = not law.measured and is_periodic(law.phi)  # arc length is not periodic
@@ -259,7 +260,7 @@ class UniqueCycle(SolutionInBox):
         return bool(above and (high.is_infinite or self.value <= real_ball(high)))
 
     def reflects(self) -> bool:
-        """True if the law is proved to map `[-pi/2, pi/2]` into itself, over the free parameter's ball."""
+        """True if the law is proved to map `[-pi/2, pi/2]` into itself, for all values of the free parameter."""
         problem, law, free = self.problem, self.problem.law, self.value
         if law.uniform:
             return True
@@ -271,7 +272,8 @@ class UniqueCycle(SolutionInBox):
 
     @property
     def name(self) -> str:
-        """The title of the theorem; a name known to `locate` where the box holds its value in closed form.
+        """The title of the theorem; a name known to `locate` if the box holds the closed form that belongs to this
+        name.
 
         A doubling has no name, since other cycles of the same period double too.
         """
@@ -315,7 +317,7 @@ class UniqueCycle(SolutionInBox):
 
     @classmethod
     def about(cls, given: Mapping[str, Any], lam: Expr | None, box: Box) -> Self:
-        """The theorem about the problem that a document describes, with this box."""
+        """The theorem about the problem that a document describes, for the given box."""
         components = tuple(int(i) for i in given["components"])
         if not 2 <= len(components) <= LONGEST:
             raise ValueError(f"certificate: {len(components)} bounces are out of range; accepted: 2 to {LONGEST}")
@@ -338,7 +340,7 @@ class Bifurcation(UniqueCycle):
 
     @cached_property
     def generic(self) -> tuple[NormalForm | None, tuple[Verdict, ...]]:
-        """The normal form, with few bits where these suffice, and the verdict on each of its numbers."""
+        """The normal form, at low precision if this suffices, and the verdicts on its numbers."""
         found: tuple[NormalForm | None, tuple[Verdict, ...]] = None, (None,) * 4
         for bits in (min(self.bits, 2 * slope_bits(len(self.centre))), self.bits) if self.found else ():
             try:
@@ -386,7 +388,7 @@ class AttractingCycle(UniqueCycle):
 
     @cached_property
     def invariants(self) -> tuple[arb, arb]:
-        """Trace and determinant of the monodromy matrix; NaN where they are not enclosed."""
+        """Trace and determinant of the monodromy matrix; NaN if they are not enclosed."""
         with working(self.bits):
             try:
                 chain = Linearised(self.problem, balls(self.bits), self.enclosure.zero).plain
@@ -418,7 +420,7 @@ def _nonzero(x: arb) -> Verdict:
 
 
 def cycle_in_box(problem: Problem, centre: tuple[arb, ...], radius: arb, bits: int, digits: int) -> UniqueCycle:
-    """The theorem that a box holds one cycle of the problem; with its bifurcation if the problem has a kind."""
+    """The theorem that a box holds exactly one cycle, which includes its bifurcation if the problem has a kind."""
     return (Bifurcation if problem.kind else UniqueCycle)(centre, radius, bits, digits, problem)
 
 

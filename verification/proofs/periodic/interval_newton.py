@@ -2,10 +2,10 @@
 
 The interval Newton operator is for long cycles, Krawczyk's operator for wide boxes around short cycles. For a box `X`
 with midpoint `m`, every zero in `X` lies in `N = m - F'(X)^-1 F(m)`, and when `N` lies in the interior of `X` there is
-exactly one. `F'(X)^-1` is applied by elimination in balls, in linear time (see `verification.cycles.chain`); it needs
-no preconditioner, and contracts at least as well.
+exactly one. `F'(X)^-1` is applied by elimination in balls, in linear time (see `verification.cycles.chain`); the
+elimination needs no preconditioner, and contracts at least as well as with one.
 
-Krawczyk's operator [Krawczyk1969] is `K = m - Y F(m) + (1 - Y F'(X)) (X - m)` with `Y` near the inverse of the middle
+Krawczyk's operator [Krawczyk1969] is `K = m - Y F(m) + (1 - Y F'(X)) (X - m)` with `Y` near the inverse of the midpoint
 of `F'(X)`. The preconditioner is a full matrix, so the cost is cubic in the period; in return the balls of `F'(X)` may
 be wide, for which elimination along the chain fails. For a ball of contractions the dependence on `lam` is the single
 term `Y dF/dlam (lam - middle)`, with the derivative over the whole ball.
@@ -28,7 +28,7 @@ from verification.rigorous.theorem import Verdict, hypothesis
 
 
 class ZeroStatus(Enum):
-    """The verdict on the zeros in a box."""
+    """The verdict on the zeros of a system in a box."""
 
     UNIQUE = "exactly one zero in the box"
     EMPTY = "no zero in the box"
@@ -37,7 +37,7 @@ class ZeroStatus(Enum):
 
 @dataclass(frozen=True)
 class Enclosure:
-    """A verdict, and balls that contain every zero of the box."""
+    """A verdict on a box, and balls that contain every zero in the box."""
 
     status: ZeroStatus
     zero: list[Any]
@@ -69,7 +69,7 @@ def interval_newton(system: System, centre: list[arb], radius: arb, bits: int) -
 
 @dataclass(frozen=True, repr=False)
 class UniqueZero(Certified):
-    """A system has exactly one zero in the box of a radius around a centre, both exact."""
+    """A system has exactly one zero in the box of a given radius around a centre, both exact."""
 
     centre: tuple[arb, ...]
     radius: arb
@@ -87,7 +87,7 @@ class UniqueZero(Certified):
 
     @property
     def system(self) -> System:
-        """The equations, with the unknowns of `centre`."""
+        """The equations, in the unknowns of which `centre` gives values."""
         raise NotImplementedError
 
     @cached_property
@@ -97,13 +97,13 @@ class UniqueZero(Certified):
 
     @property
     def value(self) -> arb:
-        """The ball of the last unknown: at a bifurcation the free parameter."""
+        """The enclosure of the last unknown, which at a bifurcation is the free parameter."""
         value: arb = self.enclosure.zero[-1]
         return value
 
     @property
     def found(self) -> bool:
-        """True if exactly one solution is proved."""
+        """True if it is proved that the box has exactly one solution."""
         return self.enclosure.status is ZeroStatus.UNIQUE
 
     @hypothesis(refutable=True)
@@ -125,7 +125,7 @@ class UniqueZero(Certified):
 def stepped(centre: Sequence[Any], box: Sequence[Any], correction: Callable[[], Sequence[Any]]) -> Enclosure:
     """The verdict of an interval Newton step on a box, in real or complex balls.
 
-    `correction()` encloses `F'(box)^-1 F(centre)`; where it divides by 0, nothing is proved.
+    `correction()` encloses `F'(box)^-1 F(centre)`; if it divides by 0, nothing is proved.
     """
     try:
         image = [x - d for x, d in zip(centre, correction(), strict=True)]
@@ -135,7 +135,7 @@ def stepped(centre: Sequence[Any], box: Sequence[Any], correction: Callable[[], 
 
 
 def slope_bits(unknowns: int) -> int:
-    """The bits for the derivatives, which need not grow with the digits since `F` at the midpoint is tiny.
+    """The number of bits for the derivatives, which need not grow with the digits since `F` at the midpoint is tiny.
 
     >>> slope_bits(3)
     144
@@ -152,7 +152,7 @@ def _image(system: System, value: list[arb], centre: list[arb], box: list[arb], 
 
 
 def compared(image: Sequence[Any], box: Sequence[Any]) -> ZeroStatus:
-    """The verdict on a box, from its image: inside the box, disjoint from it, or neither."""
+    """The verdict on a box from its image: whether it lies inside the box, is disjoint from it, or neither."""
     if not all(y.is_finite() for y in image):
         return ZeroStatus.UNKNOWN
     if all(x.contains_interior(y) for x, y in zip(box, image, strict=True)):
@@ -190,7 +190,7 @@ def krawczyk(problem: Problem, centre: list[arb], radii: list[float], bits: int)
 
 
 def dense(chain: Chain) -> arb_mat:
-    """The matrix of a chain of linear equations, with all its entries."""
+    """The matrix of a chain of linear equations, as a dense matrix."""
     n = len(chain.diagonal)
     rows = [[arb(0)] * n for _ in range(n)]
     for i, (lower, diagonal, upper) in enumerate(chain.rows):

@@ -7,8 +7,8 @@ exp(i*omega)`. The bounces of orbits near the cycle are
 
 and one round carries `z` to `mu*z + cubic*z**2*conj(z)`, up to `abs(z)**4`, unless `mu**k = 1` for a `k` up to 4.
 Inserted into the rules, each power of `z` gives a linear system, closed by that power of `mu`; the system of
-`z**2*conj(z)` is singular, and solvable for one value of `cubic` only. Three real curves, with `z` at 0, 120 and 240
-degrees, separate the powers.
+`z**2*conj(z)` is singular, and solvable for one value of `cubic` only. The powers are separated by means of three real
+curves, with `z` at 0, 120 and 240 degrees.
 
 **Theorem** ([RuelleTakens1971]; [Kuznetsov2004], section 4.7). Let a smooth map of the plane have, at one value of a
 parameter, a fixed point with the multipliers `mu` and `conj(mu)` on the unit circle. If
@@ -18,16 +18,17 @@ parameter, a fixed point with the multipliers `mu` and `conj(mu)` on the unit ci
 - `lyapunov = Re(conj(mu)*cubic)` is not 0,
 
 then for each parameter near that value, on the side with the sign of `-lyapunov/growth`, one closed invariant curve
-surrounds the fixed point nearby, and shrinks to it. It attracts if `lyapunov < 0` and repels if `lyapunov > 0`. It is
-of any finite smoothness near enough to the value. In the angle of `z` the map on it tends to the rotation by `omega`.
+surrounds the fixed point nearby, and shrinks to it. It attracts if `lyapunov < 0` and repels if `lyapunov > 0`. The
+curve has any finite smoothness near enough to the value. In the angle of `z` the map on the curve tends to the rotation
+by `omega`.
 
 **Irrational rotation.** The curves are graphs over that angle with a common Lipschitz bound, and there is one for each
-parameter; so they depend on it continuously, and so does the rotation number. It tends to `omega/(2*pi)`. Where that is
-irrational, the rotation number is constant, or takes all values of an interval: in both cases it is irrational for
-parameters arbitrarily near. There the map on the curve, which is twice differentiable, is conjugate to that rotation
-[Denjoy1932]. And `omega/(2*pi)` is irrational whenever `2*cos(omega)` is rational and not an integer: otherwise
-`exp(i*omega)` would be a root of unity and twice its real part an algebraic integer. So the trace is prescribed, and
-two parameters are the unknowns.
+parameter, so they depend on the parameter continuously, and so does the rotation number. It tends to `omega/(2*pi)`.
+Suppose that `omega/(2*pi)` is irrational. Then the rotation number is constant, or takes all values of an interval: in
+both cases it is irrational for parameters arbitrarily near. For these the map on the curve, which is twice
+differentiable, is conjugate to an irrational rotation [Denjoy1932]. And `omega/(2*pi)` is irrational whenever
+`2*cos(omega)` is rational and not an integer: otherwise `exp(i*omega)` would be a root of unity and twice its real part
+an algebraic integer. So the trace is prescribed, and two parameters are the unknowns.
 """
 
 from collections.abc import Mapping, Sequence
@@ -58,8 +59,8 @@ MARGIN = 6  # extra digits of the start
 class Rotating:
     """The system for a cycle with multipliers `exp(+-i*omega)`: the unknowns are its bounces and two `free` numbers.
 
-    Each is a parameter, or `trace`, which is `2*cos(omega)`; the others are `fixed`. Besides the rules there is one
-    complex equation: the linearised rules are singular for vectors that a round multiplies by `mu`.
+    The `free` numbers are parameters, or `trace = 2*cos(omega)`; the other parameters are `fixed`. Besides the rules
+    there is one complex equation: the linearised rules are singular for vectors that a round multiplies by `mu`.
 
     >>> from verification.cycles.newton import floats
     >>> from verification.cycles.recurrence import delayed
@@ -102,7 +103,7 @@ class Rotating:
 
 
 class Rotation:
-    """The equations of a cycle with rotating multipliers, at a point or over a box; derivatives and normal form."""
+    """Equations of a cycle with complex multipliers, their derivatives and normal form, at a point or over a box."""
 
     def __init__(self, problem: Rotating, arithmetic: Arithmetic, z: Vector, order: int = 2) -> None:
         self.problem, self.arithmetic = problem, arithmetic
@@ -117,18 +118,18 @@ class Rotation:
         self.value: Vector = [*self.terms.value, self.critical.bordering.real, self.critical.bordering.imag]
 
     def closed(self, sign: Any) -> Elimination:
-        """The factorised linear rules, for vectors that a round multiplies by `sign`."""
+        """The factorised linearised rules, for vectors that a round multiplies by `sign`."""
         return Elimination(Chain(*self.terms.slope, self.closure.turn * sign))
 
     @property
     def turn(self) -> Any:
-        """The bordering function's derivative by the multiplier, which is not 0 if and only if that is simple."""
+        """The derivative of the bordering function by the multiplier, not 0 exactly if the multiplier is simple."""
         lower, _, upper = self.terms.slope
         v, w, back = self.critical.right, self.critical.left, self.mu.conjugate()
         return self.closure.turn * (w[-1] * upper[-1] * v[0] - back * back * w[0] * lower[0] * v[-1])
 
     def speeds(self, names: Sequence[str]) -> tuple[Vector, list[tuple[Vector, Any]]]:
-        """The bordering function's derivatives by the bounces, and by each parameter with the cycle's motion."""
+        """Derivatives of the bordering function: by the bounces; and by each parameter, with the cycle's motion."""
         by_bounce, by = bordering_slopes(self.terms, self.closure, self.critical.right, self.critical.left, self.mu)
         found = []
         for name in names:
@@ -160,7 +161,7 @@ class Rotation:
         return -self.mu.conjugate() * speed / self.turn
 
     def cubic(self) -> Any:
-        """`conj(mu)` times the coefficient of `z**2*conj(z)`, where the last bounce moves by `2*Re(z)`."""
+        """Coefficient of `z**2*conj(z)` times `conj(mu)`, for `z` scaled so that the last bounce moves by `2*Re(z)`."""
         words, mu = self.arithmetic, self.mu
         half, root = words.q(1, 2), words.sqrt(words.q(3, 4))
         phases = [complex_number(2 * half, 0 * half), complex_number(-half, root), complex_number(-half, -root)]
@@ -171,7 +172,7 @@ class Rotation:
         return -mu.conjugate() * dot(self.critical.left, harmonic(phases, third, 1)) / self.turn
 
     def expanded(self, phase: Any, bent: Sequence[tuple[Any, Any]]) -> Vector:
-        """The rules' coefficients of `e**2` along `z = e*phase`; or of `e**3`, given `h20` and `h11` of each bounce."""
+        """The coefficients of `e**2` in the rules along `z = e*phase`; or of `e**3`, given pairs `(h20, h11)`."""
         rule, order = self.ring.over(jets(self.arithmetic)), 3 if bent else 2
 
         def at(i: int, phase: Any) -> Jet:
@@ -187,7 +188,7 @@ class Rotation:
 
 
 def complex_number(real: Any, imaginary: Any) -> Any:
-    """A complex number of the same kind as its parts.
+    """A complex number of the same kind as its real and imaginary part.
 
     >>> complex_number(1.0, 2.0)
     (1+2j)
@@ -223,17 +224,17 @@ class Torus:
 
     @property
     def certified(self) -> bool:
-        """True when every item of the checklist is proved."""
+        """True if every item of the checklist is proved."""
         return all(value is True for value in self.checks.values())
 
     @property
     def attracting(self) -> bool | None:
-        """True where the closed curve attracts, False where it repels, None when undecided."""
+        """True if the closed curve attracts, False if it repels, None if undecided."""
         return True if self.lyapunov < 0 else False if self.lyapunov > 0 else None
 
     @property
     def side(self) -> int:
-        """1 where the curve exists for larger values of the parameter, -1 for smaller ones, 0 when undecided."""
+        """The sign 1 if the curve exists for larger values of the parameter, -1 if for smaller ones, 0 if undecided."""
         way = -self.lyapunov * self.growth
         return 1 if way > 0 else -1 if way < 0 else 0
 
@@ -268,7 +269,8 @@ def torus(problem: Rotating, start: Sequence[Any], parameter: str, digits: int =
 
 
 def on_the_table(ring: Chords, at: Rotation) -> dict[str, bool | None]:
-    """Further items: the cycle is an orbit of a convex table of one smooth curve, with this minimal period.
+    """Further items of the checklist: the cycle is an orbit of a convex table of one smooth curve, with this minimal
+    period.
 
     The contraction must lie between 0 and 1, so that the map has a smooth inverse.
     """

@@ -8,8 +8,8 @@ up to the fold. The remaining condition, `1 + trace + det > 0`, is proved in bal
 The paper argues against period 3 at small contractions. Its argument takes three bounces from every position with *any*
 initial angle, and says that up to `lambda_c` the orbit never returns to that position after three bounces. A
 counterexample refutes it: an orbit that obeys the collision rules at the second and third bounce and returns to the
-given first position. A second one has an initial angle of at most `lam*pi/2`, which a collision can produce (in a
-convex table every such angle is produced).
+given first position. A second counterexample has an initial angle of at most `lam*pi/2`, which a collision can produce
+(in a convex table every such angle is produced).
 
 The theorem that a range of contractions has no cycle of period 3 is proved by excluding every triangle. For a period-3
 cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior angles `phi_i - eta_i`, which add up to
@@ -20,7 +20,8 @@ cycle of a convex table the collision rule `phi_i = -lam*eta_i` and the interior
 So `phi_i <= lam*pi/(1 + lam)`. Since `phi` falls as the landing point moves on, this gives a least gap between bounces.
 Triangles with at least these gaps are covered by boxes. A box is excluded when one of the equations is proved false in
 it, by enclosure or by the mean value theorem, and halved otherwise. The angles are enclosed from the gaps and the polar
-equation of the egg: most of a box's width is a rotation of the whole triangle, which changes them little.
+equation of the egg: the width of a box comes mostly from rotations of the whole triangle, which change the angles
+little.
 """
 
 import math
@@ -49,7 +50,7 @@ BITS = 80
 
 
 def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
-    """True if `1 + trace + det > 0` is proved on the whole branch, ends included; None when the budget ends.
+    """True if `1 + trace + det > 0` is proved on the whole branch, ends included; None if the budget ends before.
 
     >>> from sympy import Rational
     >>> flips_nowhere(Rational(2, 25))
@@ -95,9 +96,9 @@ PRODUCED = Rational(2, 5), (4.8086, 8.9349)  # at alpha = 2/25, lam = 3/10
 
 @dataclass(frozen=True)
 class Witness:
-    """An orbit of the egg that starts at `theta0` with exit angle `angle`, and whose third bounce is at `theta0` again.
+    """An orbit of the egg that starts at `theta0` with exit angle `angle` and returns to `theta0` after three flights.
 
-    `exists` is True when it is proved; `produced` is True when a collision can produce the angle: `|angle| <=
+    `exists` is True if the orbit is proved; `produced` is True if a collision can produce the angle: `|angle| <=
     lam*pi/2`.
     """
 
@@ -126,7 +127,7 @@ def returning(alpha: Expr, lam: Expr, theta0: Rational) -> Small:
 def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float]) -> Witness:
     """The proved orbit that returns to `theta0` with second and third bounce near `near`.
 
-    There is one at `lam = 0`, and at `lam = 3/10` one with an angle that a collision can produce.
+    Such orbits are proved at `lam = 0`, and at `lam = 3/10` with an angle that a collision can produce.
 
     >>> one = witness(Rational(2, 25), Rational(0), *SLAP)
     >>> one.exists, one.produced
@@ -156,9 +157,9 @@ SMALLEST = 2.0**-36  # above it ends of boxes are exact in floats
 
 @dataclass(frozen=True)
 class Exclusion:
-    """The search: `excluded` is True when every box was excluded, None when the budget ended.
+    """The result of the search: `excluded` is True if every box was excluded, None if the budget ended.
 
-    `share` is the excluded part of the volume, `smallest` the size of the smallest box.
+    `share` is the excluded fraction of the volume, `smallest` the size of the smallest box.
     """
 
     excluded: bool | None
@@ -193,7 +194,7 @@ def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick:
 
 
 def _gap(angle: Any, largest: arb) -> float:
-    """A gap between parameters up to which every exit angle exceeds `largest`."""
+    """A gap of parameters up to which every chord's angle at its start exceeds `largest`; 0 if none is found."""
     gap, pieces = 1.5, 400
     while gap > 0:
         step = 2 * arb.pi() / pieces
@@ -226,10 +227,11 @@ def _volume(box: Box) -> float:
 
 
 def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, box: Box, closer: Any = None) -> bool:
-    """True when it is proved that no triangle of the box obeys the equations.
+    """True if it is proved that no triangle in the box obeys the equations.
 
     `angles` returns exit and incidence angles at three bounces, and `slopes` also their derivatives in twice the time.
-    `closer` encloses the angles from the gaps (`polar_polygon_kernel`), which needs a twentieth of the boxes.
+    `closer` encloses the angles from the gaps (`polar_polygon_kernel`), which reduces the number of boxes to a
+    twentieth.
     """
     (first, _), (one, _), (two, _) = box
     wide = [arb(m, r) for m, r in box]
@@ -266,7 +268,7 @@ def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, 
 
 
 def _from_gaps(angles: Any, closer: Any, theta: Vector, gaps: Vector) -> Vector:
-    """The six angles of a triangle from its gaps, or from its parameters where the gaps give no finite enclosure."""
+    """The six angles of a triangle from its gaps; or from its parameters, if the gaps give no finite enclosure."""
     values = closer(*theta, *gaps)
     found, ahead = values[:6], values[6:]
     if all(a > 0 for a in ahead) and all(x.is_finite() for x in found):

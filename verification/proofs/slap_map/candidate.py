@@ -2,15 +2,16 @@
 
 `L`, `F`, `g` and launching points are defined in `transfer`. The second summand of the transfer operator `L` ends at
 `pi/4`, where it vanishes quadratically; so a derivative of the density jumps at `pi/4` and, ever more weakly, at its
-images. Between them the density is analytic. The approximation is found by collocation at Chebyshev points, in floats
-refined in multiprecision. It is not proved; the residual `L f - f` and the mean of `log F'` are then bounded in balls.
+images. Between them the density is analytic. The approximation is found, without proof, by collocation at Chebyshev
+points, in floats refined in multiprecision. The residual `L f - f` and the mean of `log F'` are then bounded in balls,
+with proof.
 
-For this the half table is cut into *stretches* at the ends of pieces, at their images and at `pi/4`, each image between
-two exact points `2*margin` apart. Where balls prove that the launching points of a stretch lie within one piece, the
-residual `r = L f - f` is analytic on it, and `r` and `r'` are bounded by Taylor series at the middle, with the last
-coefficient enclosed over the whole stretch. On the other stretches, which are tiny, the contributions of all pieces
-that they meet are bounded separately. A jump of `f` contributes itself and its image under `L` to the variation of `r`;
-at `pi/4` there is no jump, since `f(pi/2) = 0`.
+For this the half table is cut into *stretches* at the ends of pieces, at their images and at `pi/4`, each image
+enclosed between two exact points `2*margin` apart. If balls prove that the launching points of a stretch lie within one
+piece, the residual `r = L f - f` is analytic on it, and `r` and `r'` are bounded by Taylor series at the middle, with
+the last coefficient enclosed over the whole stretch. On the other stretches, which are tiny, the contributions of all
+pieces that they meet are bounded separately. A jump of `f` contributes itself and its image under `L` to the variation
+of `r`; at `pi/4` there is no jump, since `f(pi/2) = 0`.
 """
 
 from bisect import bisect_right
@@ -35,7 +36,7 @@ SPARE = 2  # extra digits of the approximation
 
 @dataclass(frozen=True)
 class PiecewisePolynomial:
-    """A piecewise polynomial on `[0, pi/2]`, in `(y - middle)/half` between exact `ends`, the last above `pi/2`."""
+    """A function on `[0, pi/2]`, on each piece a polynomial in `(y - middle)/half`; the last end is above `pi/2`."""
 
     ends: list[arb]
     polynomials: list[list[arb]]
@@ -46,7 +47,7 @@ class PiecewisePolynomial:
         return (y - (low + high) / 2) * (2 / (high - low))
 
     def value(self, piece: int, y: Any) -> Any:
-        """The polynomial of a piece at a ball or a series."""
+        """The value of the polynomial of a piece at a ball or a series."""
         z = self.local(piece, y)
         total = z * 0
         for coefficient in reversed(self.polynomials[piece]):
@@ -54,7 +55,7 @@ class PiecewisePolynomial:
         return total
 
     def met(self, low: arb, high: arb) -> range:
-        """The indices of the pieces whose closed intervals meet the one from `low` to `high`, two balls."""
+        """The indices of the pieces whose closed intervals may meet the interval from `low` to `high`."""
         last = len(self.polynomials)
         first = next((k for k in range(last) if not self.ends[k + 1] < low), last - 1)
         beyond = next((k for k in range(first, last) if self.ends[k] > high), last)
@@ -66,7 +67,7 @@ class PiecewisePolynomial:
         return sum((abs(self.value(k, end) - self.value(k - 1, end)) for k, end in inner), arb(0))
 
     def integral(self) -> arb:
-        """The integral from 0 to `pi/2`."""
+        """The integral of the function from 0 to `pi/2`."""
         total = arb(0)
         for k, coefficients in enumerate(self.polynomials):
             anti = arb_poly(coefficients).integral()
@@ -75,14 +76,14 @@ class PiecewisePolynomial:
         return total
 
     def grounded(self) -> "PiecewisePolynomial":
-        """The function with a constant added to the last piece, so that it is 0 at `pi/2`."""
+        """The function with a constant added on the last piece, such that the value at `pi/2` is 0."""
         last = list(self.polynomials[-1])
         last[0] -= self.value(len(self.polynomials) - 1, arb.pi() / 2)
         return PiecewisePolynomial(self.ends, [*self.polynomials[:-1], last])
 
 
 def breaks(digits: int, bits: int) -> list[arb]:
-    """The ends of pieces: `pi/4`, those of its images at which the density is not smooth enough, and points between."""
+    """The ends of pieces: `pi/4`, those of its images where the density is not smooth enough, and points in between."""
     at = Branches(bits)
     point, weight = (arb.pi() / 4).mid(), 1.0
     found = [point]
@@ -101,12 +102,12 @@ def breaks(digits: int, bits: int) -> list[arb]:
 
 
 def precision(digits: int) -> int:
-    """The bits of the arithmetic for a density of so many digits."""
+    """The number of bits used for a density of so many digits."""
     return bits_of(digits, 64) + 2 * digits
 
 
 def candidate(digits: int) -> PiecewisePolynomial:
-    """The approximate density, to about `digits` digits; its integral is near 1, and it is 0 at `pi/2`.
+    """The approximate density, to about `digits` digits; its integral is near 1, and its value at `pi/2` is 0.
 
     >>> with working(128):
     ...     near = candidate(4)
@@ -149,7 +150,7 @@ def candidate(digits: int) -> PiecewisePolynomial:
 
 
 def _carried(ends: list[arb], points: list[arb], size: int, bits: int) -> list[list[tuple[int, list[arb]]]]:
-    """For each collocation point the terms of `L`: the index of the first coefficient, and the factors of all."""
+    """The terms of `L` at each collocation point: index of a piece's first coefficient, and all its factors."""
     at, quarter = Branches(bits), arb.pi() / 4
     floats = [float(end) for end in ends]
     rows = []
@@ -204,7 +205,7 @@ OWN, BELOW, ABOVE = 0, -1, 1  # the function itself; the summands of L with land
 
 @dataclass(frozen=True)
 class Residual:
-    """Upper bounds of the `L1` norm and of the variation of `L f - f`; 0 for an invariant density `f`."""
+    """Upper bounds of the `L1` norm and of the variation of `L f - f`, which is 0 for an invariant density `f`."""
 
     norm: arb
     variation: arb
@@ -212,7 +213,7 @@ class Residual:
 
 @dataclass(frozen=True)
 class Judge:
-    """Rigorous bounds for a piecewise polynomial that is 0 at `pi/2`, sharp to about `digits` digits."""
+    """Rigorous bounds for a piecewise polynomial that is 0 at `pi/2`, in balls fit for about `digits` digits."""
 
     pieces: PiecewisePolynomial
     digits: int
@@ -225,12 +226,12 @@ class Judge:
 
     @cached_property
     def branches(self) -> Branches:
-        """The function `g` and its derivative."""
+        """The launching point `g` and its derivative, as functions of the landing."""
         return Branches(self.bits)
 
     @cached_property
     def stretches(self) -> list[tuple[arb, arb]]:
-        """The stretches, from 0 to beyond `pi/2`; their ends are exact, and the last one is the tail at the cusp."""
+        """Stretches, from 0 to beyond `pi/2`; their ends are exact, and the last stretch is the tail at the cusp."""
         ends, half_pi = self.pieces.ends, arb.pi() / 2
         if not ends[0] == 0 or not ends[-2] < half_pi < ends[-1]:
             raise ValueError(f"density: pieces from {ends[0]} to {ends[-1]}; they must reach from 0 to beyond pi/2")
@@ -253,7 +254,7 @@ class Judge:
         return Residual(arb(norm.abs_upper()), arb(change.abs_upper()))
 
     def mean(self) -> arb:
-        """The integral of `log F'` times the piecewise polynomial; `F` is the slap map in half angles."""
+        """The integral of `log F'` times the piecewise polynomial, where `F` is the slap map in half angles."""
         *inner, (low, high) = self.stretches
         rate = self.branches(-low)[1]  # it grows away from the cusp, as does -rate*log(rate) below 1/e
         if not rate * 3 < 1:
@@ -264,7 +265,7 @@ class Judge:
         return sum((self._integral(*ends) for ends in inner), rest)
 
     def _longest(self, low: arb) -> float:
-        """The longest stretch from `low` on whose series converges fast; it affects the precision only."""
+        """A length up to which series on a stretch from `low` converge fast; it affects the precision only."""
         ends = self.pieces.ends
         limits = [LONGEST, NEARNESS * float(arb.pi() / 2 - low)]
         launched = [self.branches(low * side) for side in (BELOW, ABOVE) if side == BELOW or low * 4 < arb.pi()]
@@ -274,7 +275,7 @@ class Judge:
         return min(limits)
 
     def _met(self, side: int, low: arb, high: arb) -> range:
-        """The pieces that the launching points of a stretch meet, in the summand `side` of `L`."""
+        """The indices of the pieces that the launching points of a stretch meet, for the summand `side` of `L`."""
         one, other = sorted((side * low, side * high), key=lambda end: end.fmpq())
         return self.pieces.met(self.branches(one)[0], self.branches(other)[0])
 
@@ -283,7 +284,7 @@ class Judge:
         return inside
 
     def _sides(self, low: arb, high: arb) -> tuple[dict[int, range], bool]:
-        """The pieces met by each summand of `L` on a stretch; and True if each is one piece."""
+        """The pieces met by each summand of `L` on a stretch; and whether each summand meets one piece only."""
         quarter = arb.pi() / 4
         beyond = low > quarter
         met = {side: self._met(side, low, high) for side in ((BELOW,) if beyond else (BELOW, ABOVE))}
@@ -291,7 +292,7 @@ class Judge:
         return met, single and bool(beyond or high < quarter)
 
     def _part(self, side: int, piece: int) -> Function:
-        """A function: summand `side` of `L` for the polynomial of one piece, or with `OWN` that polynomial itself."""
+        """Function that summand `side` of `L` makes of the polynomial of one piece; for `OWN` the polynomial itself."""
 
         def terms(x: arb_series) -> arb_series:
             launch, rate = (x, 1) if side == OWN else self.branches(side * x)
@@ -309,7 +310,7 @@ class Judge:
         return terms
 
     def _bounds(self, low: arb, high: arb) -> tuple[arb, arb]:
-        """Upper bounds, on a stretch, of the residual `r = L f - f` and of its derivative, in absolute value."""
+        """Upper bounds of the absolute values of the residual `r = L f - f` and of its derivative, on a stretch."""
         met, single = self._sides(low, high)
         itself = self._part(OWN, self._own(low, high))
         if single:
@@ -321,7 +322,7 @@ class Judge:
         return sum((each.size() for each in found), arb(0)), sum((each.slope() for each in found), arb(0))
 
     def _integral(self, low: arb, high: arb) -> arb:
-        """The integral of `log F'` times the function over the launching points of a stretch, from both summands."""
+        """Integral of `log F'` times the function over the launching points of a stretch, summed over both summands."""
         met, single = self._sides(low, high)
         total = arb(0)
         for side, pieces in met.items():
@@ -334,7 +335,7 @@ class Judge:
 
 
 def _parted(low: arb, high: arb, longest: Callable[[arb], float]) -> Iterator[tuple[arb, arb]]:
-    """A stretch cut into parts, each at most `longest(start)` long."""
+    """A stretch cut into parts; a part from `start` on is at most `longest(start)` long."""
     while low < high:
         end = min(high, (low + longest(low)).mid())  # equals `high` unless the other is surely less
         yield low, end

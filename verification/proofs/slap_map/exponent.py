@@ -1,12 +1,12 @@
 """Theorems on slap maps: the Lyapunov exponent of the cardioid at `lam = 0`, critical points, and periodic points.
 
 Notation and `Var(L f) <= shrinks*Var f + adds*||f||` are those of `slap_map.transfer`, for functions on `[0, pi/2]` of
-bounded variation that end in 0; norms are in `L1`.
+bounded variation with limit 0 at `pi/2`; norms are in `L1`.
 
 **There is one invariant density.** The means of `L^n f`, for any such density `f`, are bounded in variation, so by
-Helly's theorem a subsequence converges, to a density `h = L h`; it ends in 0, because the rate is 0 at the cusp. Let
-`e` be a function with `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P e) + P r`, and
-`||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
+Helly's theorem a subsequence converges, to a density `h = L h`; its limit at `pi/2` is 0, because the rate is 0 at the
+cusp. Let `e` be a function with `e = L e + r`, with integral 0. Average over `N` cells: `P e = Q P e + PL(e - P e) + P
+r`, and `||f - P f|| <= (c/2)*Var f` with cells of length `c = pi/(2*N)`. With `K` of `slap_map.transfer`,
 
     ||e|| <= (c/2)*(K + 1)*Var e + K*||r||,     Var e <= (adds*||e|| + Var r)/(1 - shrinks),
 
@@ -37,18 +37,18 @@ Assumed: python-flint, float64 arithmetic and the machine are correct. Not prove
 Not in the paper.
 
 **Critical points.** The egg's slap map `T0` has no critical point, three or six, for every shape (paper: section 6.2).
-`T0' = 0` where the centre of curvature lies on the boundary. With `C = cos(3*theta)` let `k` be its distance from the
-centre of the table minus that of the boundary in the same direction: `T0'` has the sign of `-k`. It is proved in balls
-that cover `-1 <= C <= 1`, `0 <= alpha <= 1/10` that `k` is not 0, or falls as `C` grows. So for each `alpha` there is
-one zero of `k` if `k > 0` at the flat points (`C = -1`), and none if `k < 0` there. A zero with `-1 < C < 1` stands for
-six points, one at `C = -1` for the three flat points.
+`T0' = 0` where the centre of curvature lies on the boundary. With `C = cos(3*theta)` let `k` be the distance of the
+centre of curvature from the centre of the table, minus that of the boundary point in the same direction; `T0'` has the
+sign of `-k`. It is proved in balls that cover `-1 <= C <= 1`, `0 <= alpha <= 1/10` that `k` is not 0, or falls as `C`
+grows. So for each `alpha` there is one zero of `k` if `k > 0` at the flat points (`C = -1`), and none if `k < 0` there.
+A zero with `-1 < C < 1` stands for six points, one at `C = -1` for the three flat points.
 
 **Periodic points.** The slap map of the cuspless cardioid has no cycle of period 4. This is proved by bisection of the
 boundary into intervals whose images are enclosed. An interval that does not meet its image holds no periodic point;
 where `(T0**n)' - 1` keeps its sign it holds at most one, and adjacent intervals with the same sign are joined. The
-remaining intervals are as many as the known periodic points. Where the sign changes between adjacent intervals, as it
-may at a kink of the map, each can hold one. Paper: section 5.4 (`the graph of the 4th iterate confirms that there are
-no period-4 orbits`).
+number of intervals that remain is that of the known periodic points. Where the sign changes between adjacent intervals,
+as it may at a kink of the map, each can hold one. Paper: section 5.4 (`the graph of the 4th iterate confirms that there
+are no period-4 orbits`).
 """
 
 from dataclasses import dataclass, replace
@@ -73,9 +73,9 @@ DIGITS = 14
 
 @dataclass(frozen=True)
 class ChaoticProof:
-    """The proved exponent: `value` is a ball that contains it if `certified`, else it means nothing.
+    """The proved exponent: `value` is a ball that contains the exponent if `certified`, and else means nothing.
 
-    `distance` bounds the variation, and so the maximum, of the density minus its approximation.
+    `distance` is a bound of the variation, and so of the maximum, of the density minus its approximation.
     """
 
     value: arb
@@ -86,7 +86,7 @@ class ChaoticProof:
 
     @property
     def certified(self) -> bool:
-        """True when every item of the checklist is proved."""
+        """True if every item of the checklist is proved."""
         return all(value is True for value in self.checks.values())
 
 
@@ -117,8 +117,9 @@ def gap(inverse: Inverted, known: Variation) -> arb:
 def judged(near: PiecewisePolynomial, digits: int, inverse: Inverted, known: Variation | None = None) -> ChaoticProof:
     """The exponent from any approximation of the density: a bad one makes it imprecise, but never wrong.
 
-    The items: the inequality for variations holds; the averaged operator is inverted; the gap is positive, so that the
-    natural measure exists and is unique; the approximation has a positive mass; at most two digits were lost.
+    The items of the checklist are: the inequality for variations holds; the averaged operator is inverted; the gap is
+    positive, so that the natural measure exists and is unique; the approximation has a positive mass; at most two
+    digits were lost.
     """
     known = known or variation()
     bits = precision(digits)
@@ -149,7 +150,7 @@ WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # C and alpha; boxes of shapes abov
 
 @dataclass(frozen=True)
 class OneZero:
-    """`proved` is True when `k` has at most one zero for each shape and falls there, None when the budget ended."""
+    """Result: `proved` is True if `k` has at most one zero for each shape and falls there, None if the budget ended."""
 
     proved: bool | None
     boxes: int
@@ -190,7 +191,7 @@ def halves(box: Box) -> list[Box]:
 
 @dataclass(frozen=True)
 class PeriodicPoints:
-    """Intervals with at most one solution of `T0**n(x) = x` each, `T0` the slap map, which hold all; None when open."""
+    """Intervals that together hold all solutions of `T0**n(x) = x`, each at most one, or None; `T0` is the slap map."""
 
     stretches: list[tuple[int, float, float]] | None
     boxes: int
@@ -235,12 +236,12 @@ def _end(end: arb) -> float:
 
 
 def _sign(x: arb) -> int:
-    """1 or -1 when the sign is proved, else 0."""
+    """The sign 1 or -1 if it is proved, else 0."""
     return 0 if not x.is_finite() else 1 if x > 0 else -1 if x < 0 else 0
 
 
 def _joined(stretches: list[tuple[int, float, float, int]]) -> list[tuple[int, float, float]]:
-    """Adjacent intervals joined where the slope of `T0**n`, less 1, has the same sign on both."""
+    """The intervals, with adjacent ones joined where the slope of `T0**n` minus 1 has the same sign on both."""
     made: list[tuple[int, float, float, int]] = []
     for component, low, high, sign in stretches:
         if made and (made[-1][0], made[-1][3]) == (component, sign) and low <= made[-1][2]:

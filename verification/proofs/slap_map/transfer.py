@@ -6,21 +6,23 @@ The slap map commutes with `theta -> -theta`, so it acts on the half angle `y = 
 
     (L f)(x) = rate(-x)*f(g(-x)) + rate(x)*f(g(x)),       the second summand for x < pi/4 only.
 
-Let `f` have bounded variation and end in 0 at `pi/2`. Then so does `L f`: the rate is 0 at the cusp, and the second
-summand ends at `x = pi/4` with `f(pi/2) = 0`, so there is no jump. Its variation is at most
+Let `f` have bounded variation and end in 0 at `pi/2`. Then `L f` has the same properties: the rate is 0 at the cusp,
+and the second summand ends at `x = pi/4` with `f(pi/2) = 0`, so there is no jump. Its variation is at most
 
     integral of rate*d|f(g)|  +  integral of abs(rate')*abs(f(g)).
 
-`symbolic.cycles.cardioid_slap` proves: away from the cusp `abs(rate') < STEEP*rate`, which adds `STEEP*||f||_1`. Near
-it, for launching points below `y0`, the rate grows from 0 to `eta < SHRINKS/2`, which adds at most `eta*sup|f|`, and
-there `sup|f| <= Var f + (1/y0)*integral of |f|`. So variation at launching points below `y0` is multiplied by at most
-`2*eta < SHRINKS`, elsewhere by `SHRINKS`, and together (the inequality of [LasotaYorke1973], norms in `L1`)
+`symbolic.cycles.cardioid_slap` proves that away from the cusp `abs(rate') < STEEP*rate`, which adds `STEEP*||f||_1`.
+Near the cusp, for launching points below `y0`, the rate grows from 0 to `eta < SHRINKS/2`, which adds at most
+`eta*sup|f|`, and there `sup|f| <= Var f + (1/y0)*integral of |f|`. So variation at launching points below `y0` is
+multiplied by at most `2*eta < SHRINKS`, elsewhere by `SHRINKS`, and together (the inequality of [LasotaYorke1973],
+norms in `L1`)
 
     Var(L f) <= SHRINKS*Var f + B*||f||,      B = max(STEEP, eta/y0).
 
 The inverse of `1 - L`, averaged over cells, is bounded with Ulam's matrix [Ulam1960]: with `N` equal cells and `P` the
-average over each, `Q = P L P` is the matrix of the shares of each cell that are mapped to the others. For vectors of
-sum 0, `||u|| <= K*||(I - Q) u||` in `L1`. Any matrix `X` proves such a `K`: from `u = X(I - Q)u + (I - X(I - Q))u`,
+average over each, `Q = P L P` is the matrix of the fractions of each cell that are mapped to each of the cells. For
+vectors of sum 0, `||u|| <= K*||(I - Q) u||` in `L1`. Any matrix `X` proves such a `K`: from `u = X(I - Q)u + (I - X(I -
+Q))u`,
 
     K = |X| / (1 - |I - X(I - Q)|),        |A| = max over columns of ||column - w||, for any vector w,
 
@@ -69,7 +71,7 @@ TURN = -0.1  # the landing at which the formula of the launching point changes
 
 @dataclass(frozen=True)
 class Variation:
-    """`Var(L f) <= shrinks*Var f + adds*||f||` for the transfer operator `L`; `proved` when all its lemmas are."""
+    """Inequality `Var(L f) <= shrinks*Var f + adds*||f||` for the transfer operator `L`; `proved` if its lemmas are."""
 
     shrinks: arb
     adds: arb
@@ -114,14 +116,14 @@ class Branches:
         self.of_series = [load(branch(above), in_series(balls(bits), arb_series)) for above in (False, True)]
 
     def __call__(self, landing: Any) -> tuple[Any, Any]:
-        """The launching half angle and the rate, from a landing half angle."""
+        """The launching half angle and the rate `g'`, as functions of the landing half angle."""
         series = isinstance(landing, arb_series)
         above = not (landing[0] if series else landing) < TURN
         launch, rate = (self.of_series if series else self.of_balls)[above](landing)
         return launch, rate
 
     def landing(self, launch: arb, bits: int) -> arb:
-        """The landing half angle of a particle launched at an exact half angle, by Newton's method; not enclosed."""
+        """The landing half angle of a particle launched at an exact half angle, by Newton's method; not proved."""
         point = arb(landed(float(launch)))
         for _ in range(2 + bits.bit_length()):
             found, rate = self(point)
@@ -130,7 +132,7 @@ class Branches:
 
 
 def landed(launch: float) -> float:
-    """The same as `Branches.landing` in floats, by bisection.
+    """The landing half angle for a launching half angle, in floats, by bisection.
 
     >>> round(abs(landed(0.9553166181245093)), 9)  # atan(sqrt(2)) lands on the axis
     0.0
@@ -153,9 +155,9 @@ BLANKET = 1 + 1e-9  # over the rounding of a sum of at most 1e5 positive doubles
 
 @dataclass(frozen=True)
 class Inverted:
-    """A bound `||u|| <= bound*||(I - Q)u||` for Ulam's matrix `Q`; None where the approximate inverse is bad.
+    """A bound `||u|| <= bound*||(I - Q)u||` for Ulam's matrix `Q`; `bound` is None if the inverse is bad.
 
-    It holds for vectors of sum 0 when the `sign` of the first summand is 1, and for all vectors when it is -1.
+    The bound holds for vectors of sum 0 if the `sign` of the first summand is 1, and for all vectors if it is -1.
     """
 
     cells: int
@@ -165,7 +167,7 @@ class Inverted:
 
 
 def launching_points(cells: int) -> tuple[Matrix, Matrix]:
-    """`g(-x)` and `g(x)` at the ends of cells, in units of a cell, rounded down to multiples of `1/GRAIN`."""
+    """Launching points `g(-x)` and `g(x)` at the ends of cells, in units of a cell, rounded to the grid `1/GRAIN`."""
     if cells not in range(2, 4097, 2):
         raise ValueError(f"ulam: cells = {cells}; an even number of at most 4096 is needed")
     at = Branches(BITS)
@@ -204,7 +206,7 @@ def ulam(cells: int, sign: int = 1) -> csc_matrix:
 def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Inverted:
     """The bound `K` of the module docstring, from an approximate `inverse` of `I - Q`, made in floats if not given.
 
-    It holds for vectors of sum 0; with a `sign` of -1 for all vectors.
+    The bound holds for vectors of sum 0; with `sign = -1` it holds for all vectors.
 
     >>> found = inverted(64)
     >>> found.defect < 1e-6, 10 < found.bound < 30
@@ -227,10 +229,11 @@ def inverted(cells: int, inverse: Matrix | None = None, sign: int = 1) -> Invert
 
 
 def _in_floats(matrix: csc_matrix, sign: int) -> Matrix:
-    """An approximate inverse of `I - Q`, with Ulam's `Q = matrix`, on vectors of sum 0 (`sign = 1`) or on all vectors.
+    """An approximate inverse of `I - Q`, with Ulam's `Q = matrix`, on vectors of sum 0 (`sign = 1`) or on all vectors
+    (`sign = -1`).
 
-    The upper half `A` of the cells is mapped to the lower half `B`, so its unknowns are eliminated, and the matrix to
-    invert is half as large: with `r = (I - Q)u` the equations of `B` are
+    The upper half `A` of the cells is mapped to the lower half `B`. So the unknowns of `A` are eliminated, and the
+    matrix to invert is half as large. With `r = (I - Q)u` the equations of `B` are
 
         (I - Q_BB - Q_BA*Q_AB) u_B = r_B + Q_BA*r_A,     u_A = r_A + Q_AB*u_B,
 

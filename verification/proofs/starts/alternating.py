@@ -2,17 +2,18 @@
 
 The hypotheses of `Alternating` are proved at one contraction between `lambda*` and `lambda_c`. The table is convex, so
 chords are flights; the polygon is that of `verification.proofs.corner.half_return`, in which every orbit that misses
-the joins has a positive exponent, and the *core* a tube around the horizontal orbit. Two orbits that leave the saddle
-are followed in balls, each landing a first hit inside a component, so the map is a diffeomorphism near them. So *on
-each smooth curve that crosses the saddle's stable manifold transversally, infinitely many intervals of the two basins,
-alternately, accumulate at the crossing*. Proof: let `x` be the crossing, with an orbit that misses the joins. For `lam
-> 0` the map is a diffeomorphism near each of its bounces, so images of the curve are transverse curves, which converge
-to each compact piece of the unstable manifold by the inclination lemma. Each piece from a point to its image under two
-bounces holds a point of each of the two orbits, and following that orbit into the tube or the polygon is an open
-condition. The part of the curve that does so after `2*n` bounces shrinks to `x` as `n` grows.
+the joins has a positive exponent, and the *core* is a tube around the horizontal orbit. Two orbits that leave the
+saddle are followed in balls. Each landing is proved to be a first hit inside a component, so the map is a
+diffeomorphism near the orbits. So *on each smooth curve that crosses the saddle's stable manifold transversally,
+infinitely many intervals of the two basins, alternately, accumulate at the crossing*. Proof: let `x` be the crossing,
+with an orbit that misses the joins. For `lam > 0` the map is a diffeomorphism near each of its bounces, so images of
+the curve are transverse curves, which converge to each compact piece of the unstable manifold by the inclination lemma.
+Each piece from a point to its image under two bounces holds a point of each of the two orbits, and following that orbit
+into the tube or the polygon is an open condition. The part of the curve that does so after `2*n` bounces shrinks to `x`
+as `n` grows.
 
 So each neighbourhood of a point of the stable manifold holds open sets of both basins, infinitely many of each. Nothing
-is proved of points elsewhere. Paper: section 5.2, at `lam = 9/100`.
+is proved about other points. Paper: section 5.2, at `lam = 9/100`.
 """
 
 from collections.abc import Callable
@@ -64,7 +65,7 @@ class Alternating(Theorem):
 
     @cached_property
     def branch(self) -> ManifoldSeries | None:
-        """The enclosed unstable manifold of the saddle; None where it is not proved."""
+        """The enclosed unstable manifold of the saddle; None if it is not proved."""
         return unstable_branch(VERTICAL, Pinball(tables.cardioid), self.lam, BITS)
 
     @hypothesis
@@ -94,7 +95,7 @@ class Alternating(Theorem):
 
     @cached_property
     def polygon(self) -> ProvedRange | None:
-        """The trapping polygon, in units of `lam - lambda*`; None where it is not proved."""
+        """The trapping polygon, in units of `lam - lambda*`; None if it is not proved."""
         with working(BITS):
             e = float((arb(fmpq(self.lam.numerator, self.lam.denominator)) - enclosed()[1]).mid())
             found = step(limit(), (e - WIDE, e + WIDE)) if e > WIDE else None
@@ -111,7 +112,7 @@ class Alternating(Theorem):
     def in_polygon(self, before: Bounce, here: Bounce) -> bool:
         """True if two successive bounces are proved to be a point of the polygon, or of its mirror image.
 
-        As in `half_return`, its coordinates `(u, v)` mean a flight from `-theta1 + e*u` to `e*v` beyond the upper
+        As in `half_return`, the point `(u, v)` stands for a flight from `-theta1 + e*u` to `e*v` beyond the upper
         corner.
         """
         if self.polygon is None or before.component != ARC or here.component not in (ARC, WALL):
@@ -126,7 +127,7 @@ class Alternating(Theorem):
         return False
 
     def _comes(self, start: float, inside: Callable[[Bounce, Bounce], bool]) -> bool:
-        """True if the orbit from a start is proved to come `inside`, each landing a first hit off the joins."""
+        """True if the orbit from a start is proved to come `inside`, by first hits off the joins only."""
         if self.branch is None or not self.saddle:
             return False
         (point,) = self.branch.points(self.side, [start], [start])

@@ -3,15 +3,16 @@
 Let a barrier be given on one smooth closed convex curve. Above it there are an attracting cycle with a disc in its
 basin, and a saddle; both repeat after one bounce and a rotation of the table by `1/turns`. The hypotheses are those of
 `BasinEdge`. Let `S` be the set of starts whose orbits neither come below the barrier nor enter the disc. The orbit of
-such a start is an infinite walk in the graph of cells, so from some bounce on it is in the cells around the saddle,
-which it cannot leave and re-enter. There its difference to the saddle does not grow, hence shrinks: it converges to the
-saddle. Conversely, orbits that converge to the saddle start in `S`. So *`S` is the stable manifold of the saddle*. It
-is closed, since the other starts form two disjoint open sets: the basin of the cycle, and the starts whose orbits come
-below the barrier.
+such a start is an infinite walk in the graph of cells, so from some bounce on it stays in the cells around the saddle,
+to which no walk returns after leaving. There the difference between orbit and saddle does not grow, hence it shrinks,
+and the orbit converges to the saddle. Conversely, orbits that converge to the saddle start in `S`. So *`S` is the
+stable manifold of the saddle*. It is closed, since the other starts form two disjoint open sets: the basin of the
+cycle, and the starts whose orbits come below the barrier.
 
 *It is an embedded curve, as smooth as the map.* Let the orbit of `x` in `S` be in the interior of the cells around the
-saddle from bounce `n` on. Points of `S` near `x` are there at bounce `n` too, and stay, since those that leave never
-return and are not in `S`. So near `x` the set `S` is the preimage of the local stable manifold under a diffeomorphism.
+saddle from bounce `n` on. Points of `S` near `x` are in these cells at bounce `n` too, and stay there, since orbits
+that leave never return and are not in `S`. So near `x` the set `S` is the preimage of the local stable manifold under a
+diffeomorphism.
 
 *The basin's boundary is a union of whole components of `S`.* The boundary lies in `S`. Each side of a short arc of `S`
 lies in one of the two open sets, so all of the arc belongs to the boundary, or none. Nothing is proved below the
@@ -83,7 +84,7 @@ class BasinEdge(Theorem):
 
     @cached_property
     def place(self) -> tuple[float, float] | None:
-        """The phase point of the saddle, much closer than `NEAR`, for all contractions; None where not proved."""
+        """The phase point of the saddle, enclosed much closer than `NEAR` for all contractions; None if not proved."""
         with working(BITS):
             low, high = (arb(fmpq(x.numerator, x.denominator)) for x in self.barrier.lam)
             map = Pinball(self.barrier.map.map.table, turn=self.barrier.turns)
@@ -154,7 +155,7 @@ class BasinEdge(Theorem):
         return np.array_equal(graph.connected(some), some) and self._inside(boxes.chosen(some[:-1]))
 
     def _absorbed(self, boxes: Boxes) -> Mask:
-        """A mask: which cells lie below the barrier, or (with all corners) in the convex disc or a rotated copy."""
+        """A mask of the cells that lie below the barrier, or in the convex disc or a rotated copy of it."""
         (a, b), (c, d) = self.disc.inverse
         det, held = a * d - b * c, np.ones(boxes.chart.size, dtype=bool)
         for theta in boxes.x:
@@ -164,7 +165,7 @@ class BasinEdge(Theorem):
         return held | self.barrier.below(boxes)
 
     def _meets(self, boxes: Boxes) -> Mask:
-        """A mask: which cells meet the smaller square around the saddle, or a rotated copy."""
+        """A mask of the cells that meet the smaller square around the saddle, or a rotated copy of it."""
         assert self.place is not None
         middles = [(low + high) / 2 for low, high in (boxes.x, boxes.y)]
         halves = [(high - low) / 2 for low, high in (boxes.x, boxes.y)]
@@ -179,6 +180,6 @@ class BasinEdge(Theorem):
         return bool(boxes.chart.size and np.all(np.concatenate([*x, *y]) < WITHIN * (1 - SLACK)))
 
     def _beside(self, theta: Array, centre: float) -> Array:
-        """Differences of angles from `centre`, modulo rotations of the table."""
+        """Differences of angles from `centre`, modulo the rotations of the table."""
         off = theta - centre
         return np.asarray(off - self.turn * np.rint(off / self.turn))

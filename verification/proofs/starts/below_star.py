@@ -4,7 +4,7 @@ This is proved for all exit angles up to `ANGLE` in modulus and every `0 <= lam 
 
 *Up to `NEXT`*, by a graph of boxes. From the cells of these starts, walks to recurrent cells lead only to those around
 the horizontal orbit. Orbits that stay in these converge to it, by contraction (`fates`), or because the cells on the
-wall lie in an attracting tube (`core`), which every walk reaches, as none stays on the arc.
+wall lie in an attracting tube (`core`); every walk reaches these cells, as none stays on the arc.
 
 *From `NEXT` to `lambda*`*. The half return near the corner orbit (`verification.proofs.corner.half_return`) is a map
 `(U, V) -> (U1, V1)`. A state `(U, V)` is a flight from the arc at `-theta1 + U` to the distance `V` beyond the upper
@@ -16,18 +16,18 @@ continuous derivatives on either side of `V = 0`. So with `e = lambda* - lam` it
 - the image of an inner state has `0 <= U1 <= U_END`, `0 < V1 <= FAR` and `U1 <= LEAN*V1 + THICK`;
 - if `U >= 0` and `V >= 0` then `V1 >= q*V + c*e` with `q > 1` and `c > 0`. So `V` grows by at least a factor and a
   positive number at each half return, until it lies between `V_HIGH` and `FAR`;
-- no orbit has all its states within `abs(U) <= U_END` and `V_LOW <= V <= V_HIGH`. If none of them were inner, then
-  `U < -K*e` in each and `U1 >= a*U` with `a < 1`, so that `U` would tend to 0; and after an inner state `V` grows
-  beyond `V_HIGH`. So no orbit stays in boxes next to the corner orbit, and *almost every orbit converges to the
-  horizontal one* when the other recurrent boxes are sinks and saddles (`fates`).
+- no orbit has all its states within `abs(U) <= U_END` and `V_LOW <= V <= V_HIGH`. If none of the states were inner,
+  then `U < -K*e` in each and `U1 >= a*U` with `a < 1`, so that `U` would tend to 0, which is a contradiction; and after
+  an inner state `V` grows beyond `V_HIGH`. So no orbit stays in boxes next to the corner orbit, and *almost every orbit
+  converges to the horizontal one* when the other recurrent boxes are sinks and saddles (`fates`).
 
 All states with `V_HIGH <= V <= FAR` and `-THICK <= U <= LEAN*V + THICK`, called *exits*, are in the tube around the
 horizontal orbit, or an entry tube (`core`, `exits`).
 
 An orbit that starts at the join lands on the arc, at `theta1 - U`, and then `V1 = r*U + c*e`. For `abs(U) <= BESIDE`
 the state `(U, V1)` is inner or an exit (`starts`): if `U < -K*e` then `V1 < 0` and `K*(abs(V1) + e) >= abs(U)`, since
-`abs(V1) >= r*abs(U) - c*e`, `K*r > c` and `K*r > 1`. The other starts are covered by parallelograms, which are mapped
-until all are in the tube or an entry tube (`carried`).
+`abs(V1) >= r*abs(U) - c*e`, `K*r > c` and `K*r > 1`. The other starts are covered by parallelograms, whose images are
+followed until all are in the tube or an entry tube (`carried`).
 """
 
 from collections.abc import Sequence
@@ -107,7 +107,7 @@ def join_orbits_end_on_axis(one: AlmostEveryOrbit, tube: AbsorbingTube | None) -
 
 
 def _within(boxes: Boxes, parts: Sequence[Cluster]) -> bool:
-    """True if each box lies in a rectangle of a sink, and meets none of another component."""
+    """True if each box lies in a rectangle of a sink and meets no rectangle of another component."""
     held, clear = np.zeros(boxes.chart.size, dtype=bool), np.ones(boxes.chart.size, dtype=bool)
     for part in parts:
         for chart, left, right, low, high in zip(part.boxes.chart, *part.boxes.x, *part.boxes.y, strict=True):
@@ -125,8 +125,8 @@ def _within(boxes: Boxes, parts: Sequence[Cluster]) -> bool:
 class ConvergenceBelowLambdaStar(Theorem):
     """For `lam < lambda*` orbits from the upper join at angles up to `ANGLE` converge to the horizontal orbit.
 
-    `ranges` are graphs for consecutive ranges of contractions from 0 to `NEXT`, each with a tube or None; `tube` is for
-    the contractions from `NEXT` to `lambda*`.
+    `ranges` has theorems for consecutive ranges of contractions from 0 to `NEXT`, each with a tube or None; `tube` is
+    for the contractions from `NEXT` to `lambda*`.
     """
 
     ranges: tuple[tuple[AlmostEveryOrbit, AbsorbingTube | None], ...]
@@ -134,12 +134,12 @@ class ConvergenceBelowLambdaStar(Theorem):
 
     @cached_property
     def map(self) -> PinballImages:
-        """The map for all contractions from `NEXT` to `TOP`."""
+        """The enclosing map on boxes, for all contractions from `NEXT` to `TOP`."""
         return PinballImages(Scene("cuspless"), (NEXT, TOP))
 
     @cached_property
     def depth(self) -> arb:
-        """The distance of `lambda*` above `NEXT`."""
+        """The difference `lambda* - NEXT`, as a ball."""
         with working(BITS):
             above: arb = enclosed()[1] - exact(NEXT).real
         return above
@@ -210,18 +210,18 @@ class ConvergenceBelowLambdaStar(Theorem):
 
 @dataclass(frozen=True)
 class AlmostEveryOrbitBesideLambdaStar(AlmostEveryOrbit):
-    """Almost every orbit converges to one of the cycles, for each contraction of a range that is below `lambda*`."""
+    """Almost every orbit converges to one of the cycles, for each contraction of a range that lies below `lambda*`."""
 
     @cached_property
     def depth(self) -> arb:
-        """The distance of `lambda*` above the lower end of the range."""
+        """The difference between `lambda*` and the lower end of the range, as a ball."""
         with working(BITS):
             above: arb = enclosed()[1] - exact(self.lam[0]).real
         return above
 
     @cached_property
     def beside(self) -> Mask:
-        """The vertices of components whose leaves all lie next to the corner orbit, in its cyclic order."""
+        """Vertices of components whose leaves all lie next to the corner orbit, in the cyclic order of its bounces."""
         graph, found = self.graph, np.zeros_like(self.graph.recurrent)
         chosen = np.flatnonzero(graph.recurrent[:-1] & graph.leaf)
         boxes = graph.grid.boxes(Cells(*(field[chosen] for field in graph.cells)))
@@ -275,13 +275,13 @@ class AlmostEveryOrbitBelowLambdaStar(Theorem):
 
 
 def _leaving(theta: arb) -> arb:
-    """The exit angle at the upper join of the chord to a point `theta` of the arc."""
+    """The exit angle, at the upper join, of the chord from there to the point `theta` of the arc."""
     here, there = corner_parameters()[ARC], theta
     return angle(BoundaryPoint(ARC, constant(here, ())), BoundaryPoint(ARC, constant(there, ())))[0]
 
 
 def _end(depth: arb) -> float:
-    """A double above `depth`: rounding to nearest could omit contractions next to `NEXT`."""
+    """A double above `depth`, since rounding to nearest could omit contractions next to `NEXT`."""
     return float(depth.upper()) * (1 + 2.0**-40)
 
 
@@ -301,7 +301,7 @@ def hulls(depth: arb) -> dict[int, Hull]:
 
 
 def inner(hull: dict[int, Hull], depth: arb) -> bool:
-    """The inequalities of the module docstring for images of inner states; the second variable is `abs(V)`."""
+    """True if the module docstring's inequalities for inner states hold; the second variable is `abs(V)`."""
     steps = []
     for component, sign in ((ARC, -1), (WALL, 1)):
         (a, b, c), (f, g, h) = hull[component]
@@ -333,7 +333,7 @@ def first_hull(depth: arb) -> list[arb]:
 
 
 def begins(hull: list[arb], depth: arb) -> bool:
-    """True if each state `(U, V1)` with `abs(U) <= BESIDE` is proved to be inner or an exit."""
+    """True if each state `(U, V1)` with `abs(U) <= BESIDE` is proved to be an inner state or an exit."""
     r, c = hull[0], -hull[1]
     steps = [
         r > 0 and c > 0,

@@ -23,7 +23,7 @@ class ChordFlights(Flights):
     kept: tuple[BallArray, BallArray, list[BallArray]] | None = None  # an arc with its centre and the boundary there
 
     def split(self, low: End, high: End) -> list[LandingArcs]:
-        """The arcs that lie on one component, then all parts of the others; empty ones are omitted."""
+        """The arcs that lie on one component, followed by all parts of the other arcs; empty entries are omitted."""
         smooth, *parts = self.pieces(low, high)
         if parts:
             on, chart, first, last = (np.concatenate(column) for column in list(zip(*parts, strict=True))[:4])
@@ -31,7 +31,7 @@ class ChordFlights(Flights):
         return [piece for piece in (smooth, *parts) if piece.on.size]
 
     def near(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[BallArray, list[BallArray]]:
-        """For each arc a double near the landing of the box's midpoint, as centre, and the boundary there."""
+        """For each arc, a double near the landing of the box's midpoint, as centre, and the boundary point there."""
         if self.kept is None or self.kept[0] is not arc:
             self.kept = arc, *self._near(on, chart, arc)
         return self.kept[1:]
@@ -47,7 +47,7 @@ class ChordFlights(Flights):
         return BallArray(at), self.map.place(chart, BallArray(at))
 
     def _polished(self, on: Indices, chart: Indices, near: Array) -> Array:
-        """The landings of the midpoints of boxes in float64, by Newton's method from nearby places."""
+        """The landings of the midpoints of boxes in float64, by Newton's method from the nearby parameters `near`."""
         at, (x0, y0, v, w) = near, (self.centre[name].m[on] for name in ("x", "y", "v", "w"))
         for _ in range(2):  # Newton steps
             x, y, dx, dy, *_ = (value.m for value in self.map.place(chart, BallArray(at)))
@@ -55,7 +55,7 @@ class ChordFlights(Flights):
         return np.asarray(at)
 
     def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
-        """A mask of the boxes whose exit angles are enclosed, and the ends of these angles, cut off at the strip."""
+        """A mask of the boxes whose exit angles are enclosed, and bounds of these angles, cut off at the strip."""
         exit, top = self.map.exit(self.over(on, chart, arc)[1], arc), self.map.top
         return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
 
@@ -74,9 +74,9 @@ class ChordFlights(Flights):
     def beyond(self, on: Indices, chart: Indices, low: Array, high: Array) -> tuple[BallArray, Mask]:
         """Arcs continued past the end of a component, by the same formulas; and a mask of those that are enclosed.
 
-        They are so long that every flight of the box crosses the continued component within them, exactly once, since
-        all flights cross the arc from the same side. If a landing lies on the component, it is this crossing, which is
-        a smooth function on the whole box.
+        The arcs are so long that every flight of the box crosses the continued component exactly once within its arc,
+        since all flights cross the arc from the same side. If a landing lies on the component, it is this crossing,
+        which is a smooth function on the whole box.
         """
         first, last = self.map.outer[:, chart]
         up, down = high >= last, low <= first

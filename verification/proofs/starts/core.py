@@ -1,18 +1,18 @@
 """The core of an attracting cycle: a tube around one of its phase points, in which all orbits converge to the cycle.
 
-The core is the set `|theta| <= outer`, `|phi - p(theta)| <= width` on one component, with an odd cubic `p` close to the
-curve along which orbits approach; the cycle has two bounces, one of them at `theta = phi = 0`. The proof has three
-steps:
+The *core* is the set `|theta| <= outer`, `|phi - p(theta)| <= width` on one component, where the odd cubic `p` is close
+to the curve along which orbits approach the cycle; the cycle has two bounces, one of them at `theta = phi = 0`. The
+proof has three steps:
 
 - the core is cut into cells by `theta`; the second images of each cell beyond `inner`, and of the cells closer to 0,
   lie in the core and closer to 0 than the inner edge of the cell; so after one round for each cell an orbit is within
   `inner`;
-- over a rectangle around the part within `inner` the derivative of two bounces is at most `M`, entry by entry, and
-  `M*v <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the fixed one, at 0;
-- an entry tube is a wider and shorter set of the same kind, whose second image lies in the core.
+- over a rectangle around the part within `inner` the derivative of two bounces is at most `M`, entry by entry, and `M*v
+  <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the fixed point of two bounces, at 0;
+- an *entry tube* is a wider and shorter set of the same kind, whose second image lies in the core.
 
-Table and law are symmetric in the axis through the cycle, so the half `theta >= 0` suffices. An orbit that converges to
-the cycle has at most its exponents. Paper: section 5.3.
+Table and law are symmetric in the axis through the cycle, so the half `theta >= 0` suffices. The exponents of an orbit
+that converges to the cycle are at most those of the cycle. Paper: section 5.3.
 """
 
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ UNMOVED = np.zeros(1)
 
 @dataclass(frozen=True)
 class AbsorbingTube:
-    """The set `|theta| <= outer`, `|phi - p(theta)| <= width` of one component, `p = slope*theta + cubic*theta**3`.
+    """The set `|theta| <= outer`, `|phi - p(theta)| <= width` on a component; `p = slope*theta + cubic*theta**3`.
 
     `inner` and `cells` are those of the module docstring; `entry_tubes` are pairs `(outer, width)` of entry tubes.
     """
@@ -58,7 +58,7 @@ class AbsorbingTube:
             raise ValueError(f"{self}: accepted: at least one cell, and bounds above 0")
 
     def holds(self, sets: Parallelograms, *sizes: tuple[float, float]) -> Mask:
-        """A mask: which sets lie within a tube with one of the given bounds `(outer, width)`, by default its own."""
+        """A mask of the sets within a tube with one of the given bounds `(outer, width)`, by default its own."""
         theta, phi = sets.middle
         with np.errstate(invalid="ignore"):
             far = sets.reach()
@@ -75,11 +75,11 @@ class AbsorbingTube:
         return self.outer, self.width
 
     def enters(self, sets: Parallelograms) -> Mask:
-        """A mask: which sets lie within the tube or one of its entry tubes."""
+        """A mask of the sets that lie within the tube or one of its entry tubes."""
         return self.holds(sets, self.bounds, *self.entry_tubes)
 
     def parts(self, aside: Array = UNMOVED) -> Parallelograms:
-        """Parallelograms that cover the half `theta >= 0`, from 0 outwards, shifted in `phi` by each of `aside`."""
+        """Parallelograms that cover the half `theta >= 0` of the tube, from 0 outwards, shifted in `phi` by `aside`."""
         edges = np.linspace(0, self.outer, self.cells + 1)
         middle, half = (edges[1:] + edges[:-1]) / 2, (edges[1:] - edges[:-1]) / 2 * (1 + 1e-9)
         aside, middle, half = (x.ravel() for x in np.broadcast_arrays(aside[:, None], middle, half))
@@ -92,7 +92,7 @@ class AbsorbingTube:
 
 
 def after_one_round(map: PinballImages, sets: Parallelograms) -> Parallelograms | None:
-    """The images of sets after two bounces, in order; None where one lands on both sides of a join or is not known."""
+    """The images of sets after two bounces, in order; None if one lands on both sides of a join or is not enclosed."""
     for _ in range(ROUND):
         source, images = push_forward(map, sets)
         order = np.argsort(source, kind="stable")
@@ -103,7 +103,7 @@ def after_one_round(map: PinballImages, sets: Parallelograms) -> Parallelograms 
 
 
 def attracts(map: PinballImages, core: AbsorbingTube) -> dict[str, bool]:
-    """The three steps of the module docstring's proof: for each, True if it is proved."""
+    """The three steps of the proof in the module docstring, by name, with True for each that is proved."""
     images = after_one_round(map, core.parts())
     if images is None or not map.mirrored:
         return {"orbits come to the middle": False, "they converge there": False, "gates lead in": False}
@@ -139,7 +139,7 @@ def _converges(map: PinballImages, core: AbsorbingTube) -> bool:
 
 
 def derivative(map: PinballImages, boxes: Boxes) -> Matrix | None:
-    """The derivative matrix of two bounces over boxes; None where one lands on both sides of a join."""
+    """The derivative matrix of two bounces over boxes; None if a box lands on both sides of a join."""
     total = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
     sets = Parallelograms.about(boxes)
     for _ in range(ROUND):

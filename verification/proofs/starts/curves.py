@@ -31,8 +31,9 @@ Mask = NDArray[np.bool_]
 class Landed(NamedTuple):
     """Images of curves in boxes, one row for each box and each component on which it may land.
 
-    `smooth` is True if the whole box lands there. `theta` and `phi` enclose landing and exit angle, `stretch` and
-    `slope` those of the images; `k0` and `k1` are coefficients of `k`, and the image's bend is `bend + by_bend*w`.
+    `smooth` is True if the whole box lands there. `theta` and `phi` enclose landing and exit angle, `stretch` the
+    stretching and `slope` the slopes of the images; `k0` and `k1` are the coefficients of `k`, and the image's bend is
+    `bend + by_bend*w`.
     """
 
     source: Indices
@@ -60,7 +61,7 @@ class CurveMap(Protocol):
         """True if there is one chart, which closes without a join."""
 
     def landed(self, boxes: Boxes, slopes: BallArray) -> Landed:
-        """The images of curves in boxes with given ranges of slopes; radii are infinite where not proved."""
+        """The images of curves in boxes, for given ranges of slopes; radii are infinite where nothing is proved."""
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,17 @@
 """Almost every orbit ends in one of two sets: a cycle of two bounces, or a trapping region without stable orbits.
 
 Orbits return only in certain boxes. Some lie in the tube around the cycle, or are mapped there by a bounce, or belong
-to the trapping region. The others surround unstable cycles, or fill annuli in which the boxes are too coarse to prove
-that orbits drift. The points that stay in these for ever have measure 0:
+to the trapping region. The remaining boxes surround unstable cycles, or fill annuli in which the boxes are too coarse
+to prove that orbits drift. The points that stay in the remaining boxes for ever have measure 0:
 
-- *Saddles* are clusters of boxes, as in `fates`.
+- *Saddles* are clusters of boxes around unstable cycles, as in `fates`.
 - An *annulus* is the set `low <= |theta| <= high`, `|phi - slope*theta -+ offset| <= width` on the tube's component,
-  with the sign of `theta`: two convex parts, mirror images. Over it the derivative of two bounces maps vectors
-  whose slopes `dphi/dtheta` are within `cone` of `slope` to such vectors, and stretches `|dtheta|` by `growth > 1` or
-  more. The distance of two points on a line of that slope, whose orbits visit the same parts, grows by this factor in
-  each round, since the segment between them lies in the convex part. Each box belongs to the right or the left part,
-  and a round from either leads to one part only. So there is one sequence of parts, and the points that stay meet
-  each such line in at most one point. They have measure 0 (Fubini).
+  with the sign of `theta`: two convex parts, mirror images. Over it the derivative of two bounces maps vectors whose
+  slopes `dphi/dtheta` are within `cone` of `slope` to such vectors, and stretches `|dtheta|` by `growth > 1` or more.
+  The distance of two points on a line of that slope, whose orbits visit the same parts, grows by this factor in each
+  round, since the segment between them lies in the convex part. Each box belongs to the right or the left part, and a
+  round from either leads to one part only. So the sequence of parts is the same for all points that start in one part,
+  and the points that stay meet each such line in at most one point. They have measure 0 (Fubini).
 
 For `lam > 0` the map is a diffeomorphism wherever it is smooth, so the points that reach a set of measure 0, or a join,
 have measure 0. The theorem holds for every contraction of a range. Paper: section 5.2.
@@ -55,7 +55,7 @@ class ExpandingAnnulus:
             raise ValueError(f"{self}: accepted: 0 <= low < high, width > 0 and cone > 0")
 
     def part(self, chart: int, side: int) -> Boxes:
-        """Boxes that cover the part on one side (1 or -1)."""
+        """Boxes that cover the part of the annulus on one side (1 or -1)."""
         edges = np.linspace(self.low, self.high, PARTS + 1)
         middle = self.slope * edges + self.offset
         low = np.minimum(middle[:-1], middle[1:]) - self.width
@@ -67,7 +67,7 @@ class ExpandingAnnulus:
         return Boxes(np.full(PARTS, chart), *wide)
 
     def sides(self, boxes: Boxes, chart: int) -> NDArray[np.int64]:
-        """The part in which each box lies: 1, -1, or 0 for neither."""
+        """For each box, the part of the annulus in which it lies: 1, -1, or 0 for neither."""
         found = np.zeros(boxes.chart.size, dtype=np.int64)
         for side in (1, -1):
             (left, right), (low, high) = (boxes.x, boxes.y) if side > 0 else (boxes.mirrored().x, boxes.mirrored().y)
@@ -79,7 +79,7 @@ class ExpandingAnnulus:
         return found
 
     def stretches(self, map: PinballImages, chart: int) -> bool:
-        """True if the derivative of two bounces is proved to keep the cone and stretch its vectors, over both parts."""
+        """True if the derivative of two bounces is proved to keep the cone and stretch its vectors on the annulus."""
         slopes = hull(self.slope - self.cone, self.slope + self.cone)
         for side in (1, -1):
             entries = derivative(map, self.part(chart, side))
@@ -100,8 +100,8 @@ class ExpandingAnnulus:
 class Division(RangeTheorem):
     """Almost every orbit converges to the cycle of `tube`, or ends in a trapping region, for each `lam` of a range.
 
-    The cycle has two bounces and is its own mirror image; `grid` is columns and rows, and the graph starts with blocks
-    of `coarsest` cells. `rate` is a lower bound for the exponent of every orbit in the region.
+    The cycle has two bounces and is its own mirror image; `grid` is the numbers of columns and rows, and the graph
+    starts with blocks of `coarsest` cells. `rate` is a lower bound for the exponent of every orbit in the region.
     """
 
     grid: tuple[int, int]
@@ -131,7 +131,7 @@ class Division(RangeTheorem):
 
     @cached_property
     def region(self) -> Mask | None:
-        """The leaves reached from attracting Morse sets away from the core; None if they are no trapping region."""
+        """Leaves reached from attracting Morse sets away from the core; None if they do not form a trapping region."""
         graph = self.graph.transitions
         beside = [i for i in self.graph.attracting if not np.all(self.entering[self.graph.sets[i]])]
         if not beside:
@@ -177,8 +177,9 @@ class Division(RangeTheorem):
     def _around(self, rest: Mask) -> Mask:
         """The leaves of `rest` whose orbits, while they stay, are in the annulus at every other bounce.
 
-        They form strongly connected parts of `rest` in which walks alternate between the components, with all boxes on
-        the core's component in one part of the annulus, from which two steps lead to one part only.
+        They form strongly connected parts of `rest` in which walks alternate between the components of the table. Each
+        box on the core's component lies in one of the two parts of the annulus, and two steps from there lead to the
+        opposite part.
         """
         graph = self.graph.transitions
         some = np.flatnonzero(rest[:-1])

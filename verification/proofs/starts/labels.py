@@ -1,15 +1,15 @@
 """Pieces of unstable curves, labelled by cells of a grid, and the labels of their images.
 
-Each chart is cut into columns, and each column into rows. A piece of a curve is the part of it over one column, and its
-label the row in which it crosses the middle of the column; a piece that ends before is continued along its tangent.
-Each label has a range of slopes, its cone, which holds all slopes of its pieces, so these lie in a sheared cell.
-Enclosures of the image of the middle, of the stretching and of the slopes of images say which columns an image meets,
-and where it crosses their middles; an image is continued to the middle by slopes of its own cone or of those of the
-column. A label is `broken` if its curves may land on a join, or if the image of the middle is not enclosed; then only
-the landings of its images are known.
+Each chart is cut into columns, and each column into rows. A piece of a curve is the part of the curve over one column,
+and its label is the row in which the piece crosses the middle of the column; a piece that ends before the middle is
+continued along its tangent. Each label has a range of slopes, its cone, which holds all slopes of its pieces, so the
+pieces lie in a sheared cell. Enclosures of the image of the middle, of the stretching and of the slopes of images
+determine which columns an image meets, and where it crosses their middles; an image is continued to the middle by
+slopes of its own cone or of those of the column. A label is `broken` if its curves may land on a join, or if the image
+of the middle is not enclosed; then only the landings of its images are known.
 
 `standard_pairs.pairs` finds labels and cones, starting with images of segments: the slopes of images of a label lie in
-the cones of all labels that the images may have. Then it finds the ranges of bends and densities.
+the cones of all labels that the images may have. Then `pairs` finds the ranges of bends and densities.
 """
 
 from typing import NamedTuple
@@ -41,7 +41,7 @@ class Targets(NamedTuple):
 
 
 class Cast(NamedTuple):
-    """The images of all labels: rows of `landed`, each with its label and the part of the column that is mapped."""
+    """Images of all labels: rows of `landed`, each with its label and the index of the mapped part of the column."""
 
     landed: Landed
     label: Indices
@@ -57,8 +57,8 @@ class Cast(NamedTuple):
 class Spread(NamedTuple):
     """The columns that images of unbroken labels meet, in order along each image.
 
-    `leaves` is where, from 0 to 1 along the source, the image leaves each column, at the earliest and at the latest;
-    `last` marks the last column of a label.
+    `leaves` are the earliest and the latest position, from 0 to 1 along the source, at which the image leaves each
+    column; `last` marks the last column of a label.
     """
 
     targets: Targets
@@ -67,7 +67,7 @@ class Spread(NamedTuple):
 
 
 def reduced(how: np.ufunc, size: int, at: Indices, values: Array) -> Array:
-    """For each index below `size`, the least (`np.minimum`) or greatest of the `values` at it."""
+    """The least (`np.minimum`) or greatest (`np.maximum`) of the `values` at each index below `size`."""
     found = np.full(size, np.inf if how is np.minimum else -np.inf)
     how.at(found, at, values)
     return found
@@ -109,7 +109,7 @@ class Labels:
         return int(self.chart.size)
 
     def add(self, chart: Indices, column: Indices, row: Indices) -> int:
-        """Adds labels at these cells, and returns the number of new ones."""
+        """Adds labels at the given cells, and returns the number of new ones."""
         flat = np.unique(np.ravel_multi_index((chart, column, row), self.shape))
         flat = np.setdiff1d(flat, self.known, assume_unique=True)
         if self.count + flat.size > MOST:
@@ -129,7 +129,7 @@ class Labels:
         return found
 
     def cells(self) -> tuple[Boxes, Indices, Indices]:
-        """The sheared cells, cut into parts, with the label and the index of each part."""
+        """The sheared cells, cut into parts along the column, with the label and the index of each part."""
         label = np.repeat(np.arange(self.count), self.parts)
         part = np.tile(np.arange(self.parts), self.count)
         chart, ends, sides = self.chart[label], [], []
@@ -175,7 +175,7 @@ class Labels:
         return Cast(landed, own, part[landed.source], middle, broken, up, least, most, slopes)
 
     def hulls(self) -> Range:
-        """The hull of all cones of each column."""
+        """The hull of all cones in each column."""
         found = []
         for how, cone in ((np.minimum, self.low), (np.maximum, self.top)):
             whole = np.full(self.shape[:2], np.inf if how is np.minimum else -np.inf)
@@ -184,7 +184,7 @@ class Labels:
         return found[0], found[1]
 
     def across(self, chart: Indices, theta: Range) -> tuple[Indices, Indices, Indices]:
-        """All columns that landings may lie in, as index of the landing, chart, column; beyond the last for a turn."""
+        """All columns in which landings may lie, as landing, chart and column; after a turn, columns count on."""
         first, last = ((end - self.left[chart]) / self.wide[chart] for end in theta)
         low, high = np.floor(first - PAD).astype(np.int64), np.floor(last + PAD).astype(np.int64)
         if not self.map.closed:
@@ -195,7 +195,7 @@ class Labels:
     def crossed(
         self, source: Indices, chart: Indices, column: Indices, phi: Range, way: Range, slopes: Range, hulls: Range
     ) -> Targets:
-        """The rows in which a curve crosses the middle of a column, from `phi` along `way` and within the column."""
+        """Rows in which a curve crosses the middle of a column, from `phi` at the distance `way` from the middle."""
         column = column % self.columns[chart]
         low = np.minimum(hulls[0][chart, column], slopes[0])
         high = np.maximum(hulls[1][chart, column], slopes[1])
@@ -219,7 +219,7 @@ class Labels:
         )
 
     def scattered(self, landed: Landed, which: Indices, source: Indices, hulls: Range) -> Targets:
-        """The labels of images whose landings only are known."""
+        """The labels of images for which only the landings are known."""
         chart, phi = landed.chart[which], self.cut_off(landed.chart[which], landed.phi[which])
         row, charts, column = self.across(chart, (landed.theta.lower()[which], landed.theta.upper()[which]))
         half, slopes = self.wide[charts] / 2 * (1 + PAD), landed.slope[which]
@@ -229,7 +229,7 @@ class Labels:
         )  # fmt: skip
 
     def spread(self, cast: Cast, hulls: Range) -> Spread:
-        """The labels of the images of unbroken labels, in order along the image."""
+        """The columns that the images of unbroken labels meet, in order along each image."""
         whole = np.flatnonzero(~cast.broken)
         order = np.zeros((self.count, self.parts), dtype=np.int64)
         order[cast.label, cast.part] = np.arange(cast.label.size)
@@ -267,7 +267,7 @@ class Labels:
         return Spread(targets, (leaves[0] - SLOP, leaves[1] + SLOP), last)
 
     def named(self, targets: Targets) -> tuple[Indices, Indices]:
-        """The labels in each target, with the index of the target; -1 for a cell that is not in use."""
+        """Pairs of a target's index and a label in the target; the label is -1 for a cell that is not in use."""
         entry = np.repeat(np.arange(targets.source.size), targets.top - targets.bottom + 1)
         row = ranges(targets.bottom, targets.top + 1)
         cell = np.ravel_multi_index((targets.chart[entry], targets.column[entry], row), self.shape)

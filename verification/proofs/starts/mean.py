@@ -1,9 +1,9 @@
 """The mean of the larger exponent `nu_plus` over random starts on the cuspless table is negative near `lambda*`.
 
-Let `u` bound the share of starts that are not proved to converge to the cycle of period 2, let `nu < 0` be the exponent
-of that cycle, and `M` a bound for the exponents of all orbits. Then the mean is at most `(1 - u)*nu + u*M`. This is
-proved for every contraction from `LOW` to `HIGH`, with `lambda*`, where a chaotic attractor is born, between. Paper:
-section 5.3.
+Let `u` be a bound of the share of starts that are not proved to converge to the cycle of period 2, let `nu < 0` be the
+exponent of that cycle, and `M` a bound for the exponents of all orbits. Then the mean is at most `(1 - u)*nu + u*M`.
+This is proved for every contraction from `LOW` to `HIGH`, an interval that contains `lambda*`, where a chaotic
+attractor is born. Paper: section 5.3.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ SLACK = 1 + 2.0**-40
 
 @dataclass(frozen=True)
 class Average:
-    """The bound of the mean: `checks` for each step of the proof, `share` and `mean` as bounds."""
+    """The bound `mean`, with the `checks` of each step of its proof, and the bound `share` of undecided starts."""
 
     checks: dict[str, bool]
     share: float
@@ -88,7 +88,7 @@ def stable(trace: Expr, det: Expr, low: Fraction, high: Fraction) -> SignFinding
 
 @cache
 def average(low: Fraction = LOW, high: Fraction = HIGH) -> Average:
-    """The bound for every contraction of a range around `lambda*`; infinite where a step is not proved."""
+    """The bound for every contraction of a range around `lambda*`; infinite if a step of the proof fails."""
     map = PinballImages(Scene("cuspless", lam=str(high)), (low, high))
     trace, det = trace_and_determinant(cuspless_horizontal())
     checks = attracts(map, CORE)

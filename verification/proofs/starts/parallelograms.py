@@ -5,13 +5,14 @@ A rectangle around the image of a rectangle is larger than the image, and much t
 
     c + u*a + v*b + e,    |u| <= 1,  |v| <= 1,  |e_i| <= r_i,
 
-with a midpoint `c`, two sides `a`, `b` and a rest `r`. By the mean-value theorem about `c` the map `F` takes it into
+with a midpoint `c`, two sides `a`, `b` and a remainder `r` (`rest` in the code). By the mean-value theorem about `c`
+the map `F` takes the parallelogram into
 
     F(c) + D*(u*a + v*b + e)
 
 with the derivative `D` over a rectangle around the set: the new sides are the midpoints of `D*a` and `D*b`, and the
-radii of `D` and the rounding of `F(c)` are added to the rest. Where landings lie on both sides of a join the map is
-continuous but has a kink. There the image has one set for each component: the landings on the component continued
+radii of `D` and the rounding of `F(c)` are added to the remainder. Where landings lie on both sides of a join the map
+is continuous but has a kink. There the image has one set for each component: the landings on the component continued
 beyond the join by its formulas, which are a smooth function on the whole set, or else a rectangle around the landings
 on the component.
 """
@@ -42,7 +43,7 @@ class Parallelograms:
     """An array of parallelograms, as in the module docstring; the last axis counts the sets.
 
     `middle` and `rest` have the shape `(2, n)`, for `theta` and `phi`, and `sides` the shape `(2, 2, n)`, for the
-    coordinate and the side. A set that is lost (nothing is proved) has an infinite rest.
+    coordinate and the side. A lost set, of which nothing is proved, has an infinite `rest`.
     """
 
     chart: Indices
@@ -61,7 +62,7 @@ class Parallelograms:
 
     @classmethod
     def joined(cls, parts: Sequence["Parallelograms"]) -> "Parallelograms":
-        """All sets of a list."""
+        """The sets of all arrays in a list, as one array."""
         return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in FIELDS))
 
     def __getitem__(self, chosen: NDArray[np.bool_] | Indices) -> "Parallelograms":
@@ -71,7 +72,7 @@ class Parallelograms:
 
     @property
     def known(self) -> Mask:
-        """A mask: which sets are not lost."""
+        """A mask of the sets that are not lost."""
         finite = [np.isfinite(x) for x in (self.middle, self.sides.reshape(4, -1), self.rest)]
         return np.asarray(np.logical_and.reduce(np.concatenate(finite)))
 
@@ -87,7 +88,7 @@ class Parallelograms:
         return Parallelograms(*fields)
 
     def reach(self, first: float | Array = 1.0, second: float | Array = 0.0) -> Array:
-        """The largest deviation of `first*theta + second*phi` from its value at the midpoint, for each set."""
+        """Largest deviation of `first*theta + second*phi` from its value at the midpoint, for each parallelogram."""
         along = np.abs(first * self.sides[0] + second * self.sides[1]).sum(axis=0)
         size = (np.abs(first) * np.abs(self.sides[0]) + np.abs(second) * np.abs(self.sides[1])).sum(axis=0)
         with np.errstate(invalid="ignore"):  # NaN marks a lost set, too
@@ -95,7 +96,7 @@ class Parallelograms:
         return np.asarray((along + size * 2.0**-48 + rest) * OUTWARDS + PAD)
 
     def boxes(self) -> Boxes:
-        """A rectangle around each set."""
+        """The smallest rectangle around each set, rounded outwards."""
         ends = []
         for middle, far in zip(self.middle, (self.reach(), self.reach(0.0, 1.0)), strict=True):
             slop = np.abs(middle) * 2.0**-51 + PAD
@@ -104,7 +105,7 @@ class Parallelograms:
 
 
 def push_forward(map: PinballImages, sets: Parallelograms) -> tuple[Indices, Parallelograms]:
-    """Parallelograms that hold the images of sets, and for each the index of its set.
+    """Parallelograms that hold the images of sets, and for each of them the index of the mapped set.
 
     The image of a lost set is lost. A set without an image holds no phase point of the table.
     """
@@ -126,7 +127,7 @@ Rows = list[tuple[Indices, "Parallelograms"]]
 
 
 def _push_forward(map: PinballImages, sets: Parallelograms, boxes: Boxes, on: Indices) -> Rows:
-    """The images of the sets `on`, from rectangles around them; beyond component ends by the same formulas."""
+    """The images of the sets `on`, from rectangles around them; past a component's end, its formulas are continued."""
     if not on.size:
         return [(on, sets[on])]
     sets, boxes = sets[on], Boxes(boxes.chart[on], *((a[on], b[on]) for a, b in (boxes.x, boxes.y)))
@@ -157,10 +158,10 @@ def _on_the_table(map: PinballImages, boxes: Boxes) -> Boxes:
 def _image(
     flights: ChordFlights, sets: Parallelograms, on: Indices, chart: Indices, arc: BallArray, smooth: bool
 ) -> tuple[Parallelograms, NDArray[np.bool_]]:
-    """The images of sets whose landings lie in one arc of one component, and a mask of those that have one.
+    """The images of sets whose landings lie in one arc of one component, and a mask of the sets that have an image.
 
-    They are parallelograms where the arc holds all landings (`smooth`), else rectangles. Rectangles are cut off at the
-    strip of phase space; a set has no image in an arc where nothing is left of its rectangle.
+    Images are parallelograms if the arc holds all landings (`smooth`), else rectangles. Rectangles are cut off at the
+    strip of phase space; a set has no image in the arc if nothing of its rectangle remains.
     """
     known, low, high = flights.exits(on, chart, arc)
     none = known & (high < low)

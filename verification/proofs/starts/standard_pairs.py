@@ -1,6 +1,6 @@
 """Standard pairs of a trapping region: curves whose bounds of slope, bend and density the map preserves.
 
-Short segments with slopes near 0 are followed for some bounces through the boxes of the region; their images have
+Short segments with slopes near 0 are followed for some bounces through the boxes of the region; their images are given
 labels. `pairs` finds all labels of later images, with cones that hold their slopes, and then ranges for bends and for
 `d = (log rho)'`, the logarithmic derivative of the density; see `labels` and `curves`.
 """
@@ -23,7 +23,7 @@ TILT = 1e-6  # the largest slope of the first segments
 
 
 class First(NamedTuple):
-    """Images of short segments of a trapping region after some bounces, with ranges of bends and densities."""
+    """Images of short segments in a trapping region after some bounces, with ranges of bends and densities."""
 
     landed: Landed
     bend: BallArray
@@ -59,14 +59,14 @@ def first(map: CurveMap, grid: Grid, cells: Cells, bounces: int = BOUNCES) -> Fi
 
 
 def pushed(value: BallArray, source: Indices, to: Indices, count: int) -> BallArray:
-    """The hull of the values pushed to each box from `source`; 0 where there are none."""
+    """For each box the hull of the values at all boxes `source` from which an edge leads to it; 0 if there are none."""
     low = reduced(np.minimum, count, to, value.lower()[source])
     high = reduced(np.maximum, count, to, value.upper()[source])
     return hull(np.where(low > high, 0.0, low), np.where(low > high, 0.0, high))
 
 
 def kept(start: Range, step: Callable[[Range], Range]) -> Range:
-    """Ranges that hold `start` and are mapped into themselves by `step`; `ValueError` if they grow without end."""
+    """Ranges that hold `start` and that `step` maps into themselves; `ValueError` if they grow without end."""
     low, high = start
     for _ in range(5 * ROUNDS):
         more = (high - low) * WIDER / 5 + 1e-9
@@ -81,7 +81,7 @@ def kept(start: Range, step: Callable[[Range], Range]) -> Range:
 
 
 class Pairs(NamedTuple):
-    """Labels, their images (in order along curves, or scattered), all edges, and a bound for `abs(d)` of each label."""
+    """Labels, their images (in order along curves, or scattered), all edges, and a bound of `abs(d)` for each label."""
 
     labels: Labels
     cast: Cast
@@ -92,7 +92,7 @@ class Pairs(NamedTuple):
 
 
 def pairs(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, parts: int = 4) -> Pairs:
-    """The standard pairs to which segments in a trapping region are mapped; `ValueError` says what is not proved."""
+    """Standard pairs to which segments in a trapping region are mapped; `ValueError` names what cannot be proved."""
     start, labels = first(map, grid, cells), Labels(map, columns, rows, parts)
     everything, charts = np.arange(start.landed.source.size), len(map.charts)
     none = np.full((charts, int(labels.columns.max())), np.inf)
@@ -132,7 +132,7 @@ def pairs(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, part
 def densities(
     start: First, begun: tuple[Indices, Indices], cast: Cast, edges: tuple[Indices, Indices], count: int
 ) -> Array:
-    """Bounds for `abs((log rho)')` on pieces of each label, computed after the ranges of bends."""
+    """Bounds of `abs((log rho)')` on the pieces of each label; the ranges of bends must have been computed before."""
     landed, own = cast.landed, cast.label
 
     def ends(value: BallArray, at: Indices, edge: tuple[Indices, Indices], size: int) -> Range:

@@ -1,16 +1,16 @@
 """A bound for the share of random starts that are not proved to converge to a cycle, and a bound for all exponents.
 
-A start is a chord that meets the boundary at `theta`, with incidence `eta`. For uniform points and directions in a
-table of area `A`, chords of length `l` have the density `l*cos(eta)/(2*pi*A)` in `ds*deta` (Santalo's formula), at most
-`D/(2*pi*A)` times `cos(eta)`, with the diameter `D`. Elastic bounces preserve `cos(eta)*ds*deta`, so the bound holds at
-the second landing too, when the first bounce is elastic (the paper's appendix). It also holds for starts uniform in `s`
-and `sin(eta)`, of density `1/(2*L)` with the perimeter `L`: on a convex table `L <= pi*D` and `4*pi*A <= L*L`, so `pi*A
-<= D*L`. So one number bounds the share of undecided starts for all three distributions: their measure in
-`cos(eta)*ds*deta`, times `D/(2*pi*A)`.
+A random start is a chord that meets the boundary at `theta`, with incidence angle `eta`. For uniform points and
+directions in a table of area `A`, chords of length `l` have the density `l*cos(eta)/(2*pi*A)` in `ds*deta` (Santalo's
+formula), at most `D/(2*pi*A)` times `cos(eta)`, with the diameter `D`. Elastic bounces preserve `cos(eta)*ds*deta`, so
+the bound holds at the second landing too, when the first bounce is elastic (the paper's appendix). It also holds for
+starts uniform in `s` and `sin(eta)`, of density `1/(2*L)` with the perimeter `L`: on a convex table `L <= pi*D` and
+`4*pi*A <= L*L`, so `pi*A <= D*L`. So one number bounds the share of undecided starts for all three distributions: their
+measure in `cos(eta)*ds*deta`, times `D/(2*pi*A)`.
 
 The plane of `theta` and `eta` is cut into strips between two lines in the direction of stable curves, so that images of
-strips stay thin. A strip is decided when every parallelogram of its images reaches the cycle's tube, or an entry tube;
-the others are cut in two. The table is symmetric in the axis through the cycle, so `eta >= 0` suffices.
+strips stay thin. A strip is decided when all parallelograms that hold its images reach the cycle's tube or an entry
+tube; undecided strips are cut in two. The table is symmetric in the axis through the cycle, so `eta >= 0` suffices.
 
 For every orbit `nu_plus` (as an upper limit) is at most half the logarithm of the largest norm of the derivative of two
 bounces. Starts whose orbits meet a join have measure 0, since the map's determinant is not 0 for `lam > 0`. The bounds
@@ -70,7 +70,7 @@ class Strips(NamedTuple):
         return Strips(chart[chosen], *(field[chosen] for field in fields))
 
     def cut(self, across: Mask) -> "Strips":
-        """Each strip cut in two along its length, or, where `across` is True, at its middle `eta`."""
+        """Each strip cut in two: along its length, or at its middle `eta` where `across` is True."""
         down, flat = self.some(~across), self.some(across)
         line, lean = (down.left + down.right) / 2, (down.left_lean + down.right_lean) / 2
         parts = [down._replace(right=line, right_lean=lean), down._replace(left=line, left_lean=lean)]
@@ -81,7 +81,7 @@ class Strips(NamedTuple):
         return joined(parts)
 
     def started(self, map: PinballImages) -> Parallelograms:
-        """Parallelograms that hold the phase points after the bounce, with `phi = -lam*eta`."""
+        """Parallelograms that hold the phase points after the first bounce of the starts, with `phi = -lam*eta`."""
         lean, lam = (self.left_lean + self.right_lean) / 2, map.lam
         middle, exit = (self.left + self.right) / 2, -(lam * BallArray(self.middle))
         wide, tall = (self.right - self.left) / 2 * (1 + 1e-12), self.half * (1 + 1e-12)
@@ -104,15 +104,16 @@ class Strips(NamedTuple):
 
 
 def joined(parts: list[Strips]) -> Strips:
-    """All strips of a list."""
+    """The strips of all arrays in a list, as one array."""
     chart, *fields = (np.concatenate(field) for field in zip(*parts, strict=True))
     return Strips(chart, *fields)
 
 
 def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
-    """Strips that cover all `theta` and `0 <= eta <= pi/2`, in the direction of stable curves by float64 orbits.
+    """Strips that cover all `theta` and `0 <= eta <= pi/2`, in the direction of stable curves, estimated from float64
+    orbits.
 
-    `columns` has one number for each component of the table; `ValueError` if not.
+    `columns` must have one number for each component of the table; else `ValueError`.
     """
     if len(columns) != len(map.charts) or min(rows, *columns) < 1:
         raise ValueError(f"strips: columns = {columns}, rows = {rows}; accepted: 1 or more, for each component")
@@ -138,7 +139,7 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
 
 
 def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
-    """The slopes `d theta/d eta` of curves that a few bounces contract: rows for `eta`, columns for `theta`."""
+    """The slopes `d theta/d eta` of curves that a few bounces contract, with rows for `eta` and columns for `theta`."""
     lam = float(np.max(map.lam))
     inside, on = np.clip(theta, theta[0] + 1e-6, theta[-1] - 1e-6), np.full(theta.size * eta.size, chart)
     at, phi = np.tile(inside, eta.size), -lam * np.repeat(eta, theta.size)
@@ -153,7 +154,7 @@ def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
 
 
 def seems_to_enter_tube(map: PinballMap, core: AbsorbingTube, given: Strips) -> tuple[Mask, Mask]:
-    """Masks of strips that seem to enter the tube and of those to cut across: guesses from float64 corner orbits."""
+    """Masks of the strips that seem to enter the tube, and of those to cut across, from float64 orbits of corners."""
     lam, count, corners = float(np.max(map.lam)), given.left.size, len(CORNERS[0])
     across, along = (np.array(side)[:, None] for side in CORNERS)
     u = along * given.half
@@ -178,7 +179,7 @@ def seems_to_enter_tube(map: PinballMap, core: AbsorbingTube, given: Strips) -> 
 
 
 def enter_tube(map: PinballImages, core: AbsorbingTube, given: Strips) -> tuple[Mask, Mask]:
-    """Masks of the strips proved to reach the core, and of those among the others to cut across."""
+    """Masks of the strips that are proved to reach the core, and of the undecided strips to cut across."""
     sets, owner = given.started(map), np.arange(given.left.size)
     failed, flat, entered = (np.zeros(owner.size, dtype=bool) for _ in range(3))
     for bounce in range(BOUNCES):
@@ -209,7 +210,7 @@ class Remainder(NamedTuple):
 def remainder(map: PinballImages, core: AbsorbingTube, first: Strips, enough: float, rounds: int = 24) -> Remainder:
     """Cuts strips until undecided starts of all `eta` have at most the measure `enough`, or `rounds` are over.
 
-    A strip that is undecided, or not examined in the last round, counts whole.
+    A strip that is undecided, or not yet examined after the last round, counts with its whole measure.
     """
     cells, asked, left = first, 0, np.inf
     for _ in range(rounds):
@@ -234,7 +235,8 @@ def remainder(map: PinballImages, core: AbsorbingTube, first: Strips, enough: fl
 def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> Array:
     """For each box a bound of the norm of the derivative of `bounces` bounces, in `max(abs(ds), abs(dphi)/weight)`.
 
-    It is infinite where it is not proved; where landings lie on both sides of a join, it bounds both derivatives.
+    The bound is infinite if it is not proved; where landings lie on both sides of a join, it holds for both
+    derivatives.
     """
     found = np.zeros(boxes.chart.size)
     one, nought = BallArray(np.ones(found.size)), BallArray(np.zeros(found.size))
@@ -244,7 +246,7 @@ def steepest(map: PinballImages, boxes: Boxes, bounces: int, weight: float) -> A
 
 
 def speeds(map: PinballImages, chart: Indices, theta: BallArray) -> BallArray:
-    """The speed of the boundary parameter, in arc length."""
+    """The speed of the boundary parameter: the derivative of arc length with respect to it."""
     return norm(map.ops, map.place(chart, theta)[2:4])
 
 
@@ -257,7 +259,7 @@ def _steepest(
     found: Array,
     norm: tuple[Array, float],
 ) -> None:
-    """Adds to `found` the bounds of orbits from boxes after some bounces; `product` is the derivative up to there."""
+    """Adds to `found` the bounds for orbits that have reached `boxes`; `product` is the derivative up to there."""
     if not owner.size:
         return
     with np.errstate(all="ignore"):
@@ -289,7 +291,7 @@ def _steepest(
 def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvings: int = 8) -> bool:
     """True if `nu_plus <= rate` is proved for every orbit, by the norm of the derivative of `bounces` bounces.
 
-    Boxes are halved up to `halvings` times; where table and law are symmetric, only those with `phi >= 0` are examined.
+    Boxes are halved up to `halvings` times; if table and law are symmetric, only boxes with `phi >= 0` are examined.
     """
     goal, half = exp(rate * bounces) / SLACK, map.mirrored
     for chart, ends in enumerate(map.charts):

@@ -1,11 +1,12 @@
 """Lower and upper bounds of `nu_plus` for almost every orbit of a trapping region, by standard pairs and potentials.
 
 The lemma and its proof are in docs/global.md. A family of pieces of unstable curves is described by four numbers for
-each label `i`: the mass `r[i]` of pieces that cross their whole column, the mass `e[i]` of the others, the sum `E[i]`
-of densities at ends of curves, and the sum `C[i]` of those at ends on a join, which are ends of a column. After one
-bounce
+each label `i`: the mass `r[i]` of pieces that cross their whole column, the mass `e[i]` of the other pieces, the sum
+`E[i]` of densities at ends of curves, and the sum `C[i]` of densities at those ends that lie on a join, where a column
+ends. After one bounce
 
-- the mass `r[i]` of an unbroken label is distributed over the columns met in known shares, other mass along edges;
+- the mass `r[i]` of an unbroken label is distributed in known shares over the columns that its image meets, other mass
+  moves along edges;
 - ends move along edges, and their density is divided by the stretching; `e[i] <= length*E[i]/(1 - D)`;
 - a curve cut by a join has two more ends, of type `C`. Its density at the cut is at most that of half the mass in a
   window of `window` columns on each side, or of an end there, if the curve ends before.
@@ -18,7 +19,8 @@ Numbers `y`, `w`, `v` for each label with
 
 make `sum(y*(r + e) + w*E + v*C)` a potential: the mean of the logarithm of the stretching over any family is at most
 `high`, up to a bounded sum. Any numbers with `w > 0` and `v > 0` that satisfy the inequalities prove the bound:
-`potential` finds them and `holds` checks them. The same with minus the logarithm gives the lower bound.
+`potential` finds such numbers and `holds` checks them. The same inequalities with minus the logarithm give the lower
+bound.
 """
 
 from dataclasses import dataclass
@@ -43,7 +45,7 @@ WEIGHTS = 4000  # the most iterations for the numbers of the ends
 
 
 class Cut:
-    """The curves that one join cuts: the broken labels, windows beside them, and labels of the new ends."""
+    """The curves that one join cuts: the broken labels, the windows beside them, and the labels of the new ends."""
 
     def __init__(self, found: Pairs, broken: Indices, window: int) -> None:
         labels, count = found.labels, found.labels.count
@@ -79,7 +81,7 @@ class Cut:
 
 
 class Balance:
-    """The coefficients of the inequalities for masses and ends, from standard pairs."""
+    """The coefficients of the inequalities for masses and ends, computed from standard pairs."""
 
     def __init__(self, found: Pairs, window: int) -> None:
         labels, cast, spread = found.labels, found.cast, found.spread
@@ -133,7 +135,7 @@ class Balance:
 
     @staticmethod
     def _mean(values: Array, turn: Array) -> Array:
-        """The largest mean over a column of a function bounded on its parts, for densities that vary by `turn`."""
+        """The largest mean over a column of a function with these bounds on its parts; densities vary by `turn`."""
         steps, total = values[:, :-1] - values[:, 1:], values[:, -1].copy()
         for k in range(steps.shape[1]):
             share = (k + 1) / values.shape[1]
@@ -142,7 +144,7 @@ class Balance:
         return total
 
     def best(self, values: Array) -> Array:
-        """The largest value over the edges of each label."""
+        """For each label the largest of the `values` at the labels to which its edges lead."""
         found: Array = np.maximum.reduceat(values[self.edges[1]], self.starts)
         return found
 
@@ -159,7 +161,7 @@ class Balance:
         return found
 
     def charged(self, v: Array) -> tuple[Array, Array]:
-        """The cost of cuts for each unit of mass, and for each end, with the potentials `v` of ends."""
+        """The cost of cuts for each unit of mass and for each end, if `v` are the potentials of ends on joins."""
         mass, end = np.zeros(self.count), np.zeros(self.count)
         for cut in self.cuts:
             top = float(v[cut.new].max())
@@ -168,7 +170,7 @@ class Balance:
         return mass, end
 
     def excess(self, gain: int, y: Array, high: float) -> Array:
-        """The largest gain of mass in pieces that do not cross their column over that in pieces that do."""
+        """For each label, how far the gain of pieces that do not cross their column exceeds `y + high`; at least 0."""
         found: Array = np.maximum(self.gains[gain][1] + self.best(y) - y - high, 0.0)
         return found
 
@@ -178,11 +180,11 @@ class Balance:
         return (self.length * s + on + cut) * UP, (on + cut) * UP
 
     def step(self, gain: int, y: Array, v: Array) -> Array:
-        """The left side of the mass inequality at each label, for the potentials `y` of masses and `v` of ends."""
+        """Left side of the inequality for masses at each label, for the potentials `y` of masses and `v` of ends."""
         return self.gains[gain][0] + self.shared(y) + self.charged(v)[0]
 
     def potential(self, gain: int) -> tuple[Array, float]:
-        """Numbers `y` of a potential and the approximate bound that it gives, by iteration in float64."""
+        """Numbers `y` of a potential, and the approximate bound that the potential gives, by iteration in float64."""
         y, w, v, high = np.zeros(self.count), np.zeros(self.count), np.zeros(self.count), 0.0
         best = np.inf, y
         for _ in range(STEPS):
@@ -201,7 +203,7 @@ class Balance:
         return best[1], best[0]
 
     def weights(self, gain: int, y: Array, high: float) -> tuple[Array, Array]:
-        """Numbers `w` and `v` for a potential `y` of the masses; they may fail the check of `holds`."""
+        """The numbers `w` and `v` for a potential `y` of the masses; `holds` still has to check them."""
         s, w, v = self.excess(gain, y, high) + SLACK, np.zeros(self.count), np.zeros(self.count)
         for _ in range(WEIGHTS):
             more = self.ends(s, w, v)
@@ -214,8 +216,9 @@ class Balance:
         """A bound for the rounding errors in the inequality of the masses, and in `excess`.
 
         A sum of `n` terms, each rounded a few times, errs by at most `(n + 8)*2^-53` times the sum of their moduli.
-        Terms are differences of entries of `y` or of gains; costs of cuts are positive, so `left` bounds them together
-        with these. The numbers of the ends are sums of positive terms, for which the factor `UP` suffices.
+        Terms are differences of entries of `y` or of gains; costs of cuts are positive, so `left` bounds their sum with
+        the other terms. The numbers `w` and `v` of the ends are sums of positive terms, for which the factor `UP`
+        suffices.
         """
         spread, gains = self.found.spread, self.gains[gain]
         terms = int(np.bincount(spread.targets.source, minlength=1).max()) + self.found.labels.parts + len(self.cuts)
@@ -223,7 +226,7 @@ class Balance:
         return (terms + 8.0) ** 2 * size * 2.0**-50
 
     def holds(self, gain: int, y: Array, w: Array, v: Array, high: float) -> bool:
-        """True if the numbers satisfy all inequalities with a margin for rounding, which proves the bound `high`."""
+        """True if the numbers satisfy all inequalities with a margin for rounding, so that `high` is a proved bound."""
         least = self.ends(self.excess(gain, y, high) + SLACK, w, v)
         left = self.step(gain, y, v)
         sizes = [float(np.abs(x).max()) for x in (y, w, v, left)]
@@ -233,7 +236,7 @@ class Balance:
         return small and masses and bool(np.all(least[0] <= w)) and bool(np.all(least[1] <= v))
 
     def proved(self, gain: int) -> float | None:
-        """A proved upper bound of the exponent (`gain` 0) or of its negative (`gain` 1); None where none is proved."""
+        """A proved upper bound of the exponent (`gain` 0) or of its negative (`gain` 1); None if none is proved."""
         y, high = self.potential(gain)
         for _ in range(6):
             if not high < LARGEST:
@@ -258,7 +261,7 @@ class TypicalExponent(Theorem):
 
     @cached_property
     def balance(self) -> Balance | str:
-        """The coefficients of the inequalities; or the reason why they are not proved, in words."""
+        """The coefficients of the inequalities; or the reason, in words, why the standard pairs are not proved."""
         try:
             return Balance(pairs(self.map, self.grid, self.cells, self.columns, self.rows), self.window)
         except ValueError as error:
@@ -266,7 +269,7 @@ class TypicalExponent(Theorem):
 
     @cached_property
     def ends(self) -> tuple[float | None, float | None]:
-        """Upper bounds of the exponent and of its negative; None where not proved."""
+        """Upper bounds of the exponent and of its negative; None for a bound that is not proved."""
         return (None, None) if isinstance(self.balance, str) else (self.balance.proved(0), self.balance.proved(1))
 
     @hypothesis
@@ -281,21 +284,21 @@ class TypicalExponent(Theorem):
 
     @property
     def low(self) -> float:
-        """The lower bound of `nu_plus`; minus infinity where none is proved."""
+        """The lower bound of `nu_plus`; minus infinity if none is proved."""
         return -np.inf if self.ends[1] is None else floor(-self.ends[1] * 1e6) / 1e6
 
     @property
     def high(self) -> float:
-        """The upper bound of `nu_plus`; infinity where none is proved."""
+        """The upper bound of `nu_plus`; infinity if none is proved."""
         return np.inf if self.ends[0] is None else ceil(self.ends[0] * 1e6) / 1e6
 
     @property
     def labels(self) -> int:
-        """The number of labels."""
+        """The number of labels of the standard pairs."""
         return 0 if isinstance(self.balance, str) else self.balance.count
 
     @property
     def why(self) -> str:
-        """The reason why the bounds are not proved, and what to change; empty where they are."""
+        """The reason why the bounds are not proved, and what to change; empty if they are proved."""
         open_ends = "" if self.potentials else "ends of curves gather at joins; give more columns or rows"
         return self.balance if isinstance(self.balance, str) else open_ends

@@ -13,12 +13,12 @@ of `Q` is more than `h` above or below them. By the first two `|c| + s*|d| < s <
 - an interval Newton step gives exactly one fixed point `p` of `F` in `Q`;
 - an unstable curve that crosses `Q` has an image under `F` that crosses `Q` (the last inequality, for an end of the
   curve and `p`: the ends leave `Q` on either side), so it holds a point `x` all of whose images under `F` are in `Q`;
-- all images of `x - p` have `|u| <= |v|/s`, since otherwise `|u|` would grow without bound (by the first inequality
-  and their consequence); so `|v|` shrinks (by the second), and `x` lies on the stable set of the cycle;
+- all images of `x - p` have `|u| <= |v|/s`, since otherwise `|u|` would grow without bound (by the first inequality and
+  their consequence); so `|v|` shrinks (by the second), and `x` lies on the stable set of the cycle;
 - images of the curve that cross `Q` converge to the piece of the unstable manifold `W^u(p)` that crosses `Q`: for a
-  point of the one above a point of the other, the preimages in `Q` differ by `|u| <= |v|/s`, so differences shrink.
+  point of the image above a point of `W^u(p)`, the preimages in `Q` differ by `|u| <= |v|/s`, so differences shrink.
 
-The last is the inclination lemma; here the map must be smooth only on the boxes of the cycle.
+The last statement is the inclination lemma; here the map must be smooth only on the boxes of the cycle.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ CUTS = 6  # a box is cut into CUTS by CUTS parts before it is mapped
 
 @dataclass(frozen=True)
 class SaddleRectangle:
-    """The rectangle that holds the part of a region over an interval `low <= theta <= high` of one chart."""
+    """A rectangle around a saddle that holds the part of a region over `low <= theta <= high` in one chart."""
 
     chart: int
     low: float
@@ -49,7 +49,7 @@ class SaddleRectangle:
 
 
 def anchor(cover: ConeField, point: tuple[int, float, float], period: int, half: float) -> SaddleRectangle | None:
-    """The rectangle around an approximate point of a cycle, `half` wide on each side; None where it is not proved."""
+    """The rectangle around an approximate point of a cycle, `half` wide on each side; None if it is not proved."""
     chart, theta, phi = point
     bottom, top = _span(cover, chart, theta - half, theta + half)
     if not bottom < phi < top:  # the interval Newton step needs a point of the rectangle
@@ -71,7 +71,7 @@ def anchor(cover: ConeField, point: tuple[int, float, float], period: int, half:
 
 
 def _span(cover: ConeField, chart: int, low: float, high: float) -> tuple[float, float]:
-    """The lowest and highest `phi` of the region over an interval and the columns next to it; 0, 0 at a chart's end."""
+    """The lowest and highest `phi` of the region over an interval and the next columns; 0, 0 if it leaves the chart."""
     wide = cover.sides[0][chart]
     start = cover.grid.charts[chart].x[0]
     first, last = (int(np.floor((x - start) / wide)) for x in (low, high))
@@ -112,7 +112,7 @@ def _hulled(some: BallArray, count: int) -> BallArray:
 def _fixed(
     whole: Matrix, guess: tuple[float, float], cover: ConeField, chart: int, period: int
 ) -> tuple[BallArray, BallArray] | None:
-    """The interval Newton image for `F(x) = x` over the rectangle, which holds all fixed points there; or None."""
+    """The interval Newton image for `F(x) = x` over the rectangle, which holds all fixed points in it; or None."""
     at = _followed(cover, chart, ((guess[0], guess[0]), (guess[1], guess[1])), period)
     if at is None or at[0] != chart:
         return None
@@ -132,7 +132,7 @@ def _inside(fixed: tuple[BallArray, BallArray], box: Box) -> bool:
 
 
 def _held(cover: ConeField, chart: int, fixed: tuple[BallArray, BallArray]) -> bool:
-    """True if the cells of the region cover the balls."""
+    """True if the cells of the region cover the given balls."""
     member = cover.to_array(np.ones(cover.cells.chart.size), 0.0)[chart]
     spans = []
     for x, ends, count in zip(fixed, ("x", "y"), (cover.grid.columns, cover.grid.rows), strict=True):
@@ -143,7 +143,7 @@ def _held(cover: ConeField, chart: int, fixed: tuple[BallArray, BallArray]) -> b
 
 
 def _slope(entries: Matrix, steep: float) -> float:
-    """A slope `s` midway between the bounds that the first two inequalities and the unstable curves impose."""
+    """A slope `s` midway between the bounds set by the first two inequalities and by the slopes of unstable curves."""
     b, c, d = (float(x.magnitude()) for x in (entries[0][1], *entries[1]))
     first = entries[0][0]
     low = max(steep * (1 + 1e-9), c / (1 - d)) if d < 1 else np.inf

@@ -1,7 +1,7 @@
 """The theorem that a region of a table holds at most one attractor, as a JSON document.
 
-The document gives the points from which the region grows, and the saddle. The command `pinball check` computes cells,
-cones, growth and crossings again.
+The document lists the points from which the region grows, and the saddle. The command `pinball check` recomputes cells,
+cones, growth and crossings.
 """
 
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ def _charts(read: Mapping[str, Any]) -> int:
 
 
 def _point(given: Any, charts: int) -> Point:
-    """A phase point of a document; `ValueError` where it is none."""
+    """A phase point of a document; `ValueError` if the entry is not a phase point."""
     if not isinstance(given, list) or len(given) != 3:
         raise ValueError(f"certificate: {given!r} is no phase point; accepted: [component, theta, phi]")
     chart, theta, phi = given
@@ -39,7 +39,7 @@ def _point(given: Any, charts: int) -> Point:
 
 
 def _points(given: Any, charts: int) -> tuple[Point, ...]:
-    """Phase points of a document; `ValueError` where there are too many or none."""
+    """The phase points of a document; `ValueError` if there are too many or none."""
     points = tuple(_point(point, charts) for point in given)
     if not 1 <= len(points) <= MOST_POINTS:
         raise ValueError(f"certificate: {len(points)} points; accepted: 1 to {MOST_POINTS}")
@@ -80,7 +80,7 @@ class AtMostOneAttractor(RangeTheorem, Certified):
 
     @cached_property
     def proof(self) -> NoTwoAttractors:
-        """The theorem on the map; `ValueError` for a point outside of its component or the strip."""
+        """Theorem about the map; `ValueError` for a point outside its component or outside the strip of exit angles."""
         for chart, x, y in (*self.points, self.saddle):
             (left, right), (bottom, top) = self.map.charts[chart].x, self.map.charts[chart].y
             if not (left <= x <= right and bottom <= y <= top):

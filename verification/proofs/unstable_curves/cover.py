@@ -1,8 +1,8 @@
 """A trapping region as a set of cells, with its transition graph, invariant cones of slopes, and bounds of stretching.
 
 A curve is *unstable* when its tangent lies in the cone of each cell that it is in. Charts are joined end to end, as the
-components of a table are; where two meet the map is continuous and its derivative jumps. The image of an unstable curve
-is again a connected unstable curve, except for corners at the joins.
+components of a table are; where two charts meet, the map is continuous and its derivative may jump. The image of an
+unstable curve is again a connected unstable curve, except for corners at the joins.
 """
 
 from dataclasses import dataclass
@@ -37,20 +37,21 @@ class JoinedMap(SmoothMap, Protocol):
 
     @property
     def joins(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of charts: the end of the first is the start of the second."""
+        """Pairs of charts such that the end of the first is the start of the second."""
 
     @property
     def homeomorphism(self) -> bool:
-        """True if it is proved continuous across joins and one-to-one, with a determinant not 0 where smooth."""
+        """True if the map is proved continuous across joins and one-to-one, with nonzero determinant where smooth."""
 
 
 @dataclass(frozen=True)
 class ConeField:
     """A trapping region of cells with invariant cones, and bounds over each cell.
 
-    `inner` is the graph of cells. Derivatives map each cone of `outer` into the interior of the cones that edges lead
-    to, and `cones` are tighter ones; `least` and `most` bound the logarithm of the growth of `|dtheta|` along vectors
-    of a cone. `sign` is, for each chart, 1 if the map keeps the order of points along curves and -1 if it reverses it.
+    `inner` is the graph of cells. Derivatives map each cone of `outer` into the interior of the cones to which edges
+    lead, and `cones` are narrower invariant cones; `least` and `most` bound the logarithm of the growth of `|dtheta|`
+    along vectors of a cone. `sign` is, for each chart, 1 if the map keeps the order of points along curves and -1 if it
+    reverses it.
     """
 
     map: JoinedMap
@@ -90,9 +91,9 @@ class ConeField:
 
 
 def cover(map: JoinedMap, columns: int, rows: int, start: Boxes, parts: int = 1) -> ConeField | str:
-    """The trapping region grown from the boxes `start`, with its cones; or why it is not proved, in words.
+    """The trapping region grown from the boxes `start`, with its cones; or the reason, in words, why it is not proved.
 
-    Cells are mapped in `parts` by `parts` pieces.
+    Cells are cut into `parts` by `parts` pieces before they are mapped.
     """
     if any(chart.period for chart in map.charts):
         return "a closed curve in one chart has no joins, and unstable curves no ends to be counted from"
@@ -109,7 +110,8 @@ def cover(map: JoinedMap, columns: int, rows: int, start: Boxes, parts: int = 1)
 
 
 def _with_cones(map: JoinedMap, grid: Grid, cells: Cells, inner: csr_matrix, parts: int) -> ConeField | str:
-    """The region with cones that are mapped into the interior of cones along all edges; or the reason, in words.
+    """The region with cones that are mapped into the interior of cones along all edges; or the reason, in words, why
+    there are none.
 
     Cones are grown from horizontal vectors.
     """

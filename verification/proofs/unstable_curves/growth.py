@@ -1,8 +1,8 @@
 """The proof that short unstable curves grow in spite of folds, by the sum of inverse stretches over their parts.
 
 A smooth unstable curve `p` in one chart is mapped to a curve that may pass from one chart to the next, where it is cut
-into smooth *parts*. For `n` bounces `p` is the union of arcs `p_i`, each mapped to a smooth part and stretched by `L_i`
-or more in the chart's parameter. As the lengths of the arcs add up to that of `p`,
+into smooth *parts*. For `n` bounces `p` is the union of arcs `p_i`; each arc is mapped to a smooth part and stretched
+by a factor of at least `L_i` in the chart's parameter. As the lengths of the arcs add up to that of `p`,
 
     max length of a part  >=  length of p / sum(1/L_i),
 
@@ -11,16 +11,16 @@ billiards this is the one-step expansion of an iterate.)
 
 A curve *crosses* a column of cells if it lies over all of it. A curve over a chart that crosses no column lies over two
 columns at most, next to each other, and changes its height by no more than twice the greatest slope times the width of
-a column. So if it is in a cell, it is within one column and `reach` rows of that cell; over these cells the least
-stretch is taken. Its image, if no part of it crosses a column, passes at most one join, and then has two parts, both in
+a column. So if it is in a cell, it is within one column and `reach` rows of that cell; `stretch` is the least stretch
+over these cells. Its image, if no part of it crosses a column, passes at most one join, and then has two parts, both in
 the columns at that join, within `reach` rows of each other. With `V_0 = 1` for every cell, and
 
     V_n(b) = 1/stretch(b) * max over the edges b -> c of ( V_{n-1}(c), plus, where c is at a join,
              the greatest V_{n-1} of a cell across that join within `reach` rows ),
 
-`V_n(b)` bounds the sum over `n` bounces for all curves that are in `b`, as long as no part crosses a column. *If `V_n`
-is below 1 for every cell of a trapping region, each unstable curve in it has, after finitely many bounces, an image
-with a smooth part that crosses a column.* Otherwise the longest part would grow without end, within two columns.
+`V_n(b)` bounds the sum over `n` bounces for all curves that are in `b`, as long as no part crosses a column. Therefore
+*if `V_n` is below 1 for every cell of a trapping region, each unstable curve in it has, after finitely many bounces, an
+image with a smooth part that crosses a column.* Otherwise the longest part would grow without end, within two columns.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ UP = 1 + 1e-13  # above the rounding of a step in float64
 class CurveGrowth:
     """Bounds `sums[n - 1]` of the sum of inverse stretches over `n` bounces, for every curve that crosses no column.
 
-    `reach` is the number of rows by which such a curve may rise or fall.
+    `reach` is the number of rows by which such a curve may rise or fall within its columns.
     """
 
     sums: tuple[float, ...]
@@ -48,12 +48,12 @@ class CurveGrowth:
 
     @property
     def bounces(self) -> int | None:
-        """The number of bounces after which the sum is below 1 for every curve; None if it is not reached."""
+        """The number of bounces after which the sum is below 1 for every curve; None if there is no such number."""
         return len(self.sums) if self.sums[-1] < 1 else None
 
 
 def growth(cover: ConeField, longest: int = LONGEST) -> CurveGrowth:
-    """The bounds of the sum of inverse stretches, up to the first number of bounces for which they are below 1."""
+    """The bounds of the sum of inverse stretches, up to the first number of bounces for which they are all below 1."""
     reach = _reach(cover)
     weight = _about(cover, elementary.exp(-cover.least) * UP, reach)
     value, sums, starts = np.ones(weight.size), list[float](), cover.inner.indptr[:-1]
@@ -67,7 +67,7 @@ def growth(cover: ConeField, longest: int = LONGEST) -> CurveGrowth:
 
 
 def folded(cover: ConeField, value: Array, reach: int) -> Array:
-    """The values of cells; at a join the greatest value across it, within `reach` rows, is added."""
+    """The values of cells; for a cell at a join the greatest value across the join, within `reach` rows, is added."""
     picture, found, cells = cover.to_array(value, 0.0), value.copy(), cover.cells
     last = cover.grid.columns - 1
     for before, after in cover.map.joins:
@@ -96,7 +96,7 @@ def _about(cover: ConeField, values: Array, reach: int) -> Array:
 
 
 def _greatest(values: Array, reach: int, axis: int) -> Array:
-    """The greatest of the entries up to `reach` places before and after each."""
+    """For each entry the greatest of the entries at most `reach` places before or after it."""
     turned = np.moveaxis(values, axis, 0)
     found = turned.copy()
     for step in range(1, min(reach, len(turned)) + 1):

@@ -1,7 +1,7 @@
 """The theorem that a trapping region holds at most one attractor, from growth of unstable curves and a saddle.
 
 *Lemma.* Let a map `T` be continuous and one-to-one on a compact set `R` that it takes into its interior; `R` lies in
-charts joined end to end, inside each of which `T` is smooth with a determinant that is not 0 up to the lines that are
+charts joined end to end; inside each chart `T` is smooth with a nonzero determinant, except on the lines that are
 mapped to joins. Suppose that
 
 1. each cell of `R` has a cone of slopes with interior, and derivatives map cones into each other along edges (`cones`);
@@ -14,8 +14,8 @@ mapped to joins. Suppose that
 Let `A` be the closure of `W^u(p)`, the unstable manifold of the cycle. Then `T(A) = A`, and `T` on `A` is topologically
 transitive; the starts in `R` that converge to the cycle are dense in `R`; and every closed set `B` that holds an open
 part of `R` with `T(B)` in `B`, or to which every start of an open part of `R` converges, contains `A`. So `R` holds at
-most one *attractor*: a closed set, transitive, to which all starts near it converge. It does not follow that `A`
-attracts all of `R`: a stable curve may miss `A`, as it may turn back at preimages of joins.
+most one *attractor*, which means a closed transitive set to which all starts near it converge. It does not follow that
+`A` attracts all of `R`: a stable curve may miss `A`, as it may turn back at preimages of joins.
 
 *Proof.* An open part of `R` holds an unstable curve, as cones have interior. By 2 to 4 its images cross `Q` infinitely
 often, hold points of the stable set of `p`, and come near all points of `W^u(p)` in `Q`; as `T` is continuous, they
@@ -50,8 +50,8 @@ LONGEST, BRANCHES = 80, 8  # the most bounces until a curve crosses the rectangl
 class NoTwoAttractors(Theorem):
     """The region that grows from `start` on a grid of `columns` by `rows` cells holds at most one attractor.
 
-    `saddle` is a point `(chart, theta, phi)` of a cycle of `period` bounces in it; `half` is half the width of its
-    rectangle.
+    `saddle` is a point `(chart, theta, phi)` of a cycle of `period` bounces in the region; `half` is half the width of
+    the rectangle around this point.
     """
 
     map: JoinedMap
@@ -64,22 +64,22 @@ class NoTwoAttractors(Theorem):
 
     @cached_property
     def region(self) -> ConeField | str:
-        """The trapping region with its cones; or the reason why it is not proved, in words."""
+        """The trapping region with its cones; or the reason, in words, why it is not proved."""
         return cover(self.map, self.columns, self.rows, self.start)
 
     @cached_property
     def growth(self) -> CurveGrowth | None:
-        """The bounds of the sums of inverse stretches; None without a region."""
+        """The bounds of the sums of inverse stretches; None if the region is not proved."""
         return None if isinstance(self.region, str) else growth(self.region)
 
     @cached_property
     def anchor(self) -> SaddleRectangle | None:
-        """The rectangle around the saddle; None where it is not proved."""
+        """The rectangle around the saddle; None if it is not proved."""
         return None if isinstance(self.region, str) else anchor(self.region, self.saddle, self.period, self.half)
 
     @cached_property
     def astray(self) -> int | None:
-        """The number of cells with curves across their column that are not proved to reach the rectangle."""
+        """The number of cells with curves across their column that are not proved to reach the rectangle; or None."""
         if isinstance(self.region, str) or self.anchor is None:
             return None
         return int(np.sum(~crossing(self.region, self.anchor)))
@@ -111,7 +111,7 @@ class NoTwoAttractors(Theorem):
 
     @property
     def reason(self) -> str:
-        """The conclusion if it is proved, or else the first open hypothesis, in words."""
+        """The conclusion if it is proved, or else the first hypothesis that is not proved, in words."""
         for name, words in self.open.items():
             why = self.region if name == "cones" else f"it is not proved that {words[0].lower()}{words[1:-1]}"
             return f"{self.map.label}: {why}"
@@ -119,7 +119,7 @@ class NoTwoAttractors(Theorem):
 
 
 def continuous(map: JoinedMap) -> bool:
-    """True if the map is proved continuous and one-to-one, with a determinant that is not 0 where it is smooth.
+    """True if the map is proved continuous and one-to-one, with nonzero determinant where it is smooth.
 
     Each chart must be joined to the next one, with the same range of `phi`.
     """
@@ -130,7 +130,7 @@ def continuous(map: JoinedMap) -> bool:
 
 
 def crossing(region: ConeField, at: SaddleRectangle) -> NDArray[np.bool_]:
-    """A mask: cells such that every unstable curve from there across the column has an image across the rectangle."""
+    """A mask of the cells such that unstable curves from there across the column reach and cross the rectangle."""
     course = SpanMap(region)
     spans = course.columns()
     done = np.zeros(region.cells.chart.size, dtype=bool)

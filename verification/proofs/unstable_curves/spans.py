@@ -1,9 +1,10 @@
 """Enclosures of unstable curves by their two ends, and of the images of such curves.
 
 A *span* stands for every unstable curve in a region that lies over `low <= theta <= high` in one chart, with its two
-ends in given ranges of height. The image of such a curve is again one, from the image of one end to that of the other;
-where it passes a join it is cut, and each part is a span again. Since ends are known only up to a box, the span is the
-interval that the curve certainly covers. Heights (values of `phi`) are restricted to the cells of the region.
+ends in given ranges of height. The image of such a curve is again an unstable curve, from the image of one end to that
+of the other. Where the image passes a join it is cut, and each part is represented by a span again. Since ends are
+known only up to a box, the span is the interval that the curve certainly covers. Heights (values of `phi`) are
+restricted to the cells of the region.
 """
 
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ WIDEST = 1e300
 
 
 class Spans(NamedTuple):
-    """An array of spans: the `origin` of each, its chart, its ends in `theta`, and the ranges of `phi` there."""
+    """An array of spans: for each its `origin`, its chart, its ends in `theta`, and the ranges of `phi` at the ends."""
 
     origin: Indices
     chart: Indices
@@ -34,25 +35,25 @@ class Spans(NamedTuple):
     last: tuple[Array, Array]
 
     def chosen(self, which: Indices | NDArray[np.bool_]) -> "Spans":
-        """Some of the spans."""
+        """The spans selected by indices or a mask."""
         ends = ((bottom[which], top[which]) for bottom, top in (self.first, self.last))
         return Spans(self.origin[which], self.chart[which], self.low[which], self.high[which], *ends)
 
     def crossing(self, chart: int, low: float, high: float) -> NDArray[np.bool_]:
-        """A mask: which spans cover a whole interval."""
+        """A mask of the spans that cover the whole interval from `low` to `high`."""
         found: NDArray[np.bool_] = (self.chart == chart) & (self.low <= low) & (self.high >= high)
         return found
 
 
 @dataclass(frozen=True)
 class SpanMap:
-    """The map of spans; charts are laid out in one row, one after the other."""
+    """The map of spans; the charts are laid out in one row, one after another."""
 
     cover: ConeField
 
     @cached_property
     def starts(self) -> Array:
-        """The position in the row at which each chart begins, and at which the last one ends."""
+        """The positions in the row at which each chart begins, and the position at which the last one ends."""
         lengths = [chart.x[1] - chart.x[0] for chart in self.cover.grid.charts]
         return np.concatenate([[0.0], np.cumsum(lengths)])
 
@@ -68,12 +69,12 @@ class SpanMap:
 
     @cached_property
     def slopes(self) -> tuple[float, float]:
-        """The least and the greatest slope of all cones."""
+        """The least and the greatest slope of the cones of all cells."""
         return float(self.cover.cones[0].min()), float(self.cover.cones[1].max())
 
     @cached_property
     def rows(self) -> tuple[Array, Array]:
-        """The lowest and the highest `phi` of the region in each column of each chart; infinite in empty columns."""
+        """The lowest and the highest `phi` of the region in each column of each chart; infinite in an empty one."""
         boxes = self.cover.grid.boxes(self.cover.cells)
         bottom = np.full(self.cover.shape[:2], np.inf)
         top = np.full(self.cover.shape[:2], -np.inf)
@@ -83,7 +84,7 @@ class SpanMap:
         return bottom, top
 
     def heights(self, chart: Indices, theta: Array) -> tuple[Array, Array]:
-        """The range of `phi` of the region at places; without bounds where there is no cell."""
+        """The range of `phi` of the region at parameters `theta`; very wide where the region has no cell."""
         width = self.cover.sides[0][chart]
         place = (theta - self.lows[chart]) / width
         last = self.cover.grid.columns - 1
@@ -95,7 +96,7 @@ class SpanMap:
         return found[0], found[1]
 
     def columns(self) -> Spans:
-        """For each cell a span for the curves that cross its column and whose left end is in that cell."""
+        """For each cell, a span for the curves that cross its column and whose left end lies in the cell."""
         boxes, chart = self.cover.grid.boxes(self.cover.cells), self.cover.cells.chart
         low, high = boxes.x[0] + PAD, boxes.x[1] - PAD
         ends = []
@@ -117,9 +118,10 @@ class SpanMap:
         return np.where(empty, bottom, found[0]), np.where(empty, top, found[1])
 
     def ends(self, spans: Spans, last: bool) -> tuple[Array, Array, Array, Array]:
-        """The landings of the first or the last ends of spans: range of position in the row, and range of `phi`.
+        """The images of the first or the last ends of spans: low and high position in the row of charts, low and high
+        `phi`.
 
-        Entries are NaN where a landing is lost or not bounded.
+        Entries are NaN where an image is not enclosed.
         """
         theta, (bottom, top) = (spans.high, spans.last) if last else (spans.low, spans.first)
         images = self.cover.map.images(Boxes(spans.chart, (theta, theta), (bottom, top)))
@@ -167,7 +169,7 @@ class SpanMap:
         return self._cut(spans.origin[good], [x[good] for x in left], [x[good] for x in right])
 
     def _cut(self, origin: Indices, left: list[Array], right: list[Array]) -> Spans:
-        """The spans between two ends, chart by chart."""
+        """The spans of curves between two enclosed ends, cut at the borders of charts."""
         run = left[1] - left[0], right[1] - right[0]
         low, high = left[1], right[0]
         down, up = left[2] + self._fall(run[0]), left[3] + self._rise(run[0])
@@ -197,7 +199,7 @@ class SpanMap:
 
 
 def longest(spans: Spans, kept: int) -> Spans:
-    """The `kept` longest spans of each origin."""
+    """The `kept` longest spans among those of each origin."""
     order = np.lexsort((spans.low - spans.high, spans.origin))
     origin = spans.origin[order]
     rank = np.arange(origin.size) - np.searchsorted(origin, origin)

@@ -16,18 +16,18 @@ Low = Union[N, Callable[[], N]]  # noqa: UP007  (a union that begins with a vari
 
 
 def modulus(x: N) -> N:
-    """`abs(x)` with the type of `x`, which the builtin's annotation does not keep."""
+    """`abs(x)`, typed as `x` is; the annotation of the builtin loses the type."""
     size: N = abs(x)  # type: ignore[assignment]
     return size
 
 
 def bound(low: Low[N]) -> N:
-    """The value of a bound, which may be given as a function."""
+    """The value of a lower bound, which may be given as a function without arguments."""
     return low() if callable(low) else low
 
 
 class FormulaWords(Protocol[N]):
-    """The functions that formulas may contain, besides those of every number system."""
+    """The functions that formulas may contain, in addition to those that every number system has."""
 
     def exp(self, x: N, /) -> N: ...
     def log(self, x: N, /) -> N: ...
@@ -61,7 +61,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         ...
 
     def atan2(self, y: N, x: N, /) -> N:
-        """The angle of the point `(x, y)`, anywhere in the plane; between bounces, not inside one."""
+        """The angle of the point `(x, y)`, anywhere in the plane; it is used between bounces only, never within one."""
         ...
 
     def angle(self, y: N, x: N, /) -> N:
@@ -170,7 +170,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         ...
 
     def when(self, mask: M, values: list[N], changed: Callable[[], list[N]], /) -> list[N]:
-        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects particles."""
+        """`changed()` for all particles if the mask holds for any, else `values`; the caller selects by particle."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Images of phase points under the symmetries of a table, and which of these take orbits to orbits."""
+"""Images of phase points under the symmetries of a table, and the symmetries that take orbits to orbits."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

@@ -33,9 +33,7 @@ LONG = 200  # sums of programs that run with more digits: more would take second
 
 
 def affordable(*programs: Sequence[tuple[str, *tuple[int, ...]]]) -> bool:
-    """Are the programs, given by their lines, short enough to compile in seconds: do they cost at most `LONG`
-    additions?
-    """
+    """Are the programs, given by their lines, short enough to compile in seconds: at most `LONG` additions?"""
     return sum((WORDS | OTHERS)[word] for lines in programs for word, *_ in lines) <= LONG
 
 
@@ -177,9 +175,7 @@ class Doubles(Generic[N, M]):
         return Double(self.ops, self.ops.select(mask, x.high, y.high), self.ops.select(mask, x.low, y.low))
 
     def series(self, leading: Sequence[tuple[int, int]], tail: tuple[float, ...], r: Double[N, M]) -> Double[N, M]:
-        """The polynomial in `r` whose coefficients, constant first, are the rationals `leading` and then the doubles
-        `tail`.
-        """
+        """The polynomial in `r`, constant first, with rational coefficients `leading`, followed by doubles `tail`."""
         ops = self.ops
         high, low = plane.horner(ops, tail, r.high), ops.number(0.0)
         for p, n in reversed(leading):
@@ -198,9 +194,7 @@ class Doubles(Generic[N, M]):
         return Double(ops, *sum_and_error(total, ops.fma(-j, ops.number(c[1]), rest + (x.low + error))))
 
     def exp_less_one(self, x: Double[N, M]) -> tuple[N, Double[N, M]]:
-        """`(2**k, p)` with `exp(x) = 2**k*(1 + p)` and `|p| < 0.42`, for `|x| <= 708`; the relative error of `p` is
-        `UNIT`.
-        """
+        """`(2**k, p)` with `exp(x) = 2**k*(1 + p)`, `|p| < 0.42`, for `|x| <= 708`; `p` has relative error `UNIT`."""
         k = self.ops.rounded(x.high * self.ops.number(1 / LOG_2[0]))
         r = self.reduced(x, k, LOG_2)
         return self.ops.two_to(k), r * self.series(((1, 1), (1, 2), (1, 6), (1, 24)), EXP, r)

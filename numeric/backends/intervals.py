@@ -382,9 +382,7 @@ class Secants(Generic[N, M]):
         return Secant(self.ops, self.ops.cos(x.first), self.ops.cos(x.last), slope)
 
     def log(self, x: Secant[N, M]) -> Secant[N, M]:
-        """The logarithm: the slope is divided by the logarithmic mean of both ends, `(a + b)/2*tanh(h)/h` with `h =
-        log(b/a)/2`.
-        """
+        """The logarithm; the slope is divided by the logarithmic mean `(a + b)/2*tanh(h)/h` with `h = log(b/a)/2`."""
         first, last = self.ops.log(x.first), self.ops.log(x.last)
         half = self.ops.number(0.5) * (last - first)
         mean = (x.first + x.last) * self._ratio(self.ops.tanh(half), half)

@@ -30,9 +30,7 @@ class LLVMMask:
 
 
 class LLVMVector:
-    """A vector of doubles: a known constant, a value already written, or a product whose instruction is not written
-    yet.
-    """
+    """A vector of doubles: a known constant, a value already written, or a product that is not written yet."""
 
     def __init__(
         self,

@@ -319,9 +319,7 @@ def disagreement(one: Attractor, found: Sequence[Attractor]) -> str:
 
 
 def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
-    """The attractor; if it is chaotic, with exponents and their errors from `MEASURED` particles over `bounces`
-    bounces.
-    """
+    """The attractor; a chaotic one with exponents and errors from `MEASURED` particles over `bounces` bounces."""
     if attractor.kind is not Kind.CHAOTIC:
         return attractor
     points = attractor.points

@@ -117,9 +117,7 @@ class SetLabels(NamedTuple):
 
     @property
     def decided(self) -> bool:
-        """Do both thresholds give the same sets, and is there only one set, or no set most of whose orbits still
-        spread?
-        """
+        """Do both thresholds give the same sets, and is there one set only, or no set whose orbits mostly spread?"""
         whole = self.group.max() == 0
         return np.array_equal(self.group, self.coarser) and (bool(whole) or not np.any(self.spreading()))
 
@@ -247,9 +245,7 @@ class RecurrenceLevels(NamedTuple):
 
 
 def _recurrence(quarters: Labels) -> tuple[int, Array, bool]:
-    """The level, the shares and the spreading of one orbit, as in `RecurrenceLevels`, from the sorted codes of its
-    quarters.
-    """
+    """The level, shares and spreading of one orbit, as in `RecurrenceLevels`, from sorted codes of its quarters."""
     early, late = (0, 1, 2, 0), (1, 2, 3, 3)
     met = [finest(quarters[i], quarters[k]) for i, k in zip(early, late, strict=True)]
     shares = np.array([[float(np.mean(each >= level)) for level in range(FINEST + 1)] for each in met])

@@ -367,11 +367,10 @@ def passing(flight: Ray[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:
 
 
 def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
-    """The piece of a closed curve that a line from `component` hits: its first corner lies to the right, its last does
-    not.
+    """The piece of a closed curve that a line from `component` hits: its first corner lies to the right, its last not.
 
-    `side(k)`, of the first corner of piece `k`, is negative to the right. Returns the sides of the first corner after
-    the departure and of the last, the piece, and the sides of its two corners.
+    `side(k)` tells on which side the first corner of piece `k` lies; it is negative to the right. Returns five numbers:
+    the sides of the first corner after the departure and of the last one, the piece, and the sides of its two corners.
     """
     one, many = ops.number(1.0), ops.number(float(count))
 

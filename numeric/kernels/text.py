@@ -153,7 +153,7 @@ def _stored(ops: LLVMBackend, rows: Sequence[str], addresses: Sequence[str]) -> 
 
 
 def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], mode: Mode) -> str:
-    """The whole LLVM module, from the lines written so far and those of the end."""
+    """The text of the whole LLVM module: the lines written so far, followed by the lines `end`."""
     lines = [*ops.lines, *end, "exit:", *(f"  {line}" for line in mode.exit)]
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
@@ -167,7 +167,7 @@ def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], 
 def _joined(
     ops: LLVMBackend, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
 ) -> list[str]:
-    """The head of a loop: instructions that take index and rows from the block before it, or from its last block."""
+    """The phi instructions of a loop's head: index and rows come from the block before it, or from its last block."""
     (before, zero, begins), (last, following, ends) = first, again
     phis = [f"  %{index} = phi i64 [{zero}, %{before}], [{following}, %{last}]"]
     for name, begin, end in zip(names, begins, ends, strict=True):
@@ -176,7 +176,7 @@ def _joined(
 
 
 def _broadcast(ops: LLVMBackend, i: int, name: str) -> LLVMVector:
-    """The shape's number `i`, in every lane."""
+    """The number `i` of the shape, in every lane."""
     address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
     scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
     one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
@@ -190,7 +190,7 @@ def _address(ops: LLVMBackend, base: str, row: str) -> str:
 
 
 def _started(ops: LLVMBackend, family: Family, law: str, shape: list[LLVMVector], rows: list[str]) -> list[str]:
-    """The state's fields of particles that leave from the given rows: component, parameter, exit angle."""
+    """The fields of the state of particles that leave from `rows`: component, parameter and exit angle."""
     component, theta, phi = (LLVMVector(ops, row) for row in rows)
     position = family.enter(ops, component, theta)
     if law == SLAP:
@@ -249,7 +249,7 @@ def _matrix(
 
 
 def _entry(ops: LLVMBackend, table: str, kind: str, i: int) -> str:
-    """Writes the load of entry `i` of a table of addresses; its value, of the LLVM type `kind`."""
+    """Writes the load of entry `i` of a table of addresses; returns the value, of the LLVM type `kind`."""
     return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %{table}, i64 {i}')}, align 8")
 
 
@@ -294,7 +294,7 @@ def alive(lines: list[str]) -> list[str]:
 
 
 def operations(text: str) -> dict[str, int]:
-    """The number of vector instructions of each kind in one bounce, without branches that are rarely taken."""
+    """The number of vector instructions of each kind in one bounce, not counting branches that are rarely taken."""
     counts = dict.fromkeys(("fma", "add", "mul", "div", "sqrt", "compare", "select"), 0)
     words = {"fadd": "add", "fsub": "add", "fmul": "mul", "fdiv": "div", "fcmp": "compare", "select": "select"}
     rare = True
@@ -325,7 +325,7 @@ def _bounced(
     lam: LLVMVector,
     state: list[LLVMVector],
 ) -> tuple[list[LLVMVector], Landing[LLVMVector] | None]:
-    """All rows after one bounce, and the landing, which is None with a tangent vector.
+    """All rows after one bounce, and the landing (None if there is a tangent vector).
 
     A lane whose bounce has an outcome keeps its rows, and counts the bounces that it misses.
     """

@@ -1,8 +1,8 @@
 """Parameter space: chaos and periods over pairs of a shape and a contraction. Paper: section 6.5.
 
-From each pair random particles are started as in the paper's appendix, and those are counted whose exponent is
-positive beyond its error (`numeric.sweeps.sweep`). For the one with the smallest exponent up to `LONGEST` more bounces
-are computed, to find the period with which it comes back.
+At each pair random particles are started as in the paper's appendix, and those whose exponent is positive beyond its
+error (`numeric.sweeps.sweep`) are counted. For the particle with the smallest exponent up to `LONGEST` more bounces are
+computed, to find the period after which it returns.
 """
 
 from collections.abc import Sequence
@@ -147,8 +147,8 @@ class Followed(NamedTuple):
 def followed(map: PinballMap, starts: Starts, marks: Sequence[int], threads: int | None = None) -> Followed:
     """Follows particles over `marks[-1]` bounces; those on an attracting cycle after an earlier mark stop there.
 
-    Such a particle returns after up to `LONGEST` bounces, and their derivative contracts; the second condition excludes
-    particles that pass near a saddle, which return as well.
+    A particle is on an attracting cycle if it returns after up to `LONGEST` bounces whose derivative has both
+    multipliers below 1. The second condition excludes particles that return near a saddle.
 
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
     >>> starts = Starts(*(np.array(x) for x in ([0, 0], [1.5, 0.2], [0.0, 0.1], [0.0, 0.0], [0.0, 0.0])))

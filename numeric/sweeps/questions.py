@@ -277,11 +277,11 @@ def bifurcation_diagram(
 ) -> GridResult:
     """The phase points of random orbits after a long time, against the contraction or another parameter. Paper: 6.6.
 
-    One keyword is an interval: `lam=("0", "1")`, or a parameter of the table or law, as `b=("0", "1/5")` at a fixed
-    `lam`.
+    One keyword is an interval: `lam=("0", "1")`, or a parameter of the table or law, as `b=("0", "1/5")` at one `lam`.
 
     >>> bifurcation_diagram("ellipse", a=2, lam=("0.3", "0.5"), values=3, orbits=2, points=4)
-    GridResult(Attractors against the contraction, from 2 random particles each: s, phi, theta, component, nu_plus, nu_plus_error, chaotic over 3 lam x 2 orbit x 4 bounce)
+    GridResult(Attractors against the contraction, from 2 random particles each: s, phi, theta, component, nu_plus, \
+nu_plus_error, chaotic over 3 lam x 2 orbit x 4 bounce)
     """
     given: dict[str, Any] = {"lam": lam, **shape}
     parameter, ends = _interval("bifurcation_diagram", given)

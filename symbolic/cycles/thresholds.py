@@ -1,15 +1,15 @@
-"""Every cycle of period 2, in one number: `P = (1 + t*K0)*(1 + t*K1)`.
+"""The stability of a cycle of period 2 depends on one number: `P = (1 + t*K0)*(1 + t*K1)`.
 
-A cycle of period 2 runs along a chord that is normal to the boundary at both ends (its exit angle
-`phi` satisfies `phi = -lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord
-retraced is normal too). Its monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`,
-whatever the table. All the thresholds of the paper's period-2 orbits follow from `P`:
+A cycle of period 2 runs along a chord that is normal to the boundary at both ends (the exit angle satisfies `phi =
+-lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord that is run back and forth is normal too). Its
+monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`, whatever the table. All the thresholds of the
+paper's period-2 orbits follow from `P`:
 
     |mu| < 1    exactly when  -((1-lam)/(1+lam))**2 < P < 1,
     mu complex  exactly when  0 < P < 4*lam/(1+lam)**2     (then |mu| = lam).
 
 The paper's thresholds in closed form are derived from the stability numbers of its period-2 cycles. Each is written so
-that no digit cancels and nothing is 0/0 in the paper's range. Paper: eqs. for lambda_+-(a) (section 3.3), lambda_c
+that no digits cancel and no 0/0 occurs in the paper's range. Paper: eqs. for lambda_+-(a) (section 3.3), lambda_c
 (5.1), alpha-tilde and alpha-hat (6.3).
 
 The determinant of a cycle's monodromy matrix shows where Neimark-Sacker bifurcations are impossible. Around a cycle the
@@ -17,14 +17,14 @@ cosines of exit angles do not telescope against those of incidence: with `phi = 
 
     det M = prod lam*cos(lam*eta)/cos(eta) = prod f(lam*eta)/f(eta),    f(x) = x*cos(x),
 
-which is `lam**p` only when every bounce is along the normal, and larger otherwise. Since `f` grows up to the root
-of `x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for
-every `lam < 1`: no Neimark-Sacker bifurcation. Beyond it factors exceed 1, and so may the product.
+which is `lam**p` only when every bounce is along the normal, and larger otherwise. Since `f` grows up to the root of
+`x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for every `lam
+< 1`: no Neimark-Sacker bifurcation. For larger angles a factor exceeds 1, and the product may exceed 1 too.
 
-A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta`
-(`symbolic.cycles.polygons`), with `gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts exactly when `gamma*tan(gamma)
-< 1`: the triangle (30 degrees) and the square (45) do, the pentagon (54) and all beyond do not, and are born
-expanding.
+A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta` (`symbolic.cycles.polygons`),
+with `gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts areas exactly when `gamma*tan(gamma) < 1`. This holds for the
+triangle (30 degrees) and the square (45), but not for the pentagon (54) and polygons of more sides, whose cycles expand
+areas near `lam = 1`.
 """
 
 from functools import lru_cache
@@ -40,7 +40,7 @@ from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
 
 @lru_cache(maxsize=256)
 def stability_number(cycle: Cycle) -> Expr:
-    """`P = (1 + t*K0)*(1 + t*K1)` of a cycle of period 2, free of units.
+    """`P = (1 + t*K0)*(1 + t*K1)` of a cycle of period 2; it does not depend on the unit of length.
 
     >>> from symbolic.cycles.cycle import cuspless_horizontal, egg_diameter
     >>> stability_number(cuspless_horizontal())
@@ -134,7 +134,7 @@ def lambda_minus() -> Expr:
 
 
 def lambda_plus() -> Expr:
-    """The other root of the paper's `P_2`, 1 over `lambda_minus`: `((w+1)/(w-1))**2`, `w = sqrt(a**2-1)`."""
+    """The other root of the paper's `P_2`, the reciprocal of `lambda_minus`: `((w+1)/(w-1))**2`, `w = sqrt(a**2-1)`."""
     return 1 / lambda_minus()
 
 

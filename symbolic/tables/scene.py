@@ -60,8 +60,8 @@ class Scene:
 
     `table` is an exact table, the name of one of the paper's or of `tables.GALLERY`, or a function that makes one, such
     as `tables.egg`; shape parameters are keywords. Numbers are exact, or text, where a decimal means the decimal it
-    shows; a float is refused. A parameter may have a range, `b="0.1:0..1/4"`: the boundary is then proved to bound a
-    table for all values in it (see `over`), and the law to point into the table.
+    shows; a float is refused. A parameter may have a range, `b="0.1:0..1/4"`. Then it is proved, for all values in the
+    range, that the boundary bounds a table (see `over`) and that the law points into the table.
 
     >>> egg = Scene("egg", alpha="0.08", lam="1/2")
     >>> egg
@@ -203,8 +203,8 @@ class Scene:
     def over(self, parameter: str, low: Any, high: Any) -> "Table":
         """The table with one of its shape parameters left free, with the range from `low` to `high`.
 
-        `ValueError` with a value at which it is not a table. A table of the user's own is proved to be one for every
-        value of the interval; the paper's tables are checked at both ends.
+        Raises `ValueError`, which names a value, if it is not a table for all values. For a table of the user's own
+        this is proved for the whole interval; the paper's tables are checked at both ends.
 
         >>> flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}})
         >>> flower.over("b", 0, "1/30").shapes[0].range
@@ -286,7 +286,7 @@ class Scene:
 
     @classmethod
     def proved(cls, text: str) -> "Scene":
-        """The scene with this text, which must be the `text` of a scene made before: its proofs are not repeated."""
+        """The scene of a text that is the `text` of a scene made before: its proofs are not repeated."""
         other = object.__new__(cls)
         object.__setattr__(other, "text", text)
         return other
@@ -339,7 +339,7 @@ def as_scene(given: Any, *, lam: Any = None, law: Law | str | None = None, **sha
 
 
 def given_table(table: Any, K: int, shape: Mapping[str, Any]) -> "tuple[Any, dict[str, Any]]":
-    """The table that is given or named, and the shape values not used for it; a function is called for its table."""
+    """The table that is given, named, or made by a given function; and the shape values not used to make it."""
     numbers = dict(shape)
     if isinstance(table, str) and table in GALLERY:
         from symbolic.tables import gallery
@@ -390,7 +390,8 @@ def _own_ranges(table: "Table") -> dict[str, str]:
 def _family(line: str) -> "Table":
     """The table of a scene's line of text in which parameters given as a range `LOW..HIGH` stay free.
 
-    A table of the user's own is proved to be one over all of the ranges; the paper's are checked at the ends of these.
+    A table of the user's own is proved to be a table over all of the ranges; the paper's tables are checked at their
+    ends.
     """
     import tomllib
 

@@ -1,7 +1,8 @@
 """A survey of exponents as plain data: one entry for each attractor, with error bars and a check by the determinant.
 
-The sum `nu_plus + nu_minus` along an orbit follows from its angles alone, which checks the tangent kernels. In `(s,
-phi)` the determinant is `det DT = lam*cos(phi0)/cos(eta1)`, and along an orbit cosines of successive bounces pair up:
+The sum `nu_plus + nu_minus` along an orbit follows from its angles alone, which checks the tangent kernels. In
+`(s, phi)` the determinant is `det DT = lam*cos(phi0)/cos(eta1)`, and along an orbit cosines of successive bounces pair
+up:
 
     log|det D(T^n)| = n*log(lam) + sum of log(cos(lam*eta_k)/cos(eta_k)) + log(cos(phi_0)/cos(phi_n)).
 

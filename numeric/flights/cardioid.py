@@ -1,7 +1,7 @@
 """The cardioid: the far end of a flight is a zero of a cubic, in an interval that one sign determines.
 
-The state is `sigma = exp(i*theta/2)` and `exp(i*phi)`. The tangent is `i*sigma**3`, so no frame needs a root. With `k =
-sin(theta0/2 - phi)` the particle passes the cusp at the distance `2*cos(theta0/2)**2*|k|`. Seen from the cusp, its
+The state is `sigma = exp(i*theta/2)` and `exp(i*phi)`. The tangent is `i*sigma**3`, so no frame needs a root. With
+`k = sin(theta0/2 - phi)` the particle passes the cusp at the distance `2*cos(theta0/2)**2*|k|`. Seen from the cusp, its
 polar angle falls (`k > 0`) or grows towards the direction `psi` of the velocity `v`, and the particle stays inside the
 table until it lands. The line behind the particle has the angles beyond `psi - pi`. So exactly one of the zeros of the
 cubic in `S = cos(theta0/2)*tan(theta1/2)` lies between `theta0` and `psi`: with two more zeros there, the boundary

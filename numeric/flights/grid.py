@@ -5,10 +5,10 @@ the square depends on the signs of the direction, so every cell has four. As squ
 boundary, their number on a flight grows like the logarithm of the number of cells in a row.
 
 **No piece is left out that could be hit first.** A point of a flight is a sum; rounding moves it by some units of
-`2**-52` of its terms. A piece is listed in every cell to which it comes as near as `2*slack`, where `slack` is `WIDER =
-2**-40` of these terms, four thousand times as much. A flight leaves a square half a slack before its edge, so that it
-moves on in spite of rounding. All pieces met up to the length at which a flight left the last cell are therefore on the
-lists that it has read, and the nearest of them is the first hit.
+`2**-52` of its terms. A piece is listed in every cell to which it comes as near as `2*slack`, where `slack` is
+`WIDER = 2**-40` of these terms, four thousand times as much. A flight leaves a square half a slack before its edge, so
+that it moves on in spite of rounding. All pieces met up to the length at which a flight left the last cell are
+therefore on the lists that it has read, and the nearest of them is the first hit.
 """
 
 from collections.abc import Callable, Sequence

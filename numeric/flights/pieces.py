@@ -1,7 +1,7 @@
 """Tables of straight sides and arcs of conics: every piece in closed form, first hit.
 
-A piece is `O + p*A + q*B`: an arc of an ellipse for `(p, q)` on the unit circle, a straight side for `q = -1` and `B =
-0`; `d = p*B - q*A` is a tangent of both. A line along `v` through `z0` meets a piece where `p*a + q*b = m`, with
+A piece is `O + p*A + q*B`: an arc of an ellipse for `(p, q)` on the unit circle, a straight side for `q = -1` and
+`B = 0`; `d = p*B - q*A` is a tangent of both. A line along `v` through `z0` meets a piece where `p*a + q*b = m`, with
 
     a = v x A,    b = v x B,    m = v x (z0 - O),
 

@@ -2,14 +2,14 @@
 
 As a particle flies, the polar angle of its position changes monotonically, from `theta0` towards the direction of `v`,
 by less than half a turn; so the first hit is the first zero in `theta`, whatever the table looks like. Let `x` be the
-change of the angle, `h = |z0 x v|`, and `S(x)` the sine of the angle from the position to `v`. The ray is at `1/rho =
-S/h`, and it is inside the table as long as
+change of the angle, `h = |z0 x v|`, and `S(x)` the sine of the angle from the position to `v`. The ray is at
+`1/rho = S/h`, and it is inside the table as long as
 
     K(x) = S(x)/h - 1/r > 0.
 
 As `S'' + S = 0`, this obeys `K'' + K = -w` with `w = q + q''`, `q = 1/r`, which is `(r*r + 2*r'*r' - r*r'')/r**3`:
-negative just where the wall disperses, and the constant `1/(semi-latus rectum)` on a conic about the origin. So, if `w
-<= W` on the whole table,
+negative just where the wall disperses, and the constant `1/(semi-latus rectum)` on a conic about the origin. So, if
+`w <= W` on the whole table,
 
     K(x + y) = K cos y + K' sin y - (integral of sin(y - s)*w(x + s), s from 0 to y)
             >= K cos y + K' sin y - W(1 - cos y)

@@ -3,8 +3,8 @@
 Starts are random points of phase space, random points of the table, or a grid for pictures.
 
 A start in the interior is the paper's: a point uniform in the table, with a uniform direction, moved to its first
-collision, which is elastic. No flight from an interior point is computed. Instead a chord is drawn from the measure `ds
-d(sin(phi))` of the elastic map, and kept with probability `t/diameter` for its length `t`. Points uniform on such
+collision, which is elastic. No flight from an interior point is computed. Instead a chord is drawn from the measure
+`ds d(sin(phi))` of the elastic map, and kept with probability `t/diameter` for its length `t`. Points uniform on such
 chords are uniform in the table, with uniform directions (Santalo), and the far end of the chord is the first collision.
 This holds on every table, and uses only the flights of the table's own kernel.
 
@@ -73,8 +73,8 @@ def phase_starts(map: "PinballMap", count: int, seed: int) -> Starts:
 def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
     """Random particles after their first collision: points uniform in the table, directions uniform.
 
-    Paper: appendix. The first collision is elastic whatever `lam` is, so that every exit angle occurs, even at `lam =
-    0`. With the same seed, a shorter list is the beginning of a longer one.
+    Paper: appendix. The first collision is elastic whatever `lam` is, so that every exit angle occurs, even at
+    `lam = 0`. With the same seed, a shorter list is the beginning of a longer one.
 
     >>> from numeric import PinballMap
     >>> starts = interior_starts(PinballMap("circle", lam=0), 1000, seed=0)

@@ -1,17 +1,17 @@
 """Every orbit of the cardioid is hyperbolic at every contraction below 1, with bounds that hold for almost every orbit.
 
 Paper: section 4.1. The notation is that of `defocusing` and `splitting`. Lengths along the wall are measured by
-`|K|*ds`, in which the whole boundary is `3*pi` long. A beam leaves with curvature `-y/D`, so that `dphi = (1 -
-y)*|K|*ds`. The cone is `1 <= y <= 1 + lam`; horizontal lines, on which `phi` is constant, are curves along the cone,
-with `y = 1`. `P` is the strip `|phi| <= lam*pi/2`.
+`|K|*ds`, in which the whole boundary is `3*pi` long. A beam leaves with curvature `-y/D`, so that
+`dphi = (1 - y)*|K|*ds`. The cone is `1 <= y <= 1 + lam`; horizontal lines, on which `phi` is constant, are curves along
+the cone, with `y = 1`. `P` is the strip `|phi| <= lam*pi/2`.
 
 *Pieces.* From every point of the wall the cusp is visible, at one exit angle. These angles form a curve `S` in phase
-space, a graph over the whole wall. A beam focused at the cusp, at a distance `t`, has `y = D0/t < 1`, since `t*(t - D0)
-= (4/3)*(c0*sin(delta))**2 > 0` for a chord that ends there. So `dphi > 0` along `S`, when `ds > 0`, and `dphi <= 0` on
-a curve along the cone: such a curve meets `S` at most once. Off `S` the map is smooth, and the image of such a curve is
-at most two curves along the cone. So the image of a horizontal line after `n` bounces has at most `2**n` pieces, each
-monotone in `s`, at most `3*pi` long. Let `r = (t*y - D0)/d1` be the factor by which a bounce lengthens the curve at a
-point. Then
+space, a graph over the whole wall. A beam focused at the cusp, at a distance `t`, has `y = D0/t < 1`, since
+`t*(t - D0) = (4/3)*(c0*sin(delta))**2 > 0` for a chord that ends there. So `dphi > 0` along `S`, when `ds > 0`, and
+`dphi <= 0` on a curve along the cone: such a curve meets `S` at most once. Off `S` the map is smooth, and the image of
+such a curve is at most two curves along the cone. So the image of a horizontal line after `n` bounces has at most
+`2**n` pieces, each monotone in `s`, at most `3*pi` long. Let `r = (t*y - D0)/d1` be the factor by which a bounce
+lengthens the curve at a point. Then
 
     mean over the line of r_1*r_2*...*r_n  <=  2**n.
 
@@ -25,8 +25,8 @@ flight (`cusp`), with `x = c0/c1`
 
     D0/(t*y - D0)  <=  D0/(t - D0) = 2*x*(x + 2*C)/(x**2 + 3 + 2*x*C)  <=  x**(2/3).
 
-The right side telescopes along an orbit. So on every orbit that misses the cusp, in `ds` and `dphi` again, where `|K| =
-3/(4*c)`,
+The right side telescopes along an orbit. So on every orbit that misses the cusp, in `ds` and `dphi` again, where
+`|K| = 3/(4*c)`,
 
     |det D(T**n)| <= lam**n * r_1*...*r_n * (c_n/c_0)**(1/3),
 

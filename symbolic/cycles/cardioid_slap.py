@@ -289,11 +289,11 @@ def lands_first() -> SignFinding:
     """Is the landing at `q < 1/3` the only point ahead of an upper launch where its normal meets the boundary?
 
     The flight equation is quadratic in `u`, so two launches have the landing `q`: `u(q)` and, mirrored, `u(-q)`. The
-    launch `u(q)` is continuous for `-1 < q < 1`; it lies in the upper half for `q < 1/3` and in the lower half for `q >
-    1/3`. Take the length of its flight along `-exp(3*I*theta/2)`. It is 0 nowhere, as then the flight would end where
-    it began, which is possible only at the cusp, where no `q` between -1 and 1 lands. It is positive at `q = 0`, and so
-    everywhere. The direction points inward in the upper half and outward in the lower one. So for a launch in the lower
-    half the landing lies behind it.
+    launch `u(q)` is continuous for `-1 < q < 1`; it lies in the upper half for `q < 1/3` and in the lower half for
+    `q > 1/3`. Take the length of its flight along `-exp(3*I*theta/2)`. It is 0 nowhere, as then the flight would end
+    where it began, which is possible only at the cusp, where no `q` between -1 and 1 lands. It is positive at `q = 0`,
+    and so everywhere. The direction points inward in the upper half and outward in the lower one. So for a launch in
+    the lower half the landing lies behind it.
 
     >>> lands_first().outcome.name
     'PROVED'

@@ -1,17 +1,17 @@
 """The image of a short curve near the cusp of the cardioid under a bounce: at most two pieces, and their stretching.
 
 Paper: section 4.1. The notation is that of `defocusing` and `almost_every`. The ends of a flight have the half angles
-`a` and `b`; `c0 = cos(a)`, `c1 = cos(b)`, `x = c0/c1` and `C = cos(b - a)`. Lengths along the wall are measured by `u =
-3*a`, in which the wall is `3*pi` long. A curve along the cone has `dphi = (1 - y)*du` with `1 <= y <= 1 + lam`, and a
-bounce stretches it by the factor `r(y) = (t*y - D0)/d1`.
+`a` and `b`; `c0 = cos(a)`, `c1 = cos(b)`, `x = c0/c1` and `C = cos(b - a)`. Lengths along the wall are measured by
+`u = 3*a`, in which the wall is `3*pi` long. A curve along the cone has `dphi = (1 - y)*du` with `1 <= y <= 1 + lam`,
+and a bounce stretches it by the factor `r(y) = (t*y - D0)/d1`.
 
 *Flights have `C > 0`.* No point of the table lies on the ray `theta = pi`. So along a flight the polar angle changes
 from `theta0` to `theta1` without a jump, by less than `pi` since the flight is straight, and `2*abs(b - a) < pi`.
 
-*The curve S* of the exits at the cusp is the line `phi = theta/2`, and the flight there is `2*c0**2` long. Along it `y
-= 2/3`, so `dphi > 0`, and a curve along the cone, with `dphi <= 0`, meets S at most once. From one side of S flights
-land next to the cusp, with `c1` near 0; from the other they pass the cusp, in the limit by chords of length 2 with `C =
-0`. In the strip `abs(phi) <= lam*pi/2` there is `c0 >= cos(lam*pi/2) >= 1 - lam` on S, since the sine is concave.
+*The curve S* of the exits at the cusp is the line `phi = theta/2`, and the flight there is `2*c0**2` long. Along it
+`y = 2/3`, so `dphi > 0`, and a curve along the cone, with `dphi <= 0`, meets S at most once. From one side of S flights
+land next to the cusp, with `c1` near 0; from the other they pass the cusp, in the limit by chords of length 2 with
+`C = 0`. In the strip `abs(phi) <= lam*pi/2` there is `c0 >= cos(lam*pi/2) >= 1 - lam` on S, since the sine is concave.
 
 *Distance.* With `phi` for the exit angle, `t*sin(phi - a) = 2*c1**2*sin(2*delta)`, where `2*delta = 2*(b - a)`: a
 flight lands near the cusp only if it begins near S.

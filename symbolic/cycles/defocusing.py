@@ -1,13 +1,13 @@
 """Every orbit of the cardioid stretches exponentially, at every contraction below 1: a proof. Paper: section 4.1.
 
-A tangent vector is an infinitesimal beam of width `q = cos(phi)*ds`, in which the direction changes by `omega = K*ds +
-dphi`; its curvature is `u = omega/q`. A flight takes `u` to `u' = u/(1 + t*u)`, and a reflection at a focusing wall
-takes `u'` to
+A tangent vector is an infinitesimal beam of width `q = cos(phi)*ds`, in which the direction changes by
+`omega = K*ds + dphi`; its curvature is `u = omega/q`. A flight takes `u` to `u' = u/(1 + t*u)`, and a reflection at a
+focusing wall takes `u'` to
 
     u1 = (cos(eta1)/cos(phi1))*(lam*u' - (1 + lam)/d1),    d1 = cos(eta1)/|K1|.
 
-*The cone.* Beams that leave with a focus at a distance of at most `D0 = cos(phi0)/|K0|`, more precisely with `-(1 +
-lam)/D0 <= u <= -1/D0`, arrive with `0 < u' <= 1/d1` when `t >= D0 + d1`, and so leave in the same cone:
+*The cone.* Beams that leave with a focus at a distance of at most `D0 = cos(phi0)/|K0|`, more precisely with
+`-(1 + lam)/D0 <= u <= -1/D0`, arrive with `0 < u' <= 1/d1` when `t >= D0 + d1`, and so leave in the same cone:
 `cos(eta1)/(cos(phi1)*d1) = 1/D1`. Their width in units of `D`, which is `|K|*|ds|`, grows at each bounce at least by
 the factor `(t - D0)/d1 >= 1`, the gain. This is the defocusing of [Bunimovich1979] and [Wojtkowski1986]; it does not
 need the elastic law, since `t >= D0 + d1` is a property of the chord alone.
@@ -20,8 +20,8 @@ The gain is at least `1 + tan(delta/2)**2/2` for `C >= 0` and `3/2` for `C < 0`.
 boundary is `w**2/2`, and a chord is `sin(delta)*exp(i*delta)*(w0 + w1)/w0` times the velocity where it leaves. As
 `w1/w0` is `(c1/c0)*exp(i*delta)`, the chord makes an angle between `|delta|` and `2*|delta|` with the tangent in the
 direction of motion. An exit within `lam*pi/2` of the normal makes an angle of at least `(1 - lam)*pi/2` with the
-tangent, so `|delta| >= (1 - lam)*pi/4` on every flight but the first. And `C > -1/2` on every flight: `cos(phi0) +
-cos(eta1)` has the sign of `(c0 + c1)*(1 + 2*C)`.
+tangent, so `|delta| >= (1 - lam)*pi/4` on every flight but the first. And `C > -1/2` on every flight:
+`cos(phi0) + cos(eta1)` has the sign of `(c0 + c1)*(1 + 2*C)`.
 
 *So*, with `g = 1 + tan((1 - lam)*pi/8)**2/2`, for every `0 <= lam < 1`, every start off the cusp with `|phi| < pi/2`
 and every `n >= 2` for which the orbit has not met the cusp, the vector `(ds, dphi) = (1, 0)`, which lies in the cone,
@@ -108,8 +108,8 @@ def beam_defects() -> list[Expr]:
 def cone_defects() -> list[Expr]:
     """Four expressions that are 0, so that the cone is mapped into itself and widths grow by the gain.
 
-    Beams with `u' = 1/d1` and `u' = 0` leave with `u*D1` equal to -1 and `-(1 + lam)`. The beam that grows least is `u
-    = -1/D0`, the vector `(ds, dphi) = (1, 0)`: its width in units of `D` grows by the factor `(t - D0)/d1`, and `ds`
+    Beams with `u' = 1/d1` and `u' = 0` leave with `u*D1` equal to -1 and `-(1 + lam)`. The beam that grows least is
+    `u = -1/D0`, the vector `(ds, dphi) = (1, 0)`: its width in units of `D` grows by the factor `(t - D0)/d1`, and `ds`
     becomes `|K0|*(t - D0)/cos(eta1)`.
 
     >>> cone_defects()

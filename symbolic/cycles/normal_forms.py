@@ -1,15 +1,15 @@
 """The elastic map near a cycle to third order, from chord lengths, and how its rotation varies with the distance.
 
-With elastic collisions the length `H(x, y)` of the chord between boundary parameters generates the map `(x, p) -> (y,
-p')`, where `p = -dH/dx` at departure and `p' = dH/dy` at landing; it preserves area. Around an elliptic point the map
-is a rotation whose angle changes with the square of the distance. When the coefficient of this change, the twist, is
-not zero, and the multiplier is no root of unity of order up to four, invariant curves surround the point [Moser1962]
-[SiegelMoser1971]. All computations are with truncated power series over the given numbers, exact or balls.
+With elastic collisions the length `H(x, y)` of the chord between boundary parameters generates the map
+`(x, p) -> (y, p')`, where `p = -dH/dx` at departure and `p' = dH/dy` at landing; it preserves area. Around an elliptic
+point the map is a rotation whose angle changes with the square of the distance. When the coefficient of this change,
+the twist, is not zero, and the multiplier is no root of unity of order up to four, invariant curves surround the point
+[Moser1962] [SiegelMoser1971]. All computations are with truncated power series over the given numbers, exact or balls.
 
 The module also has the normal form of the flip of the cuspless cardioid's horizontal orbit when its wall is bent.
 Paper: section 5.1, "presumably it could be rendered stable if the billiard table were modified". Near `y = 0` let the
-wall be `x = -1/4 + a*y^2 + b*y^4` and the arc `x = 2 - A*y^2 - B*y^4`. By the mirror symmetry the return map is odd: `x
--> M x + C(x)` with `C` cubic, so on the eigendirection of -1, with right and left eigenvectors `q` and `p`,
+wall be `x = -1/4 + a*y^2 + b*y^4` and the arc `x = 2 - A*y^2 - B*y^4`. By the mirror symmetry the return map is odd:
+`x -> M x + C(x)` with `C` cubic, so on the eigendirection of -1, with right and left eigenvectors `q` and `p`,
 
     xi -> -xi + c*xi^3,    c = p C(q)/(p q),
 

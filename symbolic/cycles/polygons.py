@@ -1,9 +1,9 @@
 """Cycles whose bounces are rotated into one another: regular polygons in a table with rotational symmetry.
 
 Where a turn by `2*pi*p/q` maps the table to itself, a cycle may turn by that angle at each bounce. Its chords make the
-angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the radius by `delta`, `tan(delta) =
-rho'/rho`; so the particle leaves at `gamma - delta` and lands at `gamma + delta` (up to a common sign), and the law
-`gamma - delta = lam*(gamma + delta)` holds when
+angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the radius by `delta`,
+`tan(delta) = rho'/rho`; so the particle leaves at `gamma - delta` and lands at `gamma + delta` (up to a common sign),
+and the law `gamma - delta = lam*(gamma + delta)` holds when
 
     rho'/rho = tan(gamma*(1 - lam)/(1 + lam)).
 
@@ -99,12 +99,12 @@ def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
 
 
 def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
-    """The polar angle of one bounce of the polygon, for `lambda_c <= lam <= 1`; it is the flat point `pi/K` at `lam =
-    1`.
+    """The polar angle of one bounce of the polygon, for `lambda_c <= lam <= 1`; it is the flat point `pi/K` at
+    `lam = 1`.
 
-    The polygon needs the slope `rho'/rho = T = tan(required_tilt(p, q))`, which means `sin(K*theta + psi) =
-    -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. As `lam` falls, the polygon turns counterclockwise, which is
-    also the sense in which the particle runs; for the mirror image both are clockwise.
+    The polygon needs the slope `rho'/rho = T = tan(required_tilt(p, q))`, which means
+    `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. As `lam` falls, the polygon turns
+    counterclockwise, which is also the sense in which the particle runs; for the mirror image both are clockwise.
 
     >>> near_flat().subs(lam, 1)
     pi/3

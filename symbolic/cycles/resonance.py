@@ -169,8 +169,8 @@ def mirrored(f: Series) -> Series:
 def straightened(map: Map, mu: QuadraticNumber) -> Map:
     """The map in coordinates in which all quadratic terms that can be removed vanish.
 
-    A term `z**i*w**j` cannot be removed if `mu**i*conj(mu)**j = mu`; among quadratic terms this is `w**2` if `mu**3 =
-    1`.
+    A term `z**i*w**j` cannot be removed if `mu**i*conj(mu)**j = mu`; among quadratic terms this is `w**2` if
+    `mu**3 = 1`.
     """
     h: Series = {}
     for (i, j), c in map[0].items():

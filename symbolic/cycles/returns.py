@@ -1,7 +1,7 @@
 """Every return to the arc of the cuspless cardioid stretches, for `1/10 <= lam < 1`: a proof from inequalities.
 
-Paper: section 5. In the notation of `defocusing` and `splitting` a beam leaves the arc with curvature `-y/D` and `dphi
-= (1 - y)*|K|*ds`, and the cone is `1 <= y <= 1 + lam`. A bounce on the wall may narrow beams, but the form
+Paper: section 5. In the notation of `defocusing` and `splitting` a beam leaves the arc with curvature `-y/D` and
+`dphi = (1 - y)*|K|*ds`, and the cone is `1 <= y <= 1 + lam`. A bounce on the wall may narrow beams, but the form
 
     L = (y - B)*|K|*ds = (1 - B)*|K|*ds - dphi,    B = 11/20,
 
@@ -21,8 +21,8 @@ minus 1, and at `y = 1 + lam` by `q/(2*A*(1 + 2*x*C))`, where
     q = A*(x**2 + 1 - 2*x*C) + 3*A*lam*(x**2 + 1 + 2*x*C) - 2*lam*(1 + lam)*(1 + 2*x*C).
 
 Since `delta >= (1 - lam)*pi/4`, `C**2 <= (1 + sin(lam*pi/2))/2 <= 1/2 + 4*lam/5`; and `q - 2*A*e*(1 + 2*x*C)` is a
-quadratic polynomial in `x`, positive for each such `C`, and `x >= 0` where `C < 0`, if `along_arc` holds with `e =
-EXCESS`.
+quadratic polynomial in `x`, positive for each such `C`, and `x >= 0` where `C < 0`, if `along_arc` holds with
+`e = EXCESS`.
 
 *By way of the wall*, let `Q = (t - D)*cos(eta)`, and let `X` be the distance from the wall, with index 0 at the start
 and 1 at the end. The factor exceeds 1 at `y = 1` and at `y = 1 + lam` if and only if

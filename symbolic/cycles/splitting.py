@@ -20,8 +20,8 @@ the wall. Then
     (t - D)*cos(eta) = (2*c - 1)**2*(4*c**2 + 4*c + 3)/12 + (2*c/3)*(1 - cos(tau + 2*eta)) >= 0:
 
 the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The angle of a particle at the
-arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so `tau < (1 +
-lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
+arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so
+`tau < (1 + lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
 
 *So* `1 < y1 < 1 + lam`, strictly and uniformly: in the projective (Hilbert) metric of the cone the image has a diameter
 of at most `diameters(lam)`. Hence every return to the arc, which takes at most two bounces, contracts this metric by
@@ -39,9 +39,9 @@ not in it because `t > D0`.
     1 + ((cos(phi)/cos(eta))**2*Q0 + Q1 - (1 - lam)*X1)/(cos(phi)*d1),    Q = (t - D)*cos(eta) at either end,
 
 where `X1 = t1*cos(phi)` is the distance from the wall at which the particle lands. `Q1 >= 11/27*X1`, since the first
-term of `Q` is `X/3 + 2*X/(3*(2*c + 1)**2)` and `c <= 1`; and `t1 >= d1`. So the width grows at least by the factor `lam
-+ 11/27`. For `lam > 16/27` every orbit of the cuspless cardioid stretches at a rate of at least `least_rate()` for each
-bounce, and no cycle attracts.
+term of `Q` is `X/3 + 2*X/(3*(2*c + 1)**2)` and `c <= 1`; and `t1 >= d1`. So the width grows at least by the factor
+`lam + 11/27`. For `lam > 16/27` every orbit of the cuspless cardioid stretches at a rate of at least `least_rate()` for
+each bounce, and no cycle attracts.
 
 Left out are orbits through a join, where the derivative does not exist, and the elastic case: at `lam = 1` near-grazing
 orbits follow the parabolic matrix of `grazing`, whose powers grow like `n`, so that no `C*nu^n` bounds anything.
@@ -248,9 +248,9 @@ def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
     """Bounds for the projective diameter of the cone's image: along a chord of the arc, and by way of the wall.
 
     The exponential of the diameter is the product of `far/near` and `(1 - d/far)/(1 - d/near)` (see `spread_defect`).
-    `far/near` is at most `1 + 2*lam/(1 + lam)` for the arc, since `t - D0 >= D0/2`, and at most `1 + 4*lam/(3*(1 +
-    lam)*clearance)` by the wall, since `D0 <= 4/3`. Moreover `1 - d/far` is at most 1, `d/near` is at most `1/gain` for
-    the arc, and `1 - d/near >= clearance/DIAMETER` by the wall.
+    `far/near` is at most `1 + 2*lam/(1 + lam)` for the arc, since `t - D0 >= D0/2`, and at most
+    `1 + 4*lam/(3*(1 + lam)*clearance)` by the wall, since `D0 <= 4/3`. Moreover `1 - d/far` is at most 1, `d/near` is
+    at most `1/gain` for the arc, and `1 - d/near >= clearance/DIAMETER` by the wall.
 
     >>> [bound.n(3) for bound in diameters(Rational(1, 2))]
     [4.45, 5.18]

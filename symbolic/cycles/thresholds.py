@@ -1,9 +1,9 @@
 """The stability of a cycle of period 2 depends on one number: `P = (1 + t*K0)*(1 + t*K1)`.
 
-A cycle of period 2 runs along a chord that is normal to the boundary at both ends (the exit angle satisfies `phi =
--lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord that is run back and forth is normal too). Its
-monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`, whatever the table. All the thresholds of the
-paper's period-2 orbits follow from `P`:
+A cycle of period 2 runs along a chord that is normal to the boundary at both ends (the exit angle satisfies
+`phi = -lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord that is run back and forth is normal
+too). Its monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`, whatever the table. All the thresholds of
+the paper's period-2 orbits follow from `P`:
 
     |mu| < 1    exactly when  -((1-lam)/(1+lam))**2 < P < 1,
     mu complex  exactly when  0 < P < 4*lam/(1+lam)**2     (then |mu| = lam).
@@ -18,8 +18,8 @@ cosines of exit angles do not telescope against those of incidence: with `phi = 
     det M = prod lam*cos(lam*eta)/cos(eta) = prod f(lam*eta)/f(eta),    f(x) = x*cos(x),
 
 which is `lam**p` only when every bounce is along the normal, and larger otherwise. Since `f` grows up to the root of
-`x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for every `lam
-< 1`: no Neimark-Sacker bifurcation. For larger angles a factor exceeds 1, and the product may exceed 1 too.
+`x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for every
+`lam < 1`: no Neimark-Sacker bifurcation. For larger angles a factor exceeds 1, and the product may exceed 1 too.
 
 A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta` (`symbolic.cycles.polygons`),
 with `gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts areas exactly when `gamma*tan(gamma) < 1`. This holds for the

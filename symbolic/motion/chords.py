@@ -115,8 +115,8 @@ def partials(shapes: tuple[Symbol, ...], order: int) -> dict[str, tuple[Symbol, 
 def law_kernel(law: Law, order: int = 1, whole: Component | None = None) -> Kernel:
     """The exit angle as a generated function of `(eta, lam, theta, *own)`, with derivatives up to `order`.
 
-    For a law that contains arc length, `whole` is the closed curve: the arguments are then `(eta, lam, theta, s,
-    *own)`, and derivatives by `theta` are those along the curve, where `ds/dtheta` is the speed.
+    For a law that contains arc length, `whole` is the closed curve: the arguments are then
+    `(eta, lam, theta, s, *own)`, and derivatives by `theta` are those along the curve, where `ds/dtheta` is the speed.
 
     The values are `phi`, then its first derivatives such as `phi_eta`, and for order 2 the second derivatives by `eta`
     or `theta` and any argument, such as `phi_eta_eta`.

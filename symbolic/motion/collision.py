@@ -1,9 +1,9 @@
 """The collision map, and its derivative by implicit differentiation. Paper: section 2.1.
 
 A particle leaves `q0 = (X0, Y0)(s0)` with exit angle `phi0`, counted from the inward normal towards the tangent; if
-`psi` is the direction of the tangent, the particle's direction is `psi0 + pi/2 - phi0`. It lands at `q1 = (X1,
-Y1)(s1)`, where the flight equation says that `q1 - q0` is parallel to that direction, with incidence angle `eta1 = psi1
-- direction - pi/2`. The law is `phi1 = -eta1 + f(eta1)`.
+`psi` is the direction of the tangent, the particle's direction is `psi0 + pi/2 - phi0`. It lands at
+`q1 = (X1, Y1)(s1)`, where the flight equation says that `q1 - q0` is parallel to that direction, with incidence angle
+`eta1 = psi1 - direction - pi/2`. The law is `phi1 = -eta1 + f(eta1)`.
 
 The module also derives how much area a bounce contracts: at a point, on average, and near the elastic case. Paper:
 sections 1 and 4.1.
@@ -82,9 +82,9 @@ def exit_slope(f: Expr = UNIFORM) -> Expr:
 def implicit_derivative() -> Matrix:
     """`d(s1, -eta1)/d(s0, phi0)` for any two components, by differentiating the flight equation.
 
-    Rows: landing arc length and minus the incidence angle. The Frenet equations `X' = cos psi`, `Y' = sin psi`, `psi' =
-    -kappa` are all that is used of the boundary. A rotation of the plane does not change them, so that the flight may
-    be assumed to run along the first axis.
+    Rows: landing arc length and minus the incidence angle. The Frenet equations `X' = cos psi`, `Y' = sin psi`,
+    `psi' = -kappa` are all that is used of the boundary. A rotation of the plane does not change them, so that the
+    flight may be assumed to run along the first axis.
     """
     landing = Symbol("landing", real=True)
     ends = [symbols(f"X{index} Y{index} psi{index}", real=True) for index in (0, 1)]

@@ -188,10 +188,10 @@ def about_focus(rho: Expr) -> Focal | None:
 def about_far_focus(component: Component, box: Box) -> Component:
     """The component, where an arc of a conic about a focus in the origin is rewritten to keep its digits at a far tip.
 
-    At a far tip `1/rho = p + size*cos(theta - w)` is a small difference. In terms of the cosine `c` of half of `theta -
-    w` it is `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse. The new form uses cosine and sine
-    of `theta/2` only. The component is returned unchanged where `size` has no proved sign on the box or is not above
-    `p/2`.
+    At a far tip `1/rho = p + size*cos(theta - w)` is a small difference. In terms of the cosine `c` of half of
+    `theta - w` it is `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse. The new form uses cosine
+    and sine of `theta/2` only. The component is returned unchanged where `size` has no proved sign on the box or is not
+    above `p/2`.
 
     >>> rho = 1 / (5 + 4 * cos(theta))
     >>> about_far_focus(Component("arc", (rho * cos(theta), rho * sin(theta)), S.Zero, pi), {}).point[1]

@@ -3,13 +3,13 @@
 Signs: the boundary runs counterclockwise, the normal points inwards, and the curvature of a focusing component is
 negative (the paper's convention; textbooks use the opposite sign).
 
-Arc length has a closed form where the speed allows one, and is the exact integral elsewhere. If `speed**2 = p +
-q*cos(n*theta)`, it is an incomplete elliptic integral of the second kind; at parameter 1 (the cardioid) it degenerates
-to a sine.
+Arc length has a closed form where the speed allows one, and is the exact integral elsewhere. If
+`speed**2 = p + q*cos(n*theta)`, it is an incomplete elliptic integral of the second kind; at parameter 1 (the cardioid)
+it degenerates to a sine.
 
 Symmetries: rotations and reflections about the origin that are proved to map the boundary to itself form a cyclic or a
-dihedral group. A rotation takes `theta` to `theta + shift` and keeps exit angles. A reflection takes `theta` to `-theta
-+ shift` and negates them. Both take orbits of the pinball map to orbits.
+dihedral group. A rotation takes `theta` to `theta + shift` and keeps exit angles. A reflection takes `theta` to
+`-theta + shift` and negates them. Both take orbits of the pinball map to orbits.
 """
 
 from dataclasses import dataclass
@@ -383,8 +383,8 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
 
 
 def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
-    """A polynomial `p` in `T = tan(x/2)` with the sign of a trigonometric polynomial; `T`; and the latter's value at `x
-    = pi`.
+    """A polynomial `p` in `T = tan(x/2)` with the sign of a trigonometric polynomial; `T`; and the latter's value at
+    `x = pi`.
 
     Here `x = g*theta`, where `g` is the common divisor of the frequencies. None if the expression is not a
     trigonometric polynomial, or has harmonics above `HIGHEST`.

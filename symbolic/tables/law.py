@@ -262,8 +262,8 @@ def _exit_angle(formula: str, numbers: tuple[tuple[str, str], ...], along: "Expr
 def _without_pole(phi: "Expr") -> "Expr":
     """Rewrites `atan(u*tan(eta))`, if `u >= 0`, in a form that has no pole at a right angle.
 
-    The form is `eta - atan((1 - u)*sin(eta)*cos(eta)/(cos(eta)**2 + u*sin(eta)**2))`. Both are equal for `|eta| <
-    pi/2`, and the new form is smooth at `pi/2`.
+    The form is `eta - atan((1 - u)*sin(eta)*cos(eta)/(cos(eta)**2 + u*sin(eta)**2))`. Both are equal for
+    `|eta| < pi/2`, and the new form is smooth at `pi/2`.
     """
     from sympy import Wild, atan, cos, sin, tan
 

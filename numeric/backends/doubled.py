@@ -38,7 +38,7 @@ def affordable(*programs: Sequence[tuple[str, *tuple[int, ...]]]) -> bool:
 
 
 class Double(Generic[N, M]):
-    """`high + low` with `|low|` at most half a unit of `high`.
+    """The number `high + low`, where `|low|` is at most half a unit in the last place of `high`.
 
     >>> from numeric.backends.scalars import ArrayBackend
     >>> third = Doubles(ArrayBackend()).q(1, 3)

@@ -242,7 +242,7 @@ class Series(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many numbers the series has: offsets, the mean speed, coefficients of sines, and of `1 - cos`."""
+        """The length of the list of numbers: offsets, the mean speed, coefficients of sines and of `1 - cos`."""
         return self.offsets + (1 + self.terms + self.rises if self.terms else 0)
 
 

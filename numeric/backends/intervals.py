@@ -120,7 +120,7 @@ class Intervals:
 
 
 class SharpIntervals(Intervals):
-    """`Intervals` with the range of a cosine to its last bits: near 0 the bound of `1 - cos(x)` is small.
+    """`Intervals` with the sharp range of a cosine, so that near 0 the bound of `1 - cos(x)` is small.
 
     >>> cosine = SharpIntervals().cos(Interval(np.array([-1.0, 0.1]), np.array([2.0, 0.2])))
     >>> cosine.low.round(3).tolist(), cosine.high.round(3).tolist()

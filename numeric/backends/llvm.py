@@ -224,7 +224,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return self.call("fma", x, y, z)
 
     def product(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
-        """`x*y`, rounded by itself, not contracted with a sum to one instruction."""
+        """`x*y`, rounded by itself: it is never joined with a sum to one instruction."""
         return self.line("fmul", x, y)
 
     def maximum(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:

@@ -121,7 +121,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         ...
 
     def settle(self, *values: N) -> None:
-        """Makes a compiled backend compute these values at this place, not where they are first used."""
+        """Makes a compiled backend compute these values now, and not where they are first used."""
         ...
 
     def zero(
@@ -165,7 +165,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
     ) -> list[N]:
         """Applies `body` to the numbers for which `condition` holds, until it holds for none, or `limit` times.
 
-        A `steady` body leaves the others alone by itself.
+        A `steady` body does not change the numbers for which `condition` fails, so that they need no selection.
         """
         ...
 

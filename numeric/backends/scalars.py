@@ -1,7 +1,7 @@
 """NumPy arrays, and single numbers of any precision, as backends: flights run on them unchanged.
 
-The library of single numbers, mpmath or one like it, is handed in as a `Context`, never imported. Its elementary
-functions are its own, and every zero is found to its full precision.
+The library of single numbers, mpmath or one like it, is handed in as a `Context`, never imported. It provides the
+elementary functions, and every zero is found to its full precision.
 """
 
 from collections.abc import Callable, Sequence
@@ -114,7 +114,7 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
     ) -> list[Array]:
         """Applies `body` to the elements for which `condition` holds, until it holds for none, or `limit` times.
 
-        A `steady` body leaves the other elements alone by itself.
+        A `steady` body does not change the elements for which `condition` fails.
         """
         for _ in range(limit):
             active = condition(state)

@@ -68,7 +68,7 @@ def account(map: PinballMap, survey: Survey, timed: bool = False) -> Document:
 
 
 def numbers(measured: ExponentEstimates | None) -> Document:
-    """A document of exponents and their sum with standard errors, null where there is no finite number."""
+    """The exponents and their sum with standard errors, as a document; null where there is no finite number."""
     whole = measured or ExponentEstimates(None, None, None)
     found: Document = {}
     for name, value in (("nu_plus", whole.upper), ("nu_minus", whole.lower), ("sum", whole.total)):
@@ -190,7 +190,7 @@ Array = NDArray[np.float64]
 
 
 class DeterminantCheck(NamedTuple):
-    """The largest difference of `log|det D(T^n)|` between kernel and angles over `particles` orbits of `bounces`."""
+    """The largest difference of `log|det D(T^n)|` between kernel and angles, over `particles` orbits."""
 
     difference: float
     bounces: int

@@ -99,7 +99,7 @@ MEASURED, BLOCKS = 64, 128  # particles whose exponents are averaged, and blocks
 
 
 class Classified(NamedTuple):
-    """The index of each particle's attractor, -1 where it did not settle, and the attractors."""
+    """The attractors, and for each particle the index of its attractor in `label`, -1 where it did not settle."""
 
     label: Labels
     attractors: tuple[Attractor, ...]
@@ -126,7 +126,7 @@ def classify(
 
 @dataclass
 class _Sorting:
-    """Particles on their way to attractors; those in `going` have no label yet."""
+    """Particles that are followed to their attractors; those in `going` have no label yet."""
 
     map: PinballMap
     particles: PhasePoints
@@ -187,7 +187,7 @@ class _Sorting:
         return len(self.attractors) - 1
 
     def _catch(self) -> None:
-        """Labels the particles that are at a cycle, and looks for new cycles among the others."""
+        """Labels the particles near a known cycle, and looks for new cycles near the others."""
         while self.going.size:
             caught = at_cycles(self.map, self.particles.only(self.going), self.attractors)
             self.label[self.going] = caught
@@ -294,7 +294,7 @@ def find(
 def disagreement(one: Attractor, found: Sequence[Attractor]) -> str:
     """Reason to doubt that a chaotic attractor and its images are distinguished correctly; empty if none.
 
-    Images have equal exponents and equal shares of the starts: chi square gives the probability of what was observed.
+    Images have equal exponents and equal shares of the starts, which is tested by chi square.
 
     >>> sets = [Attractor(Kind.CHAOTIC, 0, phase_points(0.0, 0.0), share=wilson(k, 140), family=0) for k in (103, 37)]
     >>> disagreement(sets[0], sets)

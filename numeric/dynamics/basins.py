@@ -57,7 +57,7 @@ def whole(map: PinballMap) -> Window:
 
 
 def starts_at(map: PinballMap, s: ArrayLike, sin_phi: ArrayLike) -> PhasePoints:
-    """The particles at these coordinates; beyond grazing, `|sin(phi)| > 1`, the angle is mirrored back.
+    """The particles at these coordinates; for `|sin(phi)| > 1`, which is beyond grazing, the angle is reflected back.
 
     >>> particle = starts_at(PinballMap("cardioid"), [2.0], [0.5])
     >>> [round(float(x[0]), 6) for x in (particle.theta, particle.phi)]
@@ -146,7 +146,7 @@ def classify_cells(map: PinballMap, grid: PhaseGrid, transient: int = TRANSIENT)
 
 
 def image_cells(map: PinballMap, grid: PhaseGrid, symmetry: "TableSymmetry") -> Labels | None:
-    """The index of the cell to which a symmetry takes each cell; None where it does not take middles to middles.
+    """The index of the cell to which a symmetry takes each cell; None if it does not map centres of cells to centres.
 
     >>> from numeric.pinball.sampling import phase_grid
     >>> map = PinballMap("cuspless")

@@ -126,7 +126,7 @@ class Count:
 
 
 def arrived(map: PinballMap, starts: Starts) -> Growth:
-    """The state of particles at their starts; at `lam = 0` at their first landing, as the slap map forgets `phi`."""
+    """The state of particles at their starts; at `lam = 0` at their first landing, since the map then forgets `phi`."""
     if map.law == "slap":
         landed = map.step(starts.theta, starts.phi, starts.component)
         return Growth(map, landed.theta, 0.0 * landed.phi, landed.component)

@@ -80,8 +80,8 @@ def surveyed(
 ) -> Survey:
     """The exponents along orbits from `starts`, by attractor. Paper: appendix; figures in sections 4.1 and 5.3.
 
-    With `until` the count goes on, twice as long each time, until every error is at most that, or until `budget`
-    bounces, of all particles together, are spent. `say` is called with the fraction of the work that is done.
+    With `until`, the count goes on, twice as long each time, until every error is at most `until`, or until `budget`
+    bounces, of all particles together, are made. `say` is called with the fraction of the work that is done.
 
     >>> from numeric.pinball.sampling import interior_starts
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
@@ -247,7 +247,7 @@ def _carried(slopes: Array, vector: Array) -> Array:
 
 
 def slopes(map: PinballMap, count: int, seed: int, bounces: int = 600) -> tuple[Array, Array, Array]:
-    """Arc length, exit angle and the slope `dphi/ds` of the expanded direction, at points of random orbits."""
+    """The arc length, the exit angle, and the slope `dphi/ds` of the expanded direction, at points of random orbits."""
     starts = interior_starts(map, count, seed)
     begin = advanced(map, PhasePoints(*starts[:3]), 1000).points
     orbit = map.orbit(begin.theta, begin.phi, bounces, begin.component)

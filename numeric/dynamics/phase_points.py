@@ -57,7 +57,7 @@ def together(*parts: PhasePoints) -> PhasePoints:
 
 
 def advanced(map: PinballMap, particles: PhasePoints, bounces: int) -> Advanced:
-    """The particles after `bounces` bounces; nothing is recorded on the way."""
+    """The particles after `bounces` bounces, of which none is recorded."""
     if particles.size == 0 or bounces < 1:
         return Advanced(particles, np.zeros(particles.size, dtype=np.int64))
     growth = Growth(map, particles.theta, particles.phi, particles.component)

@@ -33,7 +33,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Share:
-    """A share of the starts: how many they are, and the 95 per cent interval of the true share."""
+    """A share of the starts: the number of starts in it, and the 95 per cent interval of the true share."""
 
     count: int
     of: int
@@ -207,7 +207,7 @@ def eigenvalues(slopes: Array) -> tuple[complex, complex]:
 
 
 def determinants(slopes: Array) -> Array:
-    """Determinants of 2 by 2 matrices, without LAPACK, whose last bit depends on the processor."""
+    """The determinants of 2 by 2 matrices. LAPACK is not used, as its last bit depends on the processor."""
     return np.asarray(slopes[..., 0, 0] * slopes[..., 1, 1] - slopes[..., 0, 1] * slopes[..., 1, 0])
 
 
@@ -220,7 +220,7 @@ def by_parameter(map: PinballMap, here: PhasePoints, after: PhasePoints) -> Arra
 
 
 def gap(map: PinballMap, left: Array, right: Array) -> Array:
-    """The difference of parameters, `left - right`; the short way round on a table of one closed component."""
+    """The difference of parameters, `left - right`; modulo a whole turn on a table of one closed component."""
     if len(map.states.ends) > 1:
         return left - right
     return np.asarray(np.remainder(left - right + np.pi, 2 * np.pi) - np.pi)
@@ -269,7 +269,7 @@ VOTES = 16  # bounces that decide on which cloud a particle is
 
 
 def same(map: PinballMap, old: Attractor, new: Attractor) -> bool:
-    """Are two attractors the same cycle, the same neutral family, or the same way to stop?"""
+    """Are two attractors the same cycle, the same neutral family, or the same outcome that stops particles?"""
     if (old.kind, old.period, old.status) != (new.kind, new.period, new.status):
         return False
     if old.kind is not Kind.CYCLE:

@@ -56,7 +56,7 @@ def span(piece: PieceNumbers[N]) -> Pair[N]:
 
 
 def from_focus(ops: Backend[N, M], gap: N, u: Pair[N]) -> N:
-    """`p - e` to its last bits, `e` being the eccentricity and `gap` one minus it."""
+    """`p - e` with all its digits, where `e` is the eccentricity and `gap` is `1 - e`."""
     one, (p, q) = ops.number(1.0), u
     return gap - ops.select(ops.number(0.0) < p, q * q / (one + p), one - p)
 

@@ -84,7 +84,7 @@ class Boundary:
 
     @property
     def corner_parameters(self) -> list[tuple[float, float]]:
-        """The ends of each component's parameter, or far away where the boundary goes on smoothly."""
+        """The ends of each component's parameter; a smooth end is replaced by a parameter far away."""
         known = zip(self.ends, self.corners, strict=True)
         return [(low if first else -FAR, high if last else FAR) for (low, high), (first, last) in known]
 
@@ -105,7 +105,7 @@ class Boundary:
         return np.array(np.broadcast_arrays(theta, *values)[1:], dtype=float)
 
     def curve(self, component: NDArray[np.int64], theta: Array, count: int = 6) -> Array:
-        """Rows `x, y`, first and second derivatives by `theta`: the first `count` of these six."""
+        """Rows with the first `count` of these six: `x`, `y`, and their first and second derivatives by `theta`."""
         rows = np.empty((count, *theta.shape))
         for index in np.unique(component):  # of hundreds of parts most calls ask for one
             here, part = component == index, self.ir.parts[index]
@@ -338,10 +338,10 @@ class Family(ABC):
 
     @abstractmethod
     def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
-        """`(above, below)`: `above/below` is curvature times speed at a landing, negative if focusing; `below > 0`."""
+        """Two numbers: `above/below` is curvature times speed at a landing, negative if focusing, and `below > 0`."""
 
     def fields(self, law: str) -> tuple[str, ...]:
-        """The names of the fields of a particle's state under this law."""
+        """The names of the numbers (fields) that make up a particle's state under this law."""
         return self.position if law == SLAP else self.position + self.direction
 
     def bounce(
@@ -421,7 +421,7 @@ class Family(ABC):
 
 
 def grazing(ops: Backend[N, M], across: N, along: N) -> M:
-    """The mask of flights that end tangent to the boundary, or meet nothing."""
+    """The mask of flights that end tangent to the boundary, or that do not meet it."""
     return ops.negated(ops.number(GRAZE) * modulus(across) < along)
 
 

@@ -1,9 +1,9 @@
-"""Any table: every zero of the flight function on every piece is bracketed, and the first hit wins.
+"""Any table: every zero of the flight function on every piece is bracketed, and the first hit is the landing.
 
-A component is cut where its tangent has turned by a quarter of a turn and where the turning changes
-sign, so on a piece the tangent is parallel to a flight at most once, and the flight function
-`F(theta) = v x (z(theta) - z0)` has at most one extremum and two zeros. Finding the extremum first
-brackets both zeros. State: the component, the parameter `theta`, and the direction `v`.
+A component is cut where its tangent has turned by a quarter of a turn and where the turning changes sign, so on a piece
+the tangent is parallel to a flight at most once, and the flight function `F(theta) = v x (z(theta) - z0)` has at most
+one extremum and two zeros. The extremum is found first, and then brackets both zeros. State: the component, the
+parameter `theta`, and the direction `v`.
 """
 
 import itertools

@@ -82,7 +82,7 @@ def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]],
 
 
 def _square_rows(link: Array, way: int, low: Array, cell: Array) -> list[list[float]]:
-    """The rows of `PieceGrid.squares` for one quadrant of directions: leftwards if `way` is odd, downwards from 2."""
+    """The rows of `PieceGrid.squares` for one quadrant of directions: left if `way` is odd, down if it is 2 or more."""
     flip = (slice(None, None, -1 if way & 2 else 1), slice(None, None, -1 if way & 1 else 1))
     empty = (link == -1.0)[flip]
     side = np.zeros(link.shape)

@@ -60,7 +60,7 @@ OWN = 2.0**-40  # beyond the end of its own arc, on which a particle lands: a si
 
 
 class Pieces(Coordinates):
-    """Several curves, each of several pieces: a table with corners, smooth joins and holes."""
+    """Several curves, each of several pieces, so that a table may have corners, smooth joins and holes."""
 
     name, path = "pieces", "closed form on every side and arc, first hit"
     pairs = (3,)

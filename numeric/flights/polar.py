@@ -202,8 +202,8 @@ class March(Generic[N, M]):
     def _divided(self, u: Pair[N]) -> tuple[N, N, N]:
         """`H`, `scale` and `weight` with `v x (z - z0) = H*scale/weight`, all three computed without cancellation.
 
-        `u - u0 = tan(B)*i*(u + u0)` for half the angle `B` between them: up to a quarter of a turn differences are
-        divided by `tan(B) = scale/weight`, beyond it by one.
+        If `B` is half the angle between `u0` and `u`, then `u - u0 = tan(B)*i*(u + u0)`. For angles up to a quarter
+        turn differences are divided by `tan(B) = scale/weight`, for larger ones by one.
         """
         ops, one, u0, v = self.ops, self.ops.number(1.0), self.u0, self.v
         near = ops.number(0.0) < plane.dot(u0, u)

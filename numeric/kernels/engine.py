@@ -63,7 +63,7 @@ class Engine(NamedTuple):
         threads: int | None = None,
         outcome: Sequence[Array] = (),
     ) -> EngineResult:
-        """Bounces every particle `bounces` times, from the rows `own`, `tangent` and `outcome` (code, lost)."""
+        """Advances every particle by `bounces` bounces, from the rows `own`, `tangent` and `outcome` (code, lost)."""
         names = fields(self.family, spec)
         count = own[0].size
         width = -(-count // self.width) * self.width
@@ -168,11 +168,11 @@ class Engine(NamedTuple):
 
 
 class BatchRun:
-    """A batch of particles: `begin` sets where they start, `advance` bounces them and records each bounce.
+    """A batch of particles: `begin` sets where they start, `advance` advances them and records each bounce.
 
     Whole blocks of lanes write records straight into the caller's arrays, a few bounces of all of them at a time,
-    because a block's records of successive bounces lie far apart. Incomplete blocks, and arrays that are not float64,
-    are filled by way of a page of memory that stays in the cache.
+    because a block's records of successive bounces lie far apart. For incomplete blocks, and for arrays that are not
+    float64, a page of memory that stays in the cache is filled first and then copied.
     """
 
     def __init__(
@@ -194,7 +194,10 @@ class BatchRun:
         self.page, self.begun = np.empty(0), False
 
     def begin(self, start: Sequence[NDArray[Any] | float], lam: Array) -> "BatchRun":
-        """Sets particles, no more than there is room for, at component, parameter and exit angle; returns the batch."""
+        """Sets the starts, at most as many as the batch has room for, by component, parameter and exit angle.
+
+        Returns the batch.
+        """
         self.count, self.begun = lam.size, False
         self.columns = -(-self.count // self.width) * self.width
         for row, values in zip((*self.state[-len(START) :], self.lam), (*start, lam), strict=True):
@@ -225,7 +228,7 @@ class BatchRun:
     def advance(
         self, bounces: int, out: Mapping[str, Array], top: int, every: int = 1, threads: int | None = 1
     ) -> None:
-        """Bounces all particles, and stores every `every`-th bounce in the rows of `out` from `top` on."""
+        """Advances all particles, and stores every `every`-th bounce in the rows of `out`, from row `top` on."""
         rows = [out[name][top : top + bounces // every] for name in self.told]
         if not rows:
             self.start()._call(self.kernel(told=False), bounces // every * every, None, threads)
@@ -237,7 +240,7 @@ class BatchRun:
                 self._tell([row[i : i + 1] for row in rows], threads)
 
     def start(self) -> "BatchRun":
-        """Computes the state from the starts, unless it is computed; returns the batch."""
+        """Computes the state from the starts if that is not yet done; returns the batch."""
         if not self.begun:
             self._call(self.kernel(starts=True, told=False), 0, None, 1)
             self.begun = True

@@ -28,7 +28,7 @@ LINE = 64  # bytes that go to memory together
 
 
 class KernelSpec(NamedTuple):
-    """The choice of what a kernel computes and records besides the last state."""
+    """Specifies what a kernel computes, and what it records besides the last state."""
 
     law: str
     record: bool = False
@@ -95,7 +95,7 @@ NEAR = 64  # an address relative to the next instruction lies this much before w
 
 
 class ObjectSection(NamedTuple):
-    """One line of the section table, all of whose bytes lie in the file."""
+    """One line of the section table; all bytes of the section lie in the file."""
 
     kind: int
     flags: int
@@ -255,7 +255,7 @@ def _llvm() -> Untyped:
 
 @memoised
 def _processor() -> tuple[str, ...] | None:
-    """Texts that identify the processor, from Linux or else from LLVM; None where neither can."""
+    """Texts that identify the processor, from Linux or from LLVM; None if neither gives them."""
     try:
         with open("/proc/cpuinfo", "rb", buffering=0) as file:  # noqa: PTH123  (pathlib takes 3 ms to import)
             first = file.read(4096).partition(b"\n\n")[0].decode()
@@ -287,9 +287,9 @@ def available() -> bool:
 
 
 def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSpec, width: int) -> Run | None:
-    """The kernel as a function: kept in memory, loaded from disk or compiled; None if only NumPy can be used.
+    """The kernel as a function, from memory, from disk, or newly compiled; None if only NumPy can be used.
 
-    `identity` is a text of all that the family's steps depend on besides this package's sources.
+    `identity` is a text that determines the family's steps, together with this package's sources.
     """
     key = (identity, family.name, spec.text, str(width), ",".join(shape))
     if key not in _loaded:
@@ -349,7 +349,7 @@ def _made(text: str) -> tuple[bytes, tuple[int, Untyped] | None]:
 
 
 def _function(address: int, owner: Untyped) -> Run:
-    """The function at an address, in memory that is kept as long as its owner."""
+    """The function at an address; it keeps the owner of its memory alive."""
     pointer, number = ctypes.c_void_p, ctypes.c_int64
     prototype = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, pointer, number, number, number, number)
     _kept.append(owner)

@@ -3,13 +3,14 @@
     void run(double state[], const double lam[], const double shape[], double record[],
              int64 width, int64 first, int64 last, int64 bounces)
 
-`state` holds one row of `width` doubles for each field: the particle's own; then `code` and `lost` if the family has
-outcomes; then the tangent vector's for exponents, or the component, parameter and exit angle from which a particle
-starts. The kernel works on columns `first` to `last`. To record states, `record` receives the particle's own rows
-after every bounce. To record other fields (parameter, angles, point, arc length), `record` is a table: an address for
-each field, then the number of doubles between two bounces, so that a kernel writes where its caller wants the data. In
-a kernel of one bounce (`once`) `state` is a table too: the addresses of the particles' component, parameter and exit
-angle, and of their outcomes; no state is kept. In `shape` the numbers of the arc length follow those of the shape.
+`state` holds one row of `width` doubles for each field. First come the fields of the particle's own state, then `code`
+and `lost` if the family has outcomes; then those of the tangent vector for exponents, or the component, parameter and
+exit angle from which a particle starts. The kernel works on columns `first` to `last`. To record states, `record`
+receives the particle's own rows after every bounce. To record other fields (parameter, angles, point, arc length),
+`record` is a table: an address for each field, then the number of doubles between two bounces, so that a kernel writes
+where its caller wants the data. In a kernel of one bounce (`once`) `state` is a table too: the addresses of the
+particles' component, parameter and exit angle, and of their outcomes; no state is kept. In `shape` the numbers of the
+arc length follow those of the shape.
 
 Inside, the processor flushes numbers below 2**-1022 to zero: a particle at rest on a cycle reaches them, and on many
 processors such an operation takes sixty times as long. The caller's mode is restored on return.
@@ -36,7 +37,7 @@ TAIL = (
 
 
 class Mode(NamedTuple):
-    """Code that makes a processor flush subnormal numbers to zero: on entry, on exit, and declarations."""
+    """The code that makes a processor flush subnormal numbers to zero: on entry, on exit, and its declarations."""
 
     entry: tuple[str, ...] = ()
     exit: tuple[str, ...] = ()
@@ -271,7 +272,7 @@ def _record(ops: LLVMBackend, texts: list[str]) -> None:
 
 
 def alive(lines: list[str]) -> list[str]:
-    """The lines that a store or a branch depends on.
+    """The lines without those on which no store and no branch depends.
 
     >>> alive(["  %a = fadd double 1.0, 2.0", "  %b = fadd double 3.0, 4.0", "  store double %b, ptr %p"])
     ['  %b = fadd double 3.0, 4.0', '  store double %b, ptr %p']

@@ -52,7 +52,7 @@ def distrust(place: str) -> str | None:
 
 
 def _foreign(found: os.stat_result) -> str | None:
-    """The reason why others may have written a file or folder; None if only the user can."""
+    """The reason why others may have written to a file or folder; None if only the user can."""
     if not hasattr(os, "geteuid"):
         return None
     if found.st_uid != os.geteuid():
@@ -153,7 +153,7 @@ def entries() -> list[tuple[str, int, float]]:
 
 
 def clear() -> tuple[int, int]:
-    """Removes all entries and files that an interrupted run left; returns how many files and bytes that were."""
+    """Removes all entries, and files that an interrupted run left; returns the number of files and of bytes."""
     place, removed, size = folder(), 0, 0
     why = None if place is None else distrust(place)
     if why is not None:

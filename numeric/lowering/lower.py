@@ -228,7 +228,7 @@ def _part(component: Component, symbols: list[Symbol], ranges: Box) -> Component
 def _long_curve(component: Component, symbols: list[Symbol]) -> Program:
     """Point, velocity and acceleration of a long formula: harmonic by harmonic, or one operation after the other.
 
-    Its derivatives are not written out: those of a product of thirty factors have some thousand factors each.
+    Derivatives are not written out, as those of a product of thirty factors have some thousand factors.
     """
     x, y = component.point
     found = waves(x + I * y)
@@ -352,7 +352,7 @@ def _conic(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     """The program of `r(theta)` and three derivatives in cosine and sine, for a boundary given by its radius.
 
-    Empty for other boundaries, and where `theta` has a place outside sines and cosines of its whole multiples.
+    The result is empty for other boundaries, or if `theta` occurs outside sines and cosines of its whole multiples.
     """
     whole = table.components[0]
     x, rho, turn = whole.point[0], whole.radius, whole.end - whole.start

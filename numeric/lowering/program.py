@@ -39,7 +39,7 @@ class Program(NamedTuple):
     outputs: tuple[int, ...]
 
     def __call__(self, ops: NumberSystem[R], *values: R) -> list[R]:
-        """The outputs, in the arithmetic of `ops`; every rational enters as `ops.q(p, n)`."""
+        """The outputs, computed in the arithmetic of `ops`, in which every rational is `ops.q(p, n)`."""
         known = list(values)
         turned: dict[int, tuple[R, R]] = {}
         both = getattr(ops, "turned", None)  # number systems may have cosine and sine at the cost of one
@@ -86,7 +86,7 @@ class Program(NamedTuple):
 
     @staticmethod
     def from_data(data: list[Any]) -> "Program":
-        """The inverse of `as_data`; a word outside the vocabulary is an error."""
+        """The inverse of `as_data`; `ValueError` for a word outside the vocabulary."""
         inputs, lines, outputs = data
         for line in lines:
             if line[0] not in VOCABULARY:
@@ -95,7 +95,7 @@ class Program(NamedTuple):
 
 
 class Builder:
-    """Writes a program: run any formula on its nodes, then name the outputs.
+    """Writes a program: evaluate a formula on `nodes`, then call `program` with the outputs.
 
     >>> builder = Builder("x", "y")
     >>> x, y = builder.nodes
@@ -110,7 +110,7 @@ class Builder:
         self.nodes = [Node(self, None, i) for i in range(len(inputs))]
 
     def number(self, line: Line) -> int:
-        """The number of the value that `line` computes; equal lines are written once."""
+        """The number of the value that `line` computes; a line equal to an earlier one is not written again."""
         if line not in self.numbers:
             self.numbers[line] = len(self.inputs) + len(self.lines)
             self.lines.append(line)
@@ -337,7 +337,7 @@ class Named(NamedTuple):
 
 
 def by_name(name: str, lengths: Mapping[str, Any]) -> Named:
-    """The name of a table of the gallery, with lengths; an unknown length is refused when the table is made.
+    """A table of the gallery by its name, with lengths; an unknown length is refused when the table is made.
 
     >>> by_name("stadium", {"straight": "0.50"})
     Named(name='stadium', lengths=(('straight', '1/2'),))
@@ -394,7 +394,7 @@ class TableSymmetry(NamedTuple):
 
 
 def symmetries(table: "Table | Scene | Named | str", K: int, shape: dict[str, Any]) -> tuple[TableSymmetry, ...]:
-    """The symmetries that are proved of a table with numbers for its shape, the identity first.
+    """The proved symmetries of a table with numbers for its shape, the identity first.
 
     >>> [symmetry.sign for symmetry in symmetries("cuspless", 3, {})]
     [1, -1]

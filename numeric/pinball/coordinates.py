@@ -31,7 +31,7 @@ ORDINARY = 8.0  # distances are measured in units of 1 if half the longer side l
 
 
 class States:
-    """The translation of coordinates for one table with its shape, by the methods of its family of tables."""
+    """Translates coordinates for one table and shape, by the methods of its family."""
 
     def __init__(self, family: Family, unit: Unit = ONE) -> None:
         self.family, self.boundary, self.unit = family, family.boundary, unit
@@ -239,7 +239,7 @@ class Waves(NamedTuple):
 
     @staticmethod
     def of(speed: Callable[[Array], Array]) -> "Waves | None":
-        """The Fourier sum of the arc length, from as many samples as it needs; None if it needs more than `MOST`."""
+        """The Fourier sum of the arc length, from as many samples as necessary; None if these are more than `MOST`."""
         count = 64
         while True:
             theta = 2 * np.pi * np.arange(count) / count - np.pi
@@ -263,7 +263,7 @@ class Waves(NamedTuple):
 
 
 def in_powers(sines: Array) -> list[float]:
-    """The polynomial in `cos(x)` whose product with `sin(x)` is the sum of `sines[k-1]*sin(k*x)`, rounded once.
+    """The polynomial in `cos(x)` whose product with `sin(x)` is the sum of `sines[k-1]*sin(k*x)`; one rounding each.
 
     >>> in_powers(np.array([1.0, 1.0, 1.0]))  # 1 + 2*c + (4*c**2 - 1)
     [0.0, 2.0, 4.0]

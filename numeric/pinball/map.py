@@ -109,7 +109,7 @@ class PinballMap:
 
     @property
     def scene(self) -> Scene:
-        """The scene of the map, exact, in which a float is the decimal it shows.
+        """The exact scene of the map, in which a float is the decimal that it shows.
 
         >>> PinballMap("egg", lam=0.5, alpha=0.08).scene
         Scene('egg', alpha='2/25', lam='1/2')
@@ -150,7 +150,7 @@ class PinballMap:
 
     @cached_property
     def symmetries(self) -> tuple[TableSymmetry, ...]:
-        """The symmetries of the table that are proved, the identity first."""
+        """The proved symmetries of the table, the identity first."""
         return symmetries(*self._given, dict(zip((s.name for s in self.ir.shape), self.exact_shape, strict=True)))
 
     @cached_property
@@ -294,7 +294,8 @@ class PinballMap:
         component: ArrayLike = 0,
         threads: int | None = None,
     ) -> Exponents:
-        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` that do not count.
+        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` bounces that do not
+        count.
 
         `nu_plus` is the growth of one vector, which starts in a fixed generic direction and turns to the direction of
         growth in the last 256 bounces of the transient; `nu_minus` comes from the determinant. At `lam = 0` the map is
@@ -398,7 +399,7 @@ class PinballMap:
         return other
 
     def _check_law(self) -> None:
-        """Raises `ValueError` for a law that leads out of the table for some of the contractions."""
+        """Raises `ValueError` for a law that leads out of the table at some of the contractions."""
         places = self.reflection.places(self.table) if self.reflection.placed else ()
         self.reflection.check((Fraction(float(np.min(self.lam))), Fraction(float(np.max(self.lam)))), *places)
 

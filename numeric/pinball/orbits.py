@@ -32,7 +32,7 @@ FIELDS = (*Orbit._fields, "s")
 
 
 class OrbitRun:
-    """Moves particles piece by piece: `advance` returns the fields `names` of every `every`-th bounce."""
+    """Advances particles piece by piece: `advance` returns the fields `names` of every `every`-th bounce."""
 
     def __init__(
         self,

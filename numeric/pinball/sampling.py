@@ -179,7 +179,7 @@ def flight_through(map: "PinballMap", x: float, y: float, vx: float, vy: float) 
 def _crossings(
     map: "PinballMap", x: float, y: float, vx: float, vy: float, points: int
 ) -> tuple[NDArray[np.int64], Array, Array]:
-    """Where a line meets the boundary, searched for on a grid of `points`: component, parameter, place on the line."""
+    """Where a line meets the boundary, by a search on `points` points: component, parameter, and place on the line."""
     ends = np.array(map.states.ends)
     each = max(4, points // len(ends))
     share = np.linspace(0, 1, each + 1)
@@ -274,7 +274,7 @@ class Growth:
 
     @property
     def contraction(self) -> Array:
-        """The term `log(lam)` for each bounce, the contraction of angles, that `volume` leaves out.
+        """The contraction of angles, `log(lam)`, which is the term of each bounce that `volume` leaves out.
 
         For any law but the uniform contraction it is 0: there `volume` contains the slopes.
         """

@@ -167,7 +167,7 @@ def plotted(kind: str, *results: Any, axes: Any = None) -> Any:
 
 
 class Labelled:
-    """Shared by results: comparison, a one-line text, and conversion to xarray and pandas."""
+    """The common part of all results: comparison, a one-line text, and conversion to xarray and pandas."""
 
     axes: ClassVar[tuple[str, ...]]
 

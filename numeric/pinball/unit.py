@@ -21,7 +21,7 @@ PLACES = 9  # points on each component, for the box
 
 
 class Unit(NamedTuple):
-    """An exact change of unit and origin: a point of the map, times `length`, a power of two, plus `(x, y)`."""
+    """An exact change of unit and origin: table's point = map's point times `length` (a power of two) plus `(x, y)`."""
 
     length: float = 1.0
     x: float = 0.0

@@ -172,7 +172,7 @@ def speed(map: PinballMap) -> float:
 
 
 def _cut(sweep: Sweep) -> dict[str, int]:
-    """The axes along which a part takes several values, with the number of values in a part."""
+    """The axes along which a part takes several values, with the number of values."""
     return {axis.name: min(axis.part, axis.size) for axis in sweep.axes if axis.part > 1}
 
 
@@ -188,7 +188,7 @@ def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> SweepPart:
 
 
 def _line(few: int, more: int, length: int, small: float, large: float) -> float:
-    """The cost of a whole part, extrapolated from the costs `small` and `large` of two thinned ones."""
+    """The cost of a whole part, extrapolated from the costs `small` and `large` of two thinned parts."""
     if more == few:
         return large * length / more
     rise = max(0.0, large - small) / (more - few)
@@ -196,7 +196,7 @@ def _line(few: int, more: int, length: int, small: float, large: float) -> float
 
 
 def _largest(sweep: Sweep, at: tuple[int, ...], few: int, more: int, length: int) -> float:
-    """Bytes that a whole part takes at once, extrapolated from thinned ones."""
+    """The largest number of bytes that a whole part takes at once, extrapolated from thinned parts."""
     ends = [_peak(sweep, _thinned(sweep, at, count)) for count in (few, more)[: 1 + (few < more)]]
     return _line(few, more, length, float(ends[0]), float(ends[-1]))
 

@@ -141,7 +141,7 @@ DIAGRAM_FIELDS = (
 
 @dataclass(frozen=True)
 class DiagramTask:
-    """The task of a bifurcation diagram: the orbits at a few contractions, or at one shape, on their attractors."""
+    """The task of a bifurcation diagram: orbits on their attractors, at a few contractions or at one shape."""
 
     scene: str
     orbits: int
@@ -229,7 +229,7 @@ EXPONENT_FIELDS = (
 
 @dataclass(frozen=True)
 class Surveys:
-    """The task of a sweep over exponents: the groups at one contraction, or at one shape."""
+    """The task of a sweep over exponents: groups of orbits and their exponents, at one contraction or one shape."""
 
     scene: str
     orbits: int

@@ -171,7 +171,7 @@ def _sweep(run: OrbitRun, bounces: int, piece: int) -> Sweep:
 
 
 def _label(given: NDArray[np.float64]) -> float | str:
-    """The number that all particles share, or a text with a digest of their different numbers."""
+    """The number, if all particles have the same one; else a text with a digest of the numbers."""
     shared = given.size > 0 and bool(np.all(given == given.flat[0]))
     return float(given.flat[0]) if shared else f"numbers with digest {sha256(given.tobytes()).hexdigest()[:16]}"
 

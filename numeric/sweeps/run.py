@@ -32,7 +32,7 @@ LIVES = 3  # times that a part may lose its worker and be given to another
 
 
 class UnfinishedError(Exception):
-    """A sweep that could not be finished, in one sentence; finished parts are kept."""
+    """The error that a sweep could not be finished, with a one-sentence reason; finished parts are kept."""
 
 
 def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
@@ -155,7 +155,7 @@ def _given(client: Any, sweep: Sweep, index: Index) -> Any:
 
 
 def _found(future: Any) -> dict[str, Array] | None:
-    """The result of a worker; None when the worker was lost on the way."""
+    """The result of a worker; None if the worker was lost."""
     from distributed import KilledWorker
 
     try:

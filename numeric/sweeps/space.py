@@ -100,7 +100,7 @@ def periods(map: PinballMap, starts: Starts) -> NDArray[np.int64]:
 
 
 def attracting(map: PinballMap, starts: Starts, period: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Are both multipliers of the cycle through each particle, of the given period, below 1? False for period 0.
+    """For each particle: are both multipliers of the cycle through it, of this period, below 1? False for period 0.
 
     Paper: section 2.1; this holds if `|trace| < 1 + det` and `|det| < 1`.
 
@@ -114,7 +114,7 @@ def attracting(map: PinballMap, starts: Starts, period: NDArray[np.int64]) -> ND
 
 
 def returns(map: PinballMap, starts: Starts | PhasePoints, period: NDArray[np.int64]) -> tuple[Array, Array]:
-    """Trace and determinant of the derivative over as many bounces as each particle's period; nan for period 0."""
+    """Trace and determinant of the derivative of `T**period` at each particle; nan for period 0."""
     trace, determinant = np.full((2, period.size), np.nan)
     fields = "component", "theta", "phi"
     for n in np.unique(period[period > 0]):
@@ -133,9 +133,9 @@ def returns(map: PinballMap, starts: Starts | PhasePoints, period: NDArray[np.in
 
 
 class Followed(NamedTuple):
-    """Each particle's period, 0 for no cycle; the indices `going` of those without a cycle, and their `Growth`.
+    """The period of each particle, 0 if it is on no cycle; the indices `going` of the latter, and their `Growth`.
 
-    `starts` holds the last phase points of all particles.
+    `starts` has the last phase points of all particles.
     """
 
     period: NDArray[np.int64]

@@ -87,7 +87,7 @@ class Stored:
 
     @undisturbed()
     def write(self, index: Index, arrays: dict[str, Array]) -> None:
-        """Writes the results of a part; `OSError` when the disk is full, and then the part is still missing."""
+        """Writes the results of a part; if the disk is full, raises `OSError`, and the part is still missing."""
         for field in self.sweep.fields:
             values = np.asarray(arrays[field.name], field.dtype)
             self.arrays[field.name][self.sweep.where(field, index)] = values
@@ -277,7 +277,7 @@ def _named(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _differing(was: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
-    """The differing values as text, with both values where they are short."""
+    """The values that differ, as text; both values are shown where they are short."""
     names = [name for name in {**here, **was} if was.get(name) != here.get(name)]
     short = [
         f"{name} = {was.get(name, 'none')} and not {here.get(name, 'none')}"

@@ -165,7 +165,7 @@ def seed_of(seed: int, index: tuple[int, ...]) -> int:
 
 
 def versions() -> dict[str, str]:
-    """The versions of the packages on which the last bits may depend."""
+    """The versions of the packages that may affect the last bits of results."""
     found = {}
     for name in ("pinball-billiards", "numpy", "scipy", "llvmlite"):
         try:
@@ -186,7 +186,7 @@ KEPT = 16  # maps
 def text_of(scene: Scene) -> str:
     """The scene's text for a sweep: at `lam = 1`, since the contraction is an axis of the sweep.
 
-    With another law than the paper's it stays as it is: at `lam = 1` such a law may lead out of the table.
+    For a law other than the paper's `lam` is unchanged, since at `lam = 1` such a law may lead out of the table.
 
     >>> text_of(Scene("egg", alpha="2/25", lam="1/2"))
     'scene = { table = "egg", shape = { alpha = "2/25" }, lam = "1" }'
@@ -272,7 +272,7 @@ SIGMAS = 2.0  # standard errors by which an exponent is beyond the floor
 
 
 class OrbitExponents(NamedTuple):
-    """Exponents of orbits (means over blocks, with standard errors), phase points at their ends, and status codes."""
+    """Exponents of orbits, as means over blocks with standard errors; their last phase points, and status codes."""
 
     nu_plus: Array
     nu_minus: Array
@@ -309,7 +309,7 @@ def floor_of(bounces: int) -> float:
 def measured(
     map: PinballMap, starts: Starts, bounces: int, transient: int, threads: int | None = None
 ) -> OrbitExponents:
-    """The exponents of particles over `bounces` bounces in `BLOCKS` blocks, after `transient` that do not count.
+    """The exponents of particles over `bounces` bounces in `BLOCKS` blocks, after `transient` further ones before them.
 
     >>> circle = PinballMap("circle", lam=1)
     >>> from numeric.pinball.sampling import phase_starts

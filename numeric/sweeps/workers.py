@@ -69,7 +69,7 @@ def cores() -> int:
 
 @dataclass(frozen=True)
 class Lost:
-    """The answer for an item whose process died each time that it was tried."""
+    """Takes the place of the answer for an item whose process died each time that it was tried."""
 
     status: int
 
@@ -175,7 +175,7 @@ def _beginning() -> Iterator[None]:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Delays Ctrl-C until the end of the block, as while processes start or results are stored.
+    """Delays Ctrl-C until the end of the block, for example while processes start or results are stored.
 
     A half started process would end with a traceback. Processes inherit the mask, so that from their first instruction
     on Ctrl-C goes to the process that started them. A mask binds one thread, and libraries have threads of their own

@@ -32,9 +32,9 @@ def slope_squared(q: Expr = q) -> Expr:
 def parametrised() -> SignFinding:
     """Is it proved that a launch with `cos(theta/2)**2 = LAUNCH_COS2` lands at `q`, with `T0'**2 = slope_squared(q)`?
 
-    The polar angles are `theta` of the launch and `Theta` of the landing, `u = exp(i*theta)` and `U = exp(i*Theta)`.
-    With `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at
-    `u = -U*E*(cos - i*r)/(2*U + 1)`.
+    Let `theta` and `Theta` be the polar angles of launch and landing, `u = exp(i*theta)` and `U = exp(i*Theta)`. With
+    `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at `u =
+    -U*E*(cos - i*r)/(2*U + 1)`.
     """
     u, U = Symbol("u"), Symbol("U")
     ray = (U - u) * (2 + u + U) * u**-3 - (1 / U - 1 / u) * (2 + 1 / u + 1 / U)  # Im((Z - z)/normal), scaled
@@ -110,7 +110,7 @@ def _critical() -> Expr:
 def expansion_polynomial(bound: Expr) -> Expr:
     """A polynomial in the final `q`: if it has no root, `|(T0**2)'|` equals `bound` nowhere on the table.
 
-    The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; both signs are multiplied.
+    The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; the polynomial is the product over both signs.
     """
     return _norm(*_split(_expanding_by(bound))).as_expr()
 
@@ -134,7 +134,8 @@ def expands_by(bound: Expr) -> SignFinding:
 def unbounded() -> SignFinding:
     """Is `|(T0**2)'|` infinite at the ends of both branches of `T0**2`?
 
-    On one, `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other from 0 to 1/3, as `q` runs from -1.
+    On one branch `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other `y` runs from 0 to 1/3, and `q` from
+    -1.
 
     >>> unbounded().outcome.name
     'PROVED'
@@ -152,7 +153,7 @@ def unbounded() -> SignFinding:
 
 @cache
 def expansion_infimum() -> Expr:
-    """The least value of `|(T0**2)'|`, an algebraic number; reached where the first flight crosses the axis.
+    """The least value of `|(T0**2)'|`, an algebraic number, which is attained where the first flight crosses the axis.
 
     `infimum_attained` proves that it is the least.
 

@@ -271,7 +271,7 @@ def centre_beyond_boundary() -> Expr:
 
 
 def centre_far_inside() -> Expr:
-    """A polynomial that is positive only where `|e| < 1 - alpha`, inside the table whatever the direction."""
+    """A polynomial that is positive only where `|e| < 1 - alpha`, so that `e` is inside the table in any direction."""
     N, modulus, _ = _centre_of_curvature()
     return expand((1 - alpha) ** 2 * N**2 - modulus)
 
@@ -290,7 +290,7 @@ def slap_critical_cosines(shape: Expr) -> list[Expr]:
 
 
 def slap_critical_points(shape: Expr) -> int:
-    """The number of `theta` with `T0' = 0`, for the slap map `T0` of the egg with `alpha = shape`: six for each cosine.
+    """The number of `theta` with `T0' = 0`, for the slap map `T0` of the egg with `alpha = shape`: six per cosine.
 
     >>> from sympy import Rational
     >>> slap_critical_points(Rational(2, 25)), slap_critical_points(Rational(1, 20))

@@ -21,7 +21,7 @@ SHAPE = Symbol("alpha")
 
 @dataclass(frozen=True)
 class QuadraticNumber:
-    """`a + b*T` with `T**2 = square`; `T` is imaginary where the triangle is elliptic."""
+    """The number `a + b*T` with `T**2 = square`; `T` is imaginary where the triangle is elliptic."""
 
     a: Any
     b: Any
@@ -127,7 +127,7 @@ def resonances(numbers: Any, a: Any) -> Resonances:
 def chord_between_flats(numbers: Any, a: Any) -> Series:
     """The length, over `sqrt(3)`, of the chord between points `sqrt(3)*x` radians from two neighbouring flat points.
 
-    Seen from the middle of the chord the flat points lie 60 degrees to either side, `sin = sqrt(3)*along` and
+    Seen from the middle of the chord, the flat points lie at 60 degrees on either side, and `sin = sqrt(3)*along` and
     `cos = across`, with `along` and `across` rational series.
     """
     radius = [(numbers(1) if k == 0 else numbers(0)) - a * c for k, c in enumerate(_cosines(numbers, 3))]

@@ -108,9 +108,9 @@ def focus_contraction(P: Expr) -> Expr | None:
 
 
 def stable_while_nonnegative(P: Expr, box: Box) -> SignFinding:
-    """Are both multipliers inside the unit circle because `0 <= P < 1` and `lam < 1` on the box?
+    """Is `0 <= P < 1` and `lam < 1` on the box, so that both multipliers are inside the unit circle?
 
-    `1 - trace + det = (1+lam)**2*(1 - P)` and `1 + trace + det = (1+lam)**2*P + (1-lam)**2`.
+    This is so because `1 - trace + det = (1+lam)**2*(1 - P)` and `1 + trace + det = (1+lam)**2*P + (1-lam)**2`.
 
     >>> from sympy import Interval
     >>> stable_while_nonnegative(S.Zero, {lam: Interval.Ropen(0, 1)}).outcome.name
@@ -122,9 +122,8 @@ def stable_while_nonnegative(P: Expr, box: Box) -> SignFinding:
 def lambda_minus() -> Expr:
     """The contraction above which the ellipse's minor axis is a focus: `((w-1)/(w+1))**2`, `w = sqrt(a**2-1)`.
 
-    With `P = ((a**2-2)/a**2)**2` of the minor axis, `1 - P = (2*w/a**2)**2`, and
-    `(1-sqrt(1-P))/(1+sqrt(1-P))` is the square shown. Regular at `a = sqrt(2)`, where the paper's
-    form is 0/0. `lambda_plus` is its inverse.
+    With `P = ((a**2-2)/a**2)**2` of the minor axis, `1 - P = (2*w/a**2)**2`, and `(1-sqrt(1-P))/(1+sqrt(1-P))` is the
+    square shown. This form is regular at `a = sqrt(2)`, where the paper's form is 0/0. `lambda_plus` is the reciprocal.
 
     >>> lambda_minus().subs(a, sqrt(2))
     0
@@ -234,7 +233,7 @@ def flux(x: Expr) -> Expr:
 
 
 def flux_slope(x: Expr) -> Expr:
-    """`f'(x) = cos(x) - x*sin(x)`: positive where contraction is certain, zero where `x*tan(x) = 1`."""
+    """`f'(x) = cos(x) - x*sin(x)`: positive where areas are sure to contract, zero where `x*tan(x) = 1`."""
     return cos(x) - x * sin(x)
 
 

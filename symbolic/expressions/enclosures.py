@@ -44,7 +44,7 @@ Bounds = tuple[int, int]
 
 
 class UnboundedError(Exception):
-    """An operation has no finite enclosure: a pole, a root of a number that may be negative, or an unknown function."""
+    """An operation has no finite bounds: a pole, a root of a possibly negative number, or an unknown function."""
 
 
 def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: int = WORK) -> SignFinding:

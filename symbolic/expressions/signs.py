@@ -85,7 +85,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class SignFinding:
-    """An outcome with its reason in one sentence; a refutation holds its witness in `at`, values of the parameters."""
+    """An outcome with its reason in one sentence; a refutation has the values of the parameters in `at`."""
 
     outcome: Outcome
     reason: str
@@ -105,7 +105,7 @@ def conjunction(*findings: SignFinding) -> SignFinding:
 
 
 def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> SignFinding:
-    """Do all expressions of every named step vanish? The reason names the steps, or those not reduced to 0.
+    """Do all expressions of every named step vanish? The reason names the steps, or those that are not reduced to 0.
 
     >>> x = Symbol("x")
     >>> all_vanish({"a square": [(x + 1) ** 2 - x**2 - 2 * x - 1]}).reason, all_vanish({"a guess": [x]}).reason
@@ -149,7 +149,7 @@ def positive(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
 
 
 def nonnegative(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
-    """Is `expression >= 0` in `box`? Proved in the interior, and so by continuity on the closure.
+    """Is `expression >= 0` in `box`? It is proved in the interior, and follows on the closure by continuity.
 
     >>> x = Symbol("x")
     >>> nonnegative(x * (1 - x) ** 2, {x: Interval(0, 2)}).outcome.name

@@ -102,7 +102,7 @@ class WordPrinter:
         self.count = 0
 
     def rename(self, symbol: Symbol) -> str:
-        """The next free temporary name, kept for `symbol`."""
+        """Gives `symbol` the next free temporary name, and returns the name."""
         self.names[symbol] = self._fresh()
         return self.names[symbol]
 
@@ -217,7 +217,7 @@ def _closed(text: str) -> bool:
 
 
 def _terms(e: Expr) -> list[Expr]:
-    """The terms of a sum in SymPy's printing order, but with a positive one first if there is one."""
+    """The terms of a sum in SymPy's printing order, but a positive term comes first if there is one."""
     if not isinstance(e, Add):
         return [e]
     terms = list(e.as_ordered_terms())

@@ -82,7 +82,7 @@ def _coordinates(shapes: tuple[Symbol, ...]) -> tuple[Expr, ...]:
 
 @cache
 def _derived(shapes: tuple[Symbol, ...], order: int) -> dict[str, Expr]:
-    """The values of `chord_angle` by name, for any two components, in symbols for their points."""
+    """The values of `chord_angle` by name, for any two components, in symbols for the coordinates of their points."""
     x0, y0, _, _, dx, dy = _coordinates(shapes)
     vx, vy = diff(x0, theta0), diff(y0, theta0)
     turned = {p: _bend(vx, vy, p) - _bend(dx, dy, p) for p in (theta0, theta1, *shapes)}

@@ -171,7 +171,7 @@ def slap_derivative(
 
 
 def birkhoff_matrix(matrix: Matrix, cos_phi0: Expr, cos_phi1: Expr) -> Matrix:
-    """A derivative matrix moved from `(s, phi)` to the Birkhoff coordinates `(s, sin phi)`.
+    """A derivative matrix converted from `(s, phi)` to the Birkhoff coordinates `(s, sin phi)`.
 
     >>> birkhoff_matrix(derivative_matrix(lam=1), cos_phi0, cos_eta1).det().simplify()
     1
@@ -292,7 +292,8 @@ def gradient(x: Expr, y: Expr) -> Matrix:
 
 
 def joachimsthal_defect() -> Expr:
-    """The scalar product of `gradient(q0) + gradient(q1)` and `q1 - q0` on the ellipse: 0, so a flight conserves `J`.
+    """The scalar product of `gradient(q0) + gradient(q1)` and `q1 - q0` on the ellipse; it is 0, so a flight conserves
+    `J`.
 
     >>> from symbolic.expressions.signs import vanishes
     >>> vanishes(joachimsthal_defect())

@@ -1,18 +1,17 @@
-"""The flight equation with its known root divided out, exactly.
+"""The flight equation, divided exactly by its known root.
 
-Let the boundary be `z(theta) = sum_k C_k cos(k*theta) + S_k sin(k*theta)` with vectors `C_k`, `S_k`,
-and let a particle fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two
-parameters, `B = m - theta0` and `E = -i*v`, which is `exp(i*m)` for a chord of the circle,
+Let the boundary be `z(theta) = sum_k C_k cos(k*theta) + S_k sin(k*theta)` with vectors `C_k`, `S_k`, and let a particle
+fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two parameters, `B = m - theta0` and
+`E = -i*v`, which is `exp(i*m)` for a chord of the circle,
 
     Im(conj(v)*(z1 - z0)) = 2*sin(B) * sum_k U_{k-1}(cos B) * Im(conj(M_k) * exp(i*k*m)),
 
-where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)`
-with `exp(i*m) = E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`,
-`n` the highest harmonic: 1 for circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg.
-Paper: the flights of section 2.
+where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)` with `exp(i*m) =
+E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`, `n` the highest harmonic: 1 for
+circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg. Paper: the flights of section 2.
 
-The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text
-that SymPy proves is the text that the numeric kernels run. Complex numbers are pairs.
+The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text that SymPy proves is
+the text that the numeric kernels run. Complex numbers are pairs.
 
 The module ends with the pinball map of the unit circle. Paper: section 3.1.
 """

@@ -41,7 +41,7 @@ LONG = 200  # operations, names and numbers: what is longer is not multiplied ou
 
 
 class _TooLongError(Exception):
-    """More products of coefficients than can be made in about a second."""
+    """The error that a sum needs more products of coefficients than can be made in about a second."""
 
 
 @lru_cache(maxsize=256)
@@ -226,7 +226,7 @@ def alone(expression: Expr, x: Symbol = theta) -> bool:
 def curves(table: Table) -> tuple[tuple[Component, ...], ...]:
     """The closed curves of a boundary, each as its components in order: the outer one first, then the holes.
 
-    A curve is complete where it comes back to its first point; `ValueError` for a chain that does not come back.
+    A curve ends where it returns to its first point; `ValueError` for a chain that does not return.
 
     >>> from symbolic.tables import cuspless
     >>> [[component.name for component in curve] for curve in curves(cuspless)]

@@ -124,7 +124,7 @@ def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr
 
 
 def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The entries of a scene for a table of the paper, and the values of its shape parameters (none yet)."""
+    """The entries of a scene for a table of the paper, and its shape parameters' values, which are still empty."""
     if name not in PAPER:
         raise ValueError(f"no table is called {name!r}; the paper's are {', '.join(PAPER)}")
     if isinstance(K, bool) or not isinstance(K, int) or K < 2:

@@ -53,7 +53,7 @@ NAMES: Mapping[str, Symbol] = MappingProxyType({theta.name: theta})
 
 
 def _tan(x: Expr) -> Expr:
-    """`tan(x)` in the vocabulary: SymPy turns `tan(x + pi/2)` into a cotangent."""
+    """`tan(x)` in the vocabulary; SymPy's own `tan` would turn `tan(x + pi/2)` into a cotangent."""
     value = tan(x)
     return value if value.func is tan or value.is_number else sin(x) / cos(x)
 

@@ -374,7 +374,7 @@ def diamond() -> Table:
 
 
 def round_arc(name: str, centre: tuple[Number, Number], radius: Number, start: Number, end: Number) -> Component:
-    """A focusing arc of a circle, run through counterclockwise.
+    """A focusing arc of a circle, counterclockwise.
 
     >>> round_arc("cap", (0, 1), 2, 0, pi).at(S.Zero)
     (2, 1)
@@ -385,7 +385,7 @@ def round_arc(name: str, centre: tuple[Number, Number], radius: Number, start: N
 
 
 def disc(name: str, centre: tuple[Number, Number], radius: Number) -> Component:
-    """A circular hole: a whole circle, run through clockwise.
+    """A circular hole: a whole circle, clockwise.
 
     >>> disc("pillar", (1, 0), "1/4").at(pi / 2)
     (1, -1/4)

@@ -161,7 +161,7 @@ def _elliptic(p: Expr, q: Expr, n: int) -> Expr:
 def positions(table: Table) -> tuple[Expr, ...]:
     """The paper's arc length `s(theta)` on each component, counted counterclockwise from the table's `origin`.
 
-    It is not reduced modulo `perimeter(table)`, which the paper does where it draws `s` symmetrically about 0.
+    It is not reduced modulo `perimeter(table)`; the paper reduces it where it draws `s` symmetrically about 0.
 
     >>> from symbolic.tables import cuspless
     >>> positions(cuspless)

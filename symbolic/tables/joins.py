@@ -197,7 +197,7 @@ def _is_zero(value: Any) -> bool:
 
 
 def _is_positive(value: Any, box: Box) -> bool:
-    """Is a number positive, or an expression proved to be positive for all values of its letters in `box`?"""
+    """Is a number positive, or is an expression proved to be positive for all parameters in `box`?"""
     if isinstance(value, Fraction):
         return value > 0
     value = expand(value)

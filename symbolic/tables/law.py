@@ -99,7 +99,7 @@ class Law:
 
     @property
     def slope(self) -> "Expr":
-        """`-d phi/d eta`, the factor of small differences of angle in a reflection: `lam` for the paper's law."""
+        """`-d phi/d eta`, the factor of small differences of angle in a reflection; it is `lam` for the paper's law."""
         from symbolic.tables.table import eta
 
         return -self.phi.diff(eta)
@@ -206,7 +206,7 @@ class Law:
         return conjunction(*found)
 
     def check(self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range) -> None:
-        """Raises `ValueError` if `proof` finds an angle at which the law leads out of the table, or no proof."""
+        """Raises `ValueError` if `proof` finds an angle at which the law leads out of the table, or finds no proof."""
         if self.uniform:
             return
         finding = self.proof(lam, theta, s, **own)

@@ -65,7 +65,7 @@ class ConicArc(NamedTuple):
         return (swept + self.centre[0] * (q - y) - self.centre[1] * (p - x)) / 2
 
     def parts(self) -> list[Piece]:
-        """The arc as rational Bezier curves of at most about a quarter turn: control points with weights."""
+        """The arc as rational Bezier curves, each of about a quarter turn or less: control points with weights."""
         found: list[Piece] = []
         u, v = self.u, self.v
         steps = [Fraction(1)] * self.quarters + ([self.rest] if self.rest else [])

@@ -92,7 +92,7 @@ class Scene:
         self._hold(boundary, {**fixed, **_with_ranges(shape, ranges)}, lam, law)
 
     def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
-        """Sets `text` after all checks; equal scenes get the same text, however their numbers are written."""
+        """Sets `text` after all checks; equal scenes get the same text, however their numbers were written."""
         name, law = name_of(boundary), law if isinstance(law, Law) else Law(law)
         parameters = tuple(dict.fromkeys((*parameters_of(boundary), *parameters_of_law(law.formula))))
         _one_number(name, law, parameters_of(boundary), shape)
@@ -155,7 +155,7 @@ class Scene:
 
     @property
     def ranges(self) -> "dict[str, tuple[Fraction | Expr, Fraction | Expr]]":
-        """The ends of the range of each parameter that has one, the table's and the law's own.
+        """The ends of the range of each parameter of the table or the law that has a range.
 
         >>> Scene.of({"polar": "1 + b*cos(theta)", "shape": {"b": "0.1:0..1/4"}}).ranges
         {'b': (Fraction(0, 1), Fraction(1, 4))}
@@ -360,7 +360,7 @@ def given_table(table: Any, K: int, shape: Mapping[str, Any]) -> "tuple[Any, dic
 
 
 def _one_number(name: str, law: Law, own: tuple[str, ...], shape: Mapping[str, Any]) -> None:
-    """Raises `ValueError` if a parameter has one value in the law and another, or none, in the table or the scene."""
+    """Raises `ValueError` if a parameter has one value in the law and another value or none in the table or scene."""
     for parameter, held in law.numbers:
         given = value_text(parameter_text(f"{name}: {parameter}", shape[parameter])) if parameter in shape else None
         if given != held and (given is not None or parameter in own):

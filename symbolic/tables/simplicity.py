@@ -99,7 +99,7 @@ def _middle(box: tuple[Bounds, ...]) -> tuple[Bounds, ...]:
 
 @dataclass(frozen=True)
 class _Node:
-    """A node of a tree over consecutive arcs: their box and two child nodes, or the indices of a curve and its arc."""
+    """A node of a tree over consecutive arcs: a box, with two child nodes or with the indices of a curve and an arc."""
 
     box: Box
     parts: "tuple[_Node, ...]"
@@ -271,7 +271,7 @@ def _crossings(ring: list[Arc], point: Box) -> int | None:
 
 
 def _units(table: Table, values: Mapping[Symbol, Expr]) -> tuple[Expr, Expr]:
-    """Powers of two that scale the boundary to a size of about 1: different for both axes only if it is very flat.
+    """Powers of two that scale the boundary to a size of about 1; they differ for both axes only if it is very flat.
 
     Scaling changes no proof: each statement that is proved here is invariant under affine maps.
     """

@@ -70,7 +70,7 @@ class Component:
 
     @property
     def radius(self) -> Expr | None:
-        """`rho` of a component that is written as `rho*(cos(theta), sin(theta))`; None of any other.
+        """`rho` of a component that is written as `rho*(cos(theta), sin(theta))`; None for any other component.
 
         >>> from symbolic.tables import cardioid, cuspless
         >>> cardioid.components[0].radius, cuspless.component("wall").radius

@@ -63,7 +63,7 @@ def validated(table: Table) -> Table:
 
 
 def counterclockwise_and_simple(table: Table) -> Table:
-    """`table`, checked to be counterclockwise and, if it has no letters, simple; `ValueError` if it is not."""
+    """`table`, checked to be counterclockwise and, if it has no free parameters, simple; otherwise `ValueError`."""
     _counterclockwise(table)
     if not table.shapes:
         simple(table)

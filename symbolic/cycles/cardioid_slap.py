@@ -33,8 +33,8 @@ def parametrised() -> SignFinding:
     """Is it proved that a launch with `cos(theta/2)**2 = LAUNCH_COS2` lands at `q`, with `T0'**2 = slope_squared(q)`?
 
     Let `theta` and `Theta` be the polar angles of launch and landing, `u = exp(i*theta)` and `U = exp(i*Theta)`. With
-    `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at `u =
-    -U*E*(cos - i*r)/(2*U + 1)`.
+    `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at
+    `u = -U*E*(cos - i*r)/(2*U + 1)`.
     """
     u, U = Symbol("u"), Symbol("U")
     ray = (U - u) * (2 + u + U) * u**-3 - (1 / U - 1 / u) * (2 + 1 / u + 1 / U)  # Im((Z - z)/normal), scaled

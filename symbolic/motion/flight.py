@@ -6,9 +6,9 @@ fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of th
 
     Im(conj(v)*(z1 - z0)) = 2*sin(B) * sum_k U_{k-1}(cos B) * Im(conj(M_k) * exp(i*k*m)),
 
-where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)` with `exp(i*m) =
-E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`, `n` the highest harmonic: 1 for
-circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg. Paper: the flights of section 2.
+where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)` with
+`exp(i*m) = E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`, `n` the highest
+harmonic: 1 for circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg. Paper: the flights of section 2.
 
 The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text that SymPy proves is
 the text that the numeric kernels run. Complex numbers are pairs.

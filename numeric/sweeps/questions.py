@@ -275,9 +275,10 @@ def bifurcation_diagram(
     seed: int = 1,
     **shape: Any,
 ) -> GridResult:
-    """The phase points of random orbits after a long time, against the contraction or another parameter. Paper: 6.6.
+    """The phase points of random orbits after a long time, against the contraction or another parameter.
 
-    One keyword is an interval: `lam=("0", "1")`, or a parameter of the table or law, as `b=("0", "1/5")` at one `lam`.
+    Paper: section 6.6. One keyword is an interval: `lam=("0", "1")`, or a parameter of the table or law, as
+    `b=("0", "1/5")` at one `lam`.
 
     >>> bifurcation_diagram("ellipse", a=2, lam=("0.3", "0.5"), values=3, orbits=2, points=4)
     GridResult(Attractors against the contraction, from 2 random particles each: s, phi, theta, component, nu_plus, \

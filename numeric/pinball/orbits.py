@@ -82,7 +82,7 @@ class OrbitRun:
         return self._chosen(out, made)
 
     def saved(self) -> Array:
-        """The state of all particles, from which the orbit can go on, without the start: one row for each number."""
+        """The state from which the orbit can go on, in addition to its start: rows with a number for each particle."""
         if self.kernels:
             known = [kernel.rows for kernel in self.kernels.values() if kernel is not None]
             own = [np.concatenate([rows[name] for rows in known]) for name in known[0]]

@@ -1,8 +1,9 @@
 """The cost of a sweep, estimated before it begins: seconds, bytes of results, and memory.
 
 The sweep's task is timed on some of its parts, spread over the grid, until the mean is known. Short parts are timed
-whole; long ones are thinned to two sizes, from which the fixed cost and the cost of each coordinate follow. The making
-of a map is timed once. What is measured is processor time, which other programs hardly lengthen.
+whole; long ones are thinned to two sizes, from which the fixed cost and the cost of each coordinate follow. The first
+run of a part also makes its map; its additional time is the cost of a map. What is measured is processor time, which
+other programs hardly lengthen.
 """
 
 import time

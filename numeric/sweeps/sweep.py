@@ -214,8 +214,7 @@ def spread(text: str, lams: Array, each: int, seed: int) -> tuple[PinballMap, St
 
 
 def at_value(text: str, parameter: str, value: float) -> str:
-    """The scene's text with another value of a parameter of its table or law, as a decimal, limited to the parameter's
-    range.
+    """The scene's text with another value of a parameter, as a decimal, limited to the range of the parameter.
 
     >>> at_value(text_of(Scene("egg", alpha="2/25")), "alpha", 0.05)
     'scene = { table = "egg", shape = { alpha = "1/20" }, lam = "1" }'

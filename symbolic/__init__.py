@@ -1,7 +1,8 @@
 """What is the mathematics? Exact tables and scenes, and the formulas that SymPy derives from them.
 
 A table argument is one of `tables`, a scene, a map, or the name of one of the paper's tables. All numbers are exact:
-text such as `"2/25"`, `"0.08"` or `"sqrt(2)"`, integers and fractions. A float is refused: it is not what it shows.
+text such as `"2/25"`, `"0.08"` or `"sqrt(2)"`, integers and fractions. A float is refused, since it is not exactly the
+decimal that it shows.
 
 Tables
     tables              the paper's tables, a gallery, and `polar`, `parametric`, `piecewise` for one's own

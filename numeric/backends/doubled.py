@@ -1,14 +1,14 @@
-"""Programs with more digits: every number is the unevaluated sum of two doubles, by error-free transformations.
+"""Numbers with twice the digits: each is the unevaluated sum of two doubles, computed by error-free transformations.
 
 A sum, a product, a quotient or a root has an error of a few units of `2**-104` of its operands.
 
 **The elementary functions have ten bits more than doubles, not twice as many.** This is enough for flights, and it is
 cheap: the first terms of a Taylor series about the nearest multiple of `log(2)` or `pi/2` are sums of two doubles, and
 the further terms, less than `2**-11` of the whole, are a double. An inverse function takes one step of Newton's method
-from the nearest double: a logarithm by an exponential, an arc tangent by sine and cosine, roots by powers. Bounds are
-`UNIT` times the modulus of the value for exponentials and hyperbolic functions, and for a logarithm, an arc tangent, a
-sine or a cosine besides `2**-104` of the modulus of the argument, which is that of a double up to `2**30`;
-tests/numeric/backends/test_doubled.py holds them against 50 digits.
+from the nearest double: a logarithm by an exponential, an arc tangent by sine and cosine, roots by powers. The error of
+an exponential or a hyperbolic function is at most `UNIT` times the modulus of the value. For a logarithm, an arc
+tangent, a sine or a cosine the bound is larger by `2**-104` times the modulus of the argument, which is a double's up
+to `2**30`. tests/numeric/backends/test_doubled.py compares all of them with 50 digits.
 """
 
 import math
@@ -33,12 +33,12 @@ LONG = 200  # sums of programs that run with more digits: more would take second
 
 
 def affordable(*programs: Sequence[tuple[str, *tuple[int, ...]]]) -> bool:
-    """Do programs, given by their lines, cost at most `LONG` sums, so that kernels compile in seconds?"""
+    """Are the programs, given by their lines, short enough to compile in seconds: at most `LONG` additions?"""
     return sum((WORDS | OTHERS)[word] for lines in programs for word, *_ in lines) <= LONG
 
 
 class Double(Generic[N, M]):
-    """`high + low` with `|low|` at most half a unit of `high`.
+    """The number `high + low`, where `|low|` is at most half a unit in the last place of `high`.
 
     >>> from numeric.backends.scalars import ArrayBackend
     >>> third = Doubles(ArrayBackend()).q(1, 3)
@@ -86,7 +86,8 @@ def _ordered(ops: Backend[N, M], high: N, low: N) -> Double[N, M]:
 
 
 class Sum(Generic[N, M]):
-    """Adds up numbers and products of at most about `size`, a power of two, with an error of about `2**-85*size`.
+    """Accumulates numbers and products of modulus up to about `size`, a power of two, with an error of about
+    `2**-85*size`.
 
     The leading parts are added to a large number, which rounds them to multiples of `2**-36*size`, so that these sums
     are exact; the remainders are added up in doubles. So a product takes four operations.
@@ -116,7 +117,7 @@ class Sum(Generic[N, M]):
 
 
 def short_of(ops: Backend[N, M], u: Pair[N]) -> N:
-    """Half the difference of 1 and the squared length of `u`, a unit vector up to rounding, with all its digits."""
+    """`(1 - |u|**2)/2` of a unit vector `u` that is rounded; the difference loses no digits by cancellation."""
     found = Sum(ops, 1.0)
     for x in u:
         found.add_product(-x, x)
@@ -125,7 +126,7 @@ def short_of(ops: Backend[N, M], u: Pair[N]) -> N:
 
 
 class Doubles(Generic[N, M]):
-    """The number system of `Double`, over the numbers of a backend."""
+    """The number system of `Double`: each number is a pair of numbers of another backend."""
 
     def __init__(self, ops: Backend[N, M]) -> None:
         self.ops = ops
@@ -135,7 +136,7 @@ class Doubles(Generic[N, M]):
         return Double(self.ops, x, self.ops.number(0.0))
 
     def known(self, x: Double[Any, Any]) -> Double[N, M]:
-        """A constant that was computed over another backend, as one of this backend."""
+        """A constant that was computed on another backend, converted to this one."""
         return Double(self.ops, self.ops.number(float(x.high)), self.ops.number(float(x.low)))
 
     def q(self, p: int, n: int) -> Double[N, M]:
@@ -174,7 +175,7 @@ class Doubles(Generic[N, M]):
         return Double(self.ops, self.ops.select(mask, x.high, y.high), self.ops.select(mask, x.low, y.low))
 
     def series(self, leading: Sequence[tuple[int, int]], tail: tuple[float, ...], r: Double[N, M]) -> Double[N, M]:
-        """The polynomial in `r` with the coefficients `leading`, rationals, then `tail`, doubles."""
+        """The polynomial in `r`, constant first, with rational coefficients `leading`, followed by doubles `tail`."""
         ops = self.ops
         high, low = plane.horner(ops, tail, r.high), ops.number(0.0)
         for p, n in reversed(leading):
@@ -193,13 +194,13 @@ class Doubles(Generic[N, M]):
         return Double(ops, *sum_and_error(total, ops.fma(-j, ops.number(c[1]), rest + (x.low + error))))
 
     def exp_less_one(self, x: Double[N, M]) -> tuple[N, Double[N, M]]:
-        """`(2**k, p)` with `exp(x) = 2**k*(1 + p)`, `|p| < 0.42` and off by `UNIT` of itself, for `|x| <= 708`."""
+        """`(2**k, p)` with `exp(x) = 2**k*(1 + p)`, `|p| < 0.42`, for `|x| <= 708`; `p` has relative error `UNIT`."""
         k = self.ops.rounded(x.high * self.ops.number(1 / LOG_2[0]))
         r = self.reduced(x, k, LOG_2)
         return self.ops.two_to(k), r * self.series(((1, 1), (1, 2), (1, 6), (1, 24)), EXP, r)
 
     def within(self, x: Double[N, M]) -> Double[N, M]:
-        """`x`, limited to numbers whose exponential is a double."""
+        """`x`, clamped to the interval in which the exponential neither overflows nor underflows."""
         high = plane.within(self.ops, x.high)
         return Double(self.ops, high, self.ops.select(high == x.high, x.low, self.ops.number(0.0)))
 
@@ -209,7 +210,7 @@ class Doubles(Generic[N, M]):
         return self.scaled(scale, self.plus(1, 1, p))
 
     def grown(self, x: Double[N, M]) -> Double[N, M]:
-        """`exp(x) - 1` for `0 <= x`, off by a few `UNIT` of itself."""
+        """`exp(x) - 1` for `0 <= x`, with a relative error of a few `UNIT`."""
         scale, p = self.exp_less_one(self.within(x))
         return self.scaled(scale, p) + (self.of(scale) - self.q(1, 1))
 
@@ -276,7 +277,7 @@ class Doubles(Generic[N, M]):
         return _ordered(self.ops, near.high, -gap)
 
     def unit(self, u: Pair[N]) -> tuple[Double[N, M], Double[N, M]]:
-        """The unit vector along `u`, whose length is one up to rounding, with twice the digits."""
+        """The vector `u`, a unit vector up to rounding, normalised with twice the digits."""
         x, y = self.of(u[0]), self.of(u[1])
         short = self.of(self.ops.number(0.5) * (self.q(1, 1) - x * x - y * y).high)
         return x + x * short, y + y * short

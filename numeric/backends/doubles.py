@@ -1,4 +1,4 @@
-"""The common part of the float64 backends, arrays and LLVM vectors alike: elementary functions and zeros.
+"""The common part of both float64 backends, arrays and LLVM vectors: elementary functions and zeros.
 
 All of these are functions of `numeric.backends.functions`: sums, products, quotients, square roots and choices, each
 rounded once. So they have the same bits on every processor, unlike those of a mathematical library.
@@ -26,7 +26,7 @@ class DoubleBackend(Backend[N, M], Protocol[N, M]):
         return turn(self, x, quarters)
 
     def atan2(self, y: N, x: N) -> N:
-        """The angle of a point anywhere in the plane; for points on the left, from that of their mirror image."""
+        """The angle of a point anywhere in the plane; a point on the left is first mirrored to the right."""
         turned = self.with_sign(self.pi, y) - (near := self.angle(y, modulus(x)))
         return self.select(x < self.number(0.0), turned, near)
 

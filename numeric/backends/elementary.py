@@ -1,10 +1,10 @@
 """Elementary functions of arrays with the same bits on every processor, for orbits and statistics.
 
 NumPy has several compiled forms of `arcsin`, `arctan`, `exp`, `log`, powers and others, and takes the one for the
-widest registers that the processor has; they differ in the last bit. A chaotic orbit makes such a bit its own
-within forty bounces. The functions here are made of operations that IEEE 754 rounds, in one order, as kernels do: they
-use nothing of NumPy but sums, products, quotients, square roots and moves of the exponent. They err by a unit or two in
-the last place, and are defined at the ends of their ranges, where those of kernels need not be.
+widest registers that the processor has. These forms differ in the last bit, and within forty bounces a chaotic orbit
+amplifies such a difference to its own size. The functions here consist of operations that IEEE 754 rounds, in one
+order, as in the kernels. Of NumPy they use only sums, products, quotients, square roots and moves of the exponent. They
+err by a unit or two in the last place. Unlike those of the kernels they are defined at the ends of their ranges too.
 """
 
 import numpy as np
@@ -106,5 +106,5 @@ def _doubles(x: ArrayLike) -> Array:
 
 
 def _values(x: Array) -> Array:
-    """The values as NumPy gives them: for a single number no array."""
+    """The array, or a plain NumPy number where it has no axes."""
     return np.asarray(x)[()]

@@ -1,12 +1,12 @@
 """Elementary functions, arithmetic in the plane, and zeros, on any backend of float64: arrays and LLVM vectors alike.
 
-Coefficients are the nearest doubles to near-minimax polynomials; truncation stays below 2e-17, so
-what remains is rounding. tests/numeric/backends/test_functions.py holds them against 50 digits.
+The coefficients are the nearest doubles to near-minimax polynomials. Truncation stays below 2e-17, so that almost all
+of the error is rounding; tests/numeric/backends/test_functions.py compares the functions with 50 digits.
 
-Points and directions in the plane are pairs. The one zero of a function in an interval is found by unconditional
-steps of Newton's method, which cost no branch, and then with a bracket: a lane that has not converged inside its
-bracket by then enters a loop that keeps a change of sign and cannot leave it. Lanes that are done stay as they are,
-so that no lane's result depends on its neighbours.
+Points and directions in the plane are pairs. The only zero of a function in an interval is found in two stages. First
+come unconditional steps of Newton's method, which cost no branch. A lane that has not converged inside its bracket then
+enters a loop that keeps a change of sign and cannot leave the bracket. Lanes that have converged stay as they are, so
+that no lane's result depends on its neighbours.
 """
 
 import math
@@ -92,7 +92,7 @@ def exp_less_one(ops: Backend[N, M], x: N) -> Pair[N]:
 
 
 def within(ops: Backend[N, M], x: N) -> N:
-    """`x`, limited to numbers whose exponential is a double."""
+    """`x`, clamped to the interval in which the exponential neither overflows nor underflows."""
     return ops.maximum(-ops.maximum(-x, ops.number(-LARGEST)), ops.number(-LARGEST))
 
 
@@ -200,7 +200,7 @@ def product_and_error(ops: Backend[N, M], x: N, y: N) -> Pair[N]:
 
 
 def cross_and_error(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> Pair[N]:
-    """`cross` rounded, and its rounding error, to twice the digits."""
+    """`cross`, rounded, and its rounding error; their sum has twice the digits."""
     (x, x_error), (y, y_error) = product_and_error(ops, z[0], w[1]), product_and_error(ops, z[1], w[0])
     total = x - y
     back = total - x
@@ -208,7 +208,7 @@ def cross_and_error(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> Pair[N]:
 
 
 def unit(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
-    """`z` with its length set to one again, when it is one up to rounding."""
+    """`z`, a unit vector up to rounding, normalised again."""
     short = ops.fma(-z[0], z[0], ops.fma(-z[1], z[1], ops.number(1.0)))
     half = short * ops.number(0.5)
     return ops.fma(z[0], half, z[0]), ops.fma(z[1], half, z[1])
@@ -227,10 +227,11 @@ def normalised(ops: Backend[N, M], z: Pair[N]) -> Pair[N]:
 
 
 class Series(NamedTuple):
-    """The form of an arc length: closed, or a finite Fourier sum. Its numbers begin with offsets of components.
+    """How an arc length is computed from a list of numbers: in closed form, or as a finite Fourier sum.
 
-    A sum of sines is `sin(step*theta)` times a polynomial in `cos(step*theta)`, whose powers take half the operations
-    of Clenshaw's rule: `powers` is true if their coefficients are given, where these are small enough for it.
+    The list begins with the `offsets` of the components. A sum of sines is `sin(step*theta)` times a polynomial in
+    `cos(step*theta)`; powers take half the operations of Clenshaw's rule. `powers` is true if the list has the
+    coefficients of the powers, which is the case where these are small enough for it.
     """
 
     offsets: int = 0
@@ -241,7 +242,7 @@ class Series(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many numbers the series has: offsets, the mean speed, coefficients of sines, and of `1 - cos`."""
+        """The length of the list of numbers: offsets, the mean speed, coefficients of sines and of `1 - cos`."""
         return self.offsets + (1 + self.terms + self.rises if self.terms else 0)
 
 
@@ -290,10 +291,10 @@ def bracketed_zero(
 ) -> N:
     """The only zero in `[low, high]` of a function that is negative at `low` and positive at `high`.
 
-    `function` returns value and slope; `scale` is the size below which the zero's absolute error counts; `newton` is
-    the number of steps before convergence is tested. A lower bound that is expensive may be given as a function, which
-    is called when a lane needs it, with a cheap test `accepts` in its place. Lanes outside the mask `wanted` are left
-    where Newton took them.
+    `function` returns the value and the slope, `scale` is the size below which the zero's absolute error counts, and
+    `newton` is the number of Newton steps before convergence is tested. A lower bound that is expensive may be given as
+    a function, together with a cheap test `accepts`; it is called only when a lane needs it. Lanes outside the mask
+    `wanted` keep the value that the Newton steps gave.
     """
     step = x
     for _ in range(newton):
@@ -352,7 +353,7 @@ def polynomial_zero(
     wanted: M | None = None,
     accepts: Callable[[N], M] | None = None,
 ) -> N:
-    """As `bracketed_zero` for a polynomial, constant first: `steps` are those of Halley's, then of Newton's method."""
+    """`bracketed_zero` for a polynomial, constant first; `steps` counts steps of Halley's, then of Newton's method."""
     for _ in range(steps[0]):
         x = halley(p, x)
     return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)

@@ -1,8 +1,9 @@
-"""Number systems that run a program on more than one point: on whole intervals, and on both ends of a chord at once.
+"""Number systems that run a program on more than one point: on whole intervals, or on both ends of a chord at once.
 
-`Intervals` encloses the values of a program over intervals of its inputs, in arrays, every operation rounded outwards:
-its statements on a boundary are proved for every point. `Secants` carries the values at two points and the
-difference of the two divided by a small number, exactly where they almost agree: nothing is subtracted that cancels.
+`Intervals` encloses the values of a program over intervals of its inputs, as arrays; every operation is rounded
+outwards, so that what the bounds show is proved for every point of the intervals. `Secants` computes the values of a
+program at two points, and the difference of the two values divided by a small number. No digits cancel in this
+difference, even where the two values almost agree.
 """
 
 from collections.abc import Callable
@@ -20,7 +21,7 @@ OUTWARDS = 2.0**-48  # relative error of an elementary function, five times over
 
 
 class Interval:
-    """Arrays of lower and upper bounds; infinite ones bound nothing."""
+    """Arrays of lower and upper bounds. An infinite bound is no restriction."""
 
     def __init__(self, low: Array, high: Array) -> None:
         known = np.isfinite(low) & np.isfinite(high)
@@ -28,7 +29,7 @@ class Interval:
 
     @staticmethod
     def around(*values: Array, share: float = 2.0**-52) -> "Interval":
-        """The hull of rounded values, each off by a relative error of at most `share`."""
+        """The hull of rounded values, each of which has a relative error of at most `share`."""
         low, high = reduce(np.minimum, values), reduce(np.maximum, values)  # nan where one is
         tiny = 2.0**-1000
         return Interval(low - share * np.abs(low) - tiny, high + share * np.abs(high) + tiny)
@@ -114,12 +115,12 @@ class Intervals:
         return Interval.around(np.maximum(value - half, -1.0), np.minimum(value + half, 1.0))
 
     def sin(self, x: Interval) -> Interval:
-        """The sine."""
+        """The sine, as the cosine of the angle less `pi/2`."""
         return self.cos(x - self.pi * self.q(1, 2))
 
 
 class SharpIntervals(Intervals):
-    """`Intervals` with the range of a cosine to its last bits: near 0 the bound of `1 - cos(x)` is small.
+    """`Intervals` with the sharp range of a cosine, so that near 0 the bound of `1 - cos(x)` is small.
 
     >>> cosine = SharpIntervals().cos(Interval(np.array([-1.0, 0.1]), np.array([2.0, 0.2])))
     >>> cosine.low.round(3).tolist(), cosine.high.round(3).tolist()
@@ -127,7 +128,7 @@ class SharpIntervals(Intervals):
     """
 
     def cos(self, x: Interval) -> Interval:
-        """The cosine: it falls from each even multiple of pi to the next odd one, and rises again."""
+        """The range of the cosine, which falls from each even multiple of pi to the next odd one and rises again."""
         low, high = x.low / np.pi, x.high / np.pi
         slack = OUTWARDS * (1 + np.abs(low) + np.abs(high))
         first, last = np.ceil(low - slack), np.floor(high + slack)  # multiples of pi within
@@ -139,7 +140,7 @@ class SharpIntervals(Intervals):
         return Interval(np.where(odd, -1.0, least), np.where(even, 1.0, most))
 
     def _cosine(self, x: Array) -> Array:
-        """The cosine near 0 by its series; its rounding is no more than that of the last difference."""
+        """The cosine near 0 by its series. The total rounding error is no more than that of the last subtraction."""
         square = x * x
         found = np.ones_like(x)
         for n in (56, 30, 12, 2):
@@ -153,8 +154,8 @@ NOUGHT = Interval(np.array(0.0), np.array(0.0))
 class Centred:
     """A function of one variable on cells: its value in the middle, its range, and the range of its slope.
 
-    The range lies within the value in the middle plus or minus the slope over half a cell: its error is of the order of
-    the square of a cell's width, where that of `Interval` is of the order of the width.
+    Each value on a cell is the value in the middle plus the slope times at most half the width. This range has an error
+    of the order of the width squared; the error of `Interval` is of the order of the width.
     """
 
     def __init__(self, half: Array, middle: Interval, whole: Interval, slope: Interval) -> None:
@@ -218,7 +219,7 @@ class CentredIntervals:
         return self.constant(self.ops.pi)
 
     def _word(self, word: Callable[[Interval], Interval], x: Centred, slope: Callable[[Interval], Interval]) -> Centred:
-        """A function of one number, given by `word`, from its slope as a function of its value."""
+        """`word(x)` by the chain rule; `slope` gives the derivative of `word` as a function of its value."""
         whole = word(x.whole)
         return Centred(self.half, word(x.middle), whole, slope(whole) * x.slope)
 
@@ -264,7 +265,7 @@ class CentredIntervals:
 
 
 def unit_vectors(low: Array, high: Array) -> tuple[Interval, Interval]:
-    """Cosine and sine on cells with these ends."""
+    """Cosine and sine on the cells from `low` to `high`."""
     angle = Interval.around(low, high, share=OUTWARDS)
     return Intervals().cos(angle), Intervals().sin(angle)
 
@@ -319,7 +320,7 @@ class Secants(Generic[N, M]):
         return self.constant(self.ops.pi)
 
     def _ratio(self, value: N, x: N) -> N:
-        """`value/x` for a function that is 0 at 0 with slope 1 there."""
+        """`value/x`, or 1 where `x` is 0: the limit for a function with value 0 and slope 1 at 0."""
         flat = x == self.ops.number(0.0)
         one = self.ops.number(1.0)
         return self.ops.select(flat, one, value / self.ops.select(flat, one, x))
@@ -335,7 +336,7 @@ class Secants(Generic[N, M]):
         return Secant(self.ops, first, last, x.slope / (first + last))
 
     def root(self, x: Secant[N, M], n: int) -> Secant[N, M]:
-        """The `n`-th root: the difference of `n`-th powers has `n` terms over that of their bases."""
+        """The `n`-th root, by `b - a = (b**n - a**n)/(sum of b**i*a**(n - 1 - i))`."""
         first, last = self.ops.root(x.first, n), self.ops.root(x.last, n)
         total, power = self.ops.number(1.0), self.ops.number(1.0)
         for _ in range(n - 1):
@@ -381,7 +382,7 @@ class Secants(Generic[N, M]):
         return Secant(self.ops, self.ops.cos(x.first), self.ops.cos(x.last), slope)
 
     def log(self, x: Secant[N, M]) -> Secant[N, M]:
-        """The logarithm, by the mean `h/tanh(h)`, `h` half the difference of both: its rounding hardly matters."""
+        """The logarithm; the slope is divided by the logarithmic mean `(a + b)/2*tanh(h)/h` with `h = log(b/a)/2`."""
         first, last = self.ops.log(x.first), self.ops.log(x.last)
         half = self.ops.number(0.5) * (last - first)
         mean = (x.first + x.last) * self._ratio(self.ops.tanh(half), half)

@@ -1,8 +1,8 @@
-"""LLVM vectors as an arithmetic: running a step on these values writes its instructions.
+"""LLVM vectors as a number system: running a step of the map on its values writes the instructions of a kernel.
 
-A product that is only added to something becomes a fused multiply-add, by the rule of this file and never by the
-compiler's choice: no fast-math flag is set. So the bits of a result depend neither on the number of lanes, nor on the
-rest of the kernel, nor on the version of LLVM.
+A product that is only added to something becomes a fused multiply-add. This file decides so, never the compiler: no
+fast-math flag is set. So the bits of a result depend neither on the number of lanes, nor on the other instructions of
+the kernel, nor on the version of LLVM.
 """
 
 import math
@@ -30,7 +30,7 @@ class LLVMMask:
 
 
 class LLVMVector:
-    """A vector of doubles: a known constant, a value already written, or a product not yet needed."""
+    """A vector of doubles: a known constant, a value already written, or a product that is not written yet."""
 
     def __init__(
         self,
@@ -44,7 +44,7 @@ class LLVMVector:
 
     @property
     def text(self) -> str:
-        """The operand's name; asking for it writes a product that was waiting."""
+        """The operand's name in LLVM; first writes the instruction of a pending product."""
         if self.value is not None:
             return self.trace.literal(self.value)
         if self.factors is not None and (not self._text or self._scope not in self.trace.scopes):
@@ -129,12 +129,12 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     # ---- writing
 
     def fresh(self, stem: str = "v") -> str:
-        """A name that is not in use."""
+        """A name that no value or label of the kernel has yet."""
         self.count += 1
         return f"%{stem}{self.count}"
 
     def emit(self, text: str, key: str | None = None) -> str:
-        """Writes `name = text`, once in a scope for equal keys; the name."""
+        """Writes `name = text`, unless a value with the same key is known in this scope; returns the name."""
         key = key if key is not None else text
         for known in reversed(self.known):
             if key in known:
@@ -145,21 +145,21 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return name
 
     def line(self, word: str, *operands: LLVMVector) -> LLVMVector:
-        """Writes an arithmetic instruction; its result."""
+        """Writes an arithmetic instruction and returns its result."""
         return LLVMVector(self, self.emit(f"{word} {self.type} " + ", ".join(x.text for x in operands)))
 
     def call(self, name: str, *operands: LLVMVector) -> LLVMVector:
-        """Writes a call of an intrinsic function of vectors; its result."""
+        """Writes a call of an intrinsic function of vectors and returns its result."""
         self.called.add(f"declare {self.type} @llvm.{name}.v{self.width}f64({', '.join([self.type] * len(operands))})")
         inside = ", ".join(f"{self.type} {x.text}" for x in operands)
         return LLVMVector(self, self.emit(f"call {self.type} @llvm.{name}.v{self.width}f64({inside})"))
 
     def compare(self, word: str, x: LLVMVector, y: LLVMVector) -> LLVMMask:
-        """Writes a comparison; its result, false where an operand is nan."""
+        """Writes a comparison and returns its result, which is false where an operand is nan."""
         return LLVMMask(self, self.emit(f"fcmp {word} {self.type} {x.text}, {y.text}"))
 
     def mask(self, word: str, x: str, y: str) -> LLVMMask:
-        """Writes a logical instruction; its result."""
+        """Writes a logical instruction and returns its result."""
         return LLVMMask(self, self.emit(f"{word} {self.masks} {x}, {y}"))
 
     def literal(self, x: float) -> str:
@@ -172,14 +172,14 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         self.block = name
 
     def open(self) -> None:
-        """Starts a scope: values written from here on are known only until `close`."""
+        """Is this number already a known constant when the kernel is written?"""
         self.opened += 1
         self.scope = self.opened
         self.scopes.append(self.scope)
         self.known.append({})
 
     def close(self) -> None:
-        """Ends a scope: forgets the values written since `open`."""
+        """Are two values already known to be equal when the kernel is written?"""
         self.scopes.pop()
         self.known.pop()
         self.scope = self.scopes[-1]
@@ -209,7 +209,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
 
     @property
     def pi_low(self) -> LLVMVector:
-        """The difference between the number pi and that double."""
+        """Pi minus the double nearest to it."""
         return self.number(2 * functions.HALF_PI_LOW)
 
     def sqrt(self, x: LLVMVector) -> LLVMVector:
@@ -224,7 +224,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return self.call("fma", x, y, z)
 
     def product(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
-        """`x*y`, rounded by itself, not contracted with a sum to one instruction."""
+        """`x*y`, rounded by itself: it is never joined with a sum to one instruction."""
         return self.line("fmul", x, y)
 
     def maximum(self, x: LLVMVector, y: LLVMVector) -> LLVMVector:
@@ -239,11 +239,11 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return LLVMVector(self, self.emit(text))
 
     def look_up(self, values: Sequence[LLVMVector], index: LLVMVector) -> LLVMVector:
-        """The constant at an index, gathered from memory; the first one if there is none."""
+        """The constant at an index, gathered from memory; the first constant where the index is out of range."""
         return LLVMVector(self, memory.gathered(self, [x.value for x in values], index))  # type: ignore[misc]
 
     def look_up_row(self, rows: Sequence[Sequence[float]], index: LLVMVector) -> list[LLVMVector]:
-        """The entries of a row in a table of constants, by its index; the first row if there is none."""
+        """The entries of the row at an index in a table of constants; the first row where the index is out of range."""
         return [LLVMVector(self, column) for column in memory.columns(self, rows, index)]
 
     def negated(self, mask: LLVMMask) -> LLVMMask:
@@ -284,14 +284,14 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return self._double(self._bits("shl", shifted, "splat (i64 52)"))
 
     def _within_a_turn(self, x: LLVMVector) -> LLVMVector:
-        """`x` minus whole turns: the turn has 107 bits and each subtraction is rounded once, so nothing is lost."""
+        """`x` minus whole turns. A turn is given to 107 bits, and each subtraction is rounded once."""
         turns = self.rounded(x * self.number(0.25 / functions.HALF_PI))
         for part in (functions.HALF_PI, functions.HALF_PI_LOW):
             x = self.fma(-turns, self.number(4 * part), x)
         return x
 
     def settle(self, *values: LLVMVector) -> None:
-        """Writes the instructions of these values at this place, where their operands are at hand."""
+        """Writes the instructions of these values now, before a branch that may use them."""
         for x in values:
             assert x.text
 
@@ -319,7 +319,10 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         limit: int,
         steady: bool = False,
     ) -> list[LLVMVector]:
-        """Applies `body` to lanes while `condition` holds for any; a `steady` body leaves other lanes as they are."""
+        """Applies `body` to the lanes in which `condition` holds, until it holds in none, or `limit` times.
+
+        A `steady` body does not change the lanes in which `condition` fails, so that they need no selection.
+        """
         head, inside, after = (self.fresh(stem)[1:] for stem in ("head", "inside", "after"))
         starts, before, names = [x.text for x in state], self.block, [self.fresh() for _ in state]
         index, following = self.fresh("pass"), self.fresh("pass")
@@ -346,7 +349,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
     def when(
         self, mask: LLVMMask, values: list[LLVMVector], changed: Callable[[], list[LLVMVector]]
     ) -> list[LLVMVector]:
-        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects lanes."""
+        """`changed()` in all lanes if the mask holds in any, else `values`; the caller selects by lane."""
         return self.branch(self.anywhere(mask), values, changed)
 
     def branch(self, bit: str, values: list[LLVMVector], changed: Callable[[], list[LLVMVector]]) -> list[LLVMVector]:

@@ -10,7 +10,7 @@ FOUR = "<4 x double>"
 
 
 def gathered(ops: "LLVMBackend", values: Sequence[float], index: "LLVMVector") -> str:
-    """The constant at an index of each lane; the first one if there is none."""
+    """The constant at the index of each lane; the first constant where the index is out of range."""
     name, whole, places = _array(ops, values), _whole(ops, len(values), index), f"<{ops.width} x i32>"
     pointers = ops.emit(f"getelementptr double, ptr {name}, {places} {whole}")
     gather, kind = f"{ops.type} @llvm.masked.gather.v{ops.width}f64.v{ops.width}p0", f"<{ops.width} x ptr>"
@@ -20,10 +20,10 @@ def gathered(ops: "LLVMBackend", values: Sequence[float], index: "LLVMVector") -
 
 
 def columns(ops: "LLVMBackend", rows: Sequence[Sequence[float]], index: "LLVMVector") -> list[str]:
-    """The entries, column by column, of a table's row at an index of each lane; the first row if there is none.
+    """The entries, column by column, of a table's row at the index of each lane; the first row if it is out of range.
 
-    A lane loads four neighbours at once, and eight shuffles turn the rows of four lanes into columns: less work than
-    gathering number by number.
+    A lane loads four neighbouring entries at once, and eight shuffles turn the rows of four lanes into columns. This is
+    less work than to gather the entries one by one.
     """
     count, places = len(rows[0]), f"<{ops.width} x i32>"
     name, whole = _array(ops, [x for row in rows for x in row]), _whole(ops, len(rows), index)
@@ -45,20 +45,20 @@ def columns(ops: "LLVMBackend", rows: Sequence[Sequence[float]], index: "LLVMVec
 
 
 def _array(ops: "LLVMBackend", values: Sequence[float]) -> str:
-    """The name of an array in memory."""
+    """The name of a constant array in memory that has these values."""
     items = ", ".join(ops.literal(x)[len("splat (") : -1] for x in values)
     return ops.constants.setdefault(f"[{len(values)} x double] [{items}]", f"@array{len(ops.constants)}")
 
 
 def _whole(ops: "LLVMBackend", count: int, index: "LLVMVector") -> str:
-    """The index as an integer, 0 where it is not below `count`."""
+    """The index as an integer; 0 where it is `count` or more."""
     known = (ops.number(-0.5) < index) & (index < ops.number(count - 0.5))
     inside = ops.select(known, index, ops.number(0.0)).text
     return ops.emit(f"fptosi {ops.type} {inside} to <{ops.width} x i32>")
 
 
 def _turned(ops: "LLVMBackend", loaded: list[str]) -> list[str]:
-    """The rows of four loaded by each lane, as four columns."""
+    """Transposes: from the four entries that each lane has loaded to four vectors over the lanes."""
 
     def mixed(x: str, y: str, size: int, places: Sequence[int]) -> str:
         kind, order = f"<{size} x double>", ", ".join(f"i32 {place}" for place in places)

@@ -16,18 +16,18 @@ Low = Union[N, Callable[[], N]]  # noqa: UP007  (a union that begins with a vari
 
 
 def modulus(x: N) -> N:
-    """`abs(x)` with the type of `x`, which the builtin's annotation does not keep."""
+    """`abs(x)`, typed as `x` is; the annotation of the builtin loses the type."""
     size: N = abs(x)  # type: ignore[assignment]
     return size
 
 
 def bound(low: Low[N]) -> N:
-    """The value of a bound, which may be given as a function."""
+    """The value of a lower bound, which may be given as a function without arguments."""
     return low() if callable(low) else low
 
 
 class FormulaWords(Protocol[N]):
-    """The functions that formulas may contain, besides those of every number system."""
+    """The functions that formulas may contain, in addition to those that every number system has."""
 
     def exp(self, x: N, /) -> N: ...
     def log(self, x: N, /) -> N: ...
@@ -61,7 +61,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         ...
 
     def atan2(self, y: N, x: N, /) -> N:
-        """The angle of the point `(x, y)`, anywhere in the plane; between bounces, not inside one."""
+        """The angle of the point `(x, y)`, anywhere in the plane; it is used between bounces only, never within one."""
         ...
 
     def angle(self, y: N, x: N, /) -> N:
@@ -121,7 +121,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         ...
 
     def settle(self, *values: N) -> None:
-        """Makes a compiled backend compute these values at this place, not where they are first used."""
+        """Makes a compiled backend compute these values now, and not where they are first used."""
         ...
 
     def zero(
@@ -165,12 +165,12 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
     ) -> list[N]:
         """Applies `body` to the numbers for which `condition` holds, until it holds for none, or `limit` times.
 
-        A `steady` body leaves the others alone by itself.
+        A `steady` body does not change the numbers for which `condition` fails, so that they need no selection.
         """
         ...
 
     def when(self, mask: M, values: list[N], changed: Callable[[], list[N]], /) -> list[N]:
-        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects particles."""
+        """`changed()` for all particles if the mask holds for any, else `values`; the caller selects by particle."""
         ...
 
 

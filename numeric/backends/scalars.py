@@ -1,7 +1,7 @@
 """NumPy arrays, and single numbers of any precision, as backends: flights run on them unchanged.
 
-The library of single numbers, mpmath or one like it, is handed in as a `Context`, never imported. Its elementary
-functions are its own, and every zero is found to its full precision.
+The library of single numbers, mpmath or one like it, is handed in as a `Context`, never imported. It provides the
+elementary functions, and every zero is found to its full precision.
 """
 
 from collections.abc import Callable, Sequence
@@ -49,7 +49,7 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
 
     @property
     def pi_low(self) -> Array:
-        """The difference between the number pi and that double."""
+        """Pi minus the double nearest to it."""
         return self.number(2 * functions.HALF_PI_LOW)
 
     sqrt = staticmethod(cast(Unary, np.sqrt))
@@ -114,7 +114,7 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
     ) -> list[Array]:
         """Applies `body` to the elements for which `condition` holds, until it holds for none, or `limit` times.
 
-        A `steady` body leaves the other elements alone by itself.
+        A `steady` body does not change the elements for which `condition` fails.
         """
         for _ in range(limit):
             active = condition(state)
@@ -125,14 +125,15 @@ class ArrayBackend(DoubleBackend[Array, Masks]):
         return state
 
     def when(self, mask: Masks, values: list[Array], changed: Callable[[], list[Array]]) -> list[Array]:
-        """`changed()`, as a whole, if the mask holds anywhere, else `values`; the caller selects elements."""
+        """`changed()` for all elements if the mask holds for any, else `values`; the caller selects by element."""
         return changed() if np.any(mask) else values
 
 
 def array_arithmetic(digits: int) -> tuple[ArrayBackend, Callable[..., Array]]:
-    """The number system of float64 arrays, and the function that runs a kernel over it; `digits` has no effect.
+    """The number system of float64 arrays, and a function that runs a kernel on it; `digits` has no effect.
 
-    Arrays are broadcast against each other; a matrix has its own two axes first. Numbers have 16 digits.
+    The kernel's arguments are broadcast against each other. A result that is a matrix has its rows and columns on the
+    first two axes. Numbers have 16 digits.
     """
 
     def run(
@@ -309,7 +310,7 @@ class ScalarBackend(Backend[N, bool]):
         wanted: bool | None = None,
         accepts: Callable[[N], bool] | None = None,
     ) -> N:
-        """The zero of a polynomial, negative at `low` and positive at `high`, to full precision."""
+        """The zero of a polynomial that is negative at `low` and positive at `high`, to full precision."""
         return self.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted)
 
     def zero(

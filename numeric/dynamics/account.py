@@ -1,7 +1,8 @@
-"""A survey of exponents as plain data, for each attractor, with error bars and a check by the determinant.
+"""A survey of exponents as plain data: one entry for each attractor, with error bars and a check by the determinant.
 
-The sum `nu_plus + nu_minus` along an orbit follows from its angles alone, which checks the tangent kernels. In `(s,
-phi)` the determinant is `det DT = lam*cos(phi0)/cos(eta1)`, and along an orbit cosines of successive bounces pair up:
+The sum `nu_plus + nu_minus` along an orbit follows from its angles alone, which checks the tangent kernels. In
+`(s, phi)` the determinant is `det DT = lam*cos(phi0)/cos(eta1)`, and along an orbit cosines of successive bounces pair
+up:
 
     log|det D(T^n)| = n*log(lam) + sum of log(cos(lam*eta_k)/cos(eta_k)) + log(cos(phi_0)/cos(phi_n)).
 
@@ -35,7 +36,7 @@ CHECKED_PARTICLES, CHECKED_BOUNCES = 32, 500
 def account(map: PinballMap, survey: Survey, timed: bool = False) -> Document:
     """The document of `pinball lyapunov`: results by group, and at the top those of the attractor if there is only one.
 
-    With `timed`, mean flights and exponents per unit of time as well.
+    With `timed`, it has the mean flights and the exponents per unit of time as well.
 
     >>> from numeric.pinball.sampling import phase_starts
     >>> from numeric.dynamics.exponents import surveyed
@@ -67,7 +68,7 @@ def account(map: PinballMap, survey: Survey, timed: bool = False) -> Document:
 
 
 def numbers(measured: ExponentEstimates | None) -> Document:
-    """A document of exponents and their sum with standard errors, null where there is no finite number."""
+    """The exponents and their sum with standard errors, as a document; null where there is no finite number."""
     whole = measured or ExponentEstimates(None, None, None)
     found: Document = {}
     for name, value in (("nu_plus", whole.upper), ("nu_minus", whole.lower), ("sum", whole.total)):
@@ -82,7 +83,10 @@ def is_cycle(group: Group) -> bool:
 
 
 def of_cycle(cycle: Attractor | None) -> Document:
-    """Exponents from the multipliers of a cycle; along orbits a turning vector would leave an error of order `1/n`."""
+    """The entries for the exponents of a cycle, from its multipliers.
+
+    Growth along orbits would converge more slowly: the turning of the vector leaves an error of order `1/n`.
+    """
     assert cycle is not None
     finite = bool(np.isfinite(cycle.nu_minus))
     return {
@@ -154,12 +158,12 @@ def per_unit_of_time(group: Group, survey: Survey) -> Document:
 
 
 def trusted(measured: ExponentEstimates) -> bool:
-    """Are all error bars of a group made of enough batches, each longer than the autocorrelation time?"""
+    """Does every error bar rest on enough batches, each longer than the autocorrelation time?"""
     return all(x.trusted for x in measured[:3] if isinstance(x, Estimate))
 
 
 def trace(group: Group, survey: Survey) -> list[Document]:
-    """Estimates and errors from the first block, the first two, four, ... and from all of them."""
+    """How the estimates converge: exponents and errors from the first 1, 2, 4, ... blocks, and last from all."""
     blocks, count = 1, survey.count
     found = []
     while blocks < 2 * len(count.up):
@@ -172,7 +176,7 @@ def trace(group: Group, survey: Survey) -> list[Document]:
 
 
 def sum_rule(map: PinballMap, survey: Survey) -> Document:
-    """`log|det D(T^n)|` by the tangent kernel and from the angles alone, along the same orbits."""
+    """Entries that compare `log|det D(T^n)|` by the tangent kernel with its value by the angles, on the same orbits."""
     end = survey.count.growth
     few = np.nonzero(end.code == 0)[0][:CHECKED_PARTICLES]
     if few.size == 0:
@@ -186,7 +190,7 @@ Array = NDArray[np.float64]
 
 
 class DeterminantCheck(NamedTuple):
-    """The largest difference of `log|det D(T^n)|` between kernel and angles over `particles` orbits of `bounces`."""
+    """The largest difference of `log|det D(T^n)|` between kernel and angles, over `particles` orbits."""
 
     difference: float
     bounces: int
@@ -194,7 +198,7 @@ class DeterminantCheck(NamedTuple):
 
 
 def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
-    """`log|det D(T^n)|` of each orbit from its angles, by the module's rule; nan for a particle that stops.
+    """`log|det D(T^n)|` of each orbit from its angles, by the formula of this module; nan for a particle that stops.
 
     The term `n*log(lam)` of the paper's law is left out; for any other law the logarithms of its slopes are included.
 
@@ -215,7 +219,7 @@ def volume(map: PinballMap, particles: PhasePoints, bounces: int) -> Array:
 
 
 def checked(map: PinballMap, particles: PhasePoints, bounces: int) -> DeterminantCheck:
-    """The module's rule compared with the kernel, along orbits whose bounces are equal bit for bit.
+    """Compares `volume` with the tangent kernel, along orbits whose bounces are equal bit for bit.
 
     >>> from numeric.pinball.sampling import phase_starts
     >>> table = PinballMap("cuspless", lam="0.5")

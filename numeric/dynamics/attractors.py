@@ -1,8 +1,9 @@
 """The attractors of a map: found from many starts, distinguished, and joined to families under the table's symmetries.
 
-A cycle is polished (`numeric.dynamics.recognition`) and then recognised by nearness. Particles that reach no cycle and
-whose neighbourhoods spread are on a chaotic set when none leaves for a whole round of bounces; their orbits are then
-divided into sets (`numeric.dynamics.chaotic_sets`). Particles that still leave at the end are unsettled.
+A cycle is refined by Newton's method (`numeric.dynamics.recognition`); further particles near it are counted as on it.
+Particles that reach no cycle, and around which vectors grow exponentially, are taken to be on a chaotic set once none
+of them joins a cycle during a whole run. Their orbits are then divided into sets (`numeric.dynamics.chaotic_sets`). If
+some still join cycles in the last run, the others remain unsettled.
 """
 
 from collections.abc import Sequence
@@ -98,7 +99,7 @@ MEASURED, BLOCKS = 64, 128  # particles whose exponents are averaged, and blocks
 
 
 class Classified(NamedTuple):
-    """The index of each particle's attractor, -1 where it did not settle, and the attractors."""
+    """The attractors, and for each particle the index of its attractor in `label`, -1 where it did not settle."""
 
     label: Labels
     attractors: tuple[Attractor, ...]
@@ -125,7 +126,7 @@ def classify(
 
 @dataclass
 class _Sorting:
-    """Particles on their way to attractors; those in `going` have no label yet."""
+    """Particles that are followed to their attractors; those in `going` have no label yet."""
 
     map: PinballMap
     particles: PhasePoints
@@ -142,7 +143,7 @@ class _Sorting:
         self.going = np.arange(self.particles.size)
 
     def sorted(self, transient: int, rounds: int) -> Classified:
-        """Advances particles in rounds, each twice as long, until one recognises no particle; the classification."""
+        """Classifies all particles: runs them, each time twice as long, until a run in which none joins a cycle."""
         self._advance(transient)
         if self.map.law == "elastic":
             self._conserved(transient)
@@ -162,7 +163,7 @@ class _Sorting:
         return self._result()
 
     def _advance(self, bounces: int) -> None:
-        """Moves the particles in `going`, keeps the growth rates around them, and labels those that stop."""
+        """Advances the particles in `going`, stores the growth rates of vectors, and labels the particles that stop."""
         here = self.particles.only(self.going)
         end = self.map.exponents(here.theta, here.phi, bounces, 0, here.component)
         for rows, new in zip(self.particles, (end.component, end.theta, end.phi), strict=True):
@@ -178,7 +179,7 @@ class _Sorting:
         self.going, self.growth = self.going[which], growth[which]
 
     def _entered(self, new: Attractor) -> int:
-        """The index of an attractor in the list, to which a new one is appended."""
+        """The index in the list of the attractor that equals `new`; `new` is appended if there is no such attractor."""
         for index, old in enumerate(self.attractors):
             if same(self.map, old, new):
                 return index
@@ -186,7 +187,7 @@ class _Sorting:
         return len(self.attractors) - 1
 
     def _catch(self) -> None:
-        """Labels the particles that are at a cycle, and looks for new cycles among the others."""
+        """Labels the particles near a known cycle, and looks for new cycles near the others."""
         while self.going.size:
             caught = at_cycles(self.map, self.particles.only(self.going), self.attractors)
             self.label[self.going] = caught
@@ -198,7 +199,7 @@ class _Sorting:
                 break
 
     def _conserved(self, bounces: int) -> None:
-        """Labels as neutral, at `lam = 1`, the particles around which vectors grow no faster than a power of time."""
+        """At `lam = 1`, labels as neutral the particles around which vectors grow no faster than a power of time."""
         regular = self.growth < calm(bounces)
         if np.any(regular):
             points = self.particles.only(self.going[regular])
@@ -206,7 +207,7 @@ class _Sorting:
             self._keep(~regular, self.growth)
 
     def _spread(self, bounces: int) -> None:
-        """Labels the particles that spread with the chaotic attractors near them, and makes new ones for the others."""
+        """Labels the particles around which vectors grow exponentially, by chaotic attractors near them or new ones."""
         stay = self.going.size * bounces / 3
         self._keep(self.growth > calm(bounces), self.growth)
         while self.going.size:
@@ -217,7 +218,7 @@ class _Sorting:
                 self._gather(stay)
 
     def _gather(self, stay: float) -> None:
-        """Labels a few of the particles with the set their orbits lie on, known or new."""
+        """Divides the orbits of a few particles into chaotic sets, adds the new sets, and labels these particles."""
         spread = [i for i, a in enumerate(self.attractors) if a.kind is Kind.CHAOTIC]
         particles = self.particles.only(self.going)
         found = gathered(self.map, particles, [self.attractors[i].points for i in spread])
@@ -241,7 +242,7 @@ class _Sorting:
         self._keep(left, self.growth)
 
     def _result(self) -> Classified:
-        """The result, without new attractors that turned out to be the same as an earlier one."""
+        """The classification, without attractors that turned out to be the same as an earlier one."""
         kept = [i for i in range(len(self.attractors)) if i not in self.dropped or i < self.known]
         place = np.full(len(self.attractors) + 1, UNSETTLED)
         place[kept] = np.arange(len(kept))
@@ -249,7 +250,7 @@ class _Sorting:
 
 
 def calm(bounces: int) -> float:
-    """An upper bound of exponents found over so many bounces where vectors grow only like a power of their number.
+    """An upper bound of the exponents measured over `bounces` bounces where vectors grow like a power of time.
 
     >>> round(calm(1000), 4)
     0.0207
@@ -293,7 +294,7 @@ def find(
 def disagreement(one: Attractor, found: Sequence[Attractor]) -> str:
     """Reason to doubt that a chaotic attractor and its images are distinguished correctly; empty if none.
 
-    Images have equal exponents and equal shares of the starts: chi square gives the probability of what was observed.
+    Images have equal exponents and equal shares of the starts, which is tested by chi square.
 
     >>> sets = [Attractor(Kind.CHAOTIC, 0, phase_points(0.0, 0.0), share=wilson(k, 140), family=0) for k in (103, 37)]
     >>> disagreement(sets[0], sets)
@@ -318,7 +319,7 @@ def disagreement(one: Attractor, found: Sequence[Attractor]) -> str:
 
 
 def measured(map: PinballMap, attractor: Attractor, bounces: int) -> Attractor:
-    """The attractor; a chaotic one with exponents over `bounces` bounces and errors, from `MEASURED` particles."""
+    """The attractor; a chaotic one with exponents and errors from `MEASURED` particles over `bounces` bounces."""
     if attractor.kind is not Kind.CHAOTIC:
         return attractor
     points = attractor.points

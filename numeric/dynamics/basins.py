@@ -1,19 +1,18 @@
-"""Basins of attraction: the label of every start, and starts where one wants them in phase space. Paper: appendix.
+"""Basins of attraction: the label of every start, from a grid or at chosen points of phase space. Paper: appendix.
 
-`labels` is a plain function on arrays, so that a picture of any resolution is made piece by piece in any order: the
-label of a start does not depend on the others. All coordinates are the paper's, `s` and `sin(phi)`.
+`labels` is a plain function on arrays, and the label of a start does not depend on the other starts. So a picture of
+any resolution can be computed in pieces and in any order. All coordinates are the paper's, `s` and `sin(phi)`.
 
 How closely basins are mixed is measured in small squares of phase space, from the fates (attractors reached) of a few
 starts in each. There are three numbers at each size `eps`: the share of squares with more than one fate; the basin
 entropy, the mean over all squares of `-sum p log p` over the fates; and the boundary basin entropy, the mean over
-squares with more than one fate (Daza and others 2016). A smooth boundary keeps the last one and lets the first fall
-like `eps`; basins that are intermingled at every point would keep all three as `eps` goes to 0. The basin of an
-attracting cycle is open, so for cycles the first one must vanish in the end: the measurement shows how fast.
+squares with more than one fate (Daza and others 2016). For a smooth boundary the last number stays constant, and the
+first falls like `eps`; for basins that are intermingled at every point all three would stay constant as `eps` goes to
+0. The basin of an attracting cycle is open, so for cycles the first number tends to 0: the measurement shows how fast.
 
 The dimension of a basin boundary is measured by the uncertainty exponent. Two starts at a distance `eps` have different
 fates with probability `f(eps) ~ eps**a`, and the boundary has dimension `2 - a` [McDonaldGrebogiOttYorke1985]. The same
-starts serve all distances, so the error comes from resampling starts, not from a fit that takes distances for
-independent.
+starts are used at all distances, so their counts are not independent, and the error comes from resampling the starts.
 """
 
 from collections.abc import Sequence
@@ -41,7 +40,7 @@ PIECE = 1 << 16  # particles at a time
 
 
 class Window(NamedTuple):
-    """A rectangle of phase space; the ends of `s` may lie beyond a turn of the boundary."""
+    """A rectangle of phase space; its range of `s` may extend beyond one turn of the boundary."""
 
     s: tuple[float, float]
     sin_phi: tuple[float, float]
@@ -58,7 +57,7 @@ def whole(map: PinballMap) -> Window:
 
 
 def starts_at(map: PinballMap, s: ArrayLike, sin_phi: ArrayLike) -> PhasePoints:
-    """The particles at these coordinates; beyond grazing, `|sin(phi)| > 1`, the angle is mirrored back.
+    """The particles at these coordinates; for `|sin(phi)| > 1`, which is beyond grazing, the angle is reflected back.
 
     >>> particle = starts_at(PinballMap("cardioid"), [2.0], [0.5])
     >>> [round(float(x[0]), 6) for x in (particle.theta, particle.phi)]
@@ -79,9 +78,9 @@ def labels(
 ) -> Labels:
     """The index of the attractor that each particle reaches, of those known; -1 where it reaches none of them.
 
-    A particle within reach of a cycle has its label, most of them after few bounces; after `transient` bounces so has
-    one on the cloud of a chaotic attractor. With `sure`, particles on a cloud go on as long as any of them leaves it
-    for a cycle.
+    A particle gets the label of a cycle as soon as it is within the cycle's `reach`. A particle that is near the points
+    of a chaotic attractor after `transient` bounces gets that label. With `sure`, such particles are advanced further
+    as long as any of them still goes to a cycle.
 
     >>> from numeric.dynamics.attractors import find
     >>> map = PinballMap("cuspless", lam="0.09")
@@ -147,7 +146,7 @@ def classify_cells(map: PinballMap, grid: PhaseGrid, transient: int = TRANSIENT)
 
 
 def image_cells(map: PinballMap, grid: PhaseGrid, symmetry: "TableSymmetry") -> Labels | None:
-    """The index of the cell to which a symmetry takes each cell; None where it does not take middles to middles.
+    """The index of the cell to which a symmetry takes each cell; None if it does not map centres of cells to centres.
 
     >>> from numeric.pinball.sampling import phase_grid
     >>> map = PinballMap("cuspless")
@@ -249,9 +248,10 @@ NEWTON = 12  # steps, which double the digits
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """How many pairs have different fates at each distance; the power law fitted to it from `smallest` to `largest`.
+    """The numbers of pairs with different fates at each distance, and the power law fitted from `smallest` to
+    `largest`.
 
-    `curvature` is the change of the local exponent per decade with its error: 0 for a power law.
+    `curvature` is the change of the local exponent per decade, with its error; for a power law it is 0.
     """
 
     distances: Array
@@ -303,7 +303,8 @@ def uncertainty(
 
 
 def fitted(distances: Array, different: NDArray[np.bool_], rng: np.random.Generator) -> Uncertainty:
-    """The power law through the shares of differing pairs; distances along the rows.
+    """The power law fitted to the shares of pairs with different fates; rows of `different` are distances, columns
+    starts.
 
     >>> rng = np.random.default_rng(0)
     >>> eps = np.array([0.1, 0.01, 0.001])
@@ -325,10 +326,11 @@ def fitted(distances: Array, different: NDArray[np.bool_], rng: np.random.Genera
 
 
 def power_laws(x: Array, counts: NDArray[np.int64], of: int) -> list[tuple[float, float]]:
-    """Slope of `log f` against `x = log eps`, and its change per decade, for each row of counts; `f = counts/of`.
+    """For each row of counts, the slope of `log f` against `x = log eps` with `f = counts/of`, and its change per
+    decade.
 
-    The most likely power law for binomial counts, by Newton's method, which gives small counts their proper weight.
-    A fit of logarithms of counts without the small ones makes the slope too small by a third of its error.
+    The fit is the most likely power law for binomial counts, by Newton's method, which gives small counts their proper
+    weight. A fit of logarithms that omits small counts makes the slope too small by a third of its error.
     """
     slopes = _most_likely(x, counts, of, 1)[:, 0]
     decade, curved = 2 * elementary.log(10), x.size > 2

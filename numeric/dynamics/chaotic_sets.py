@@ -1,17 +1,18 @@
-"""Which orbits lie on one chaotic set: compared at several resolutions, over several lengths, and under symmetries.
+"""Which orbits lie on the same chaotic set: compared at several resolutions, over several lengths, and under
+symmetries.
 
 Space, with coordinates `x`, `y` (over a quarter of the perimeter) and `sin(phi)`, is cut into cells of side
-`2**-level`. An orbit *recurs* at a level when the part `RECURS` of one of its quarters lies in cells of the quarter
-before. Two orbits are compared at the finest level at which both recur: how often a quarter of one falls into cells of
-the other, against how often it falls into those of the quarter before. On one set the ratio is at least near 1; on two
-sets it tends to 0, also where they touch. Orbits are joined, also through others, where the ratio is at least `JOINED`;
-a ratio between `APART` and `JOINED` decides nothing. The image of an orbit under a symmetry of the table lies on one
-set too: sets that share an image are one.
+`2**-level`. An orbit is cut into quarters. It *recurs* at a level when at least the share `RECURS` of a quarter lies in
+cells that the quarter before has visited. Two orbits are compared at the finest level at which both recur: the share of
+a quarter that lies in cells of the other orbit is divided by the share that lies in cells of the quarter before. On one
+set this ratio is near 1 or larger; for two sets it tends to 0, even if they touch. Two orbits are joined where the
+ratio is at least `JOINED`, or where a chain of such pairs links them. A ratio between `APART` and `JOINED` decides
+nothing. An orbit's image under a symmetry of the table lies on a single set too, so sets that share an image are one.
 
-All is repeated with orbits four times as long until two lengths in turn give the same sets, every ratio decides, and
-orbits no longer spread: then the cells visited do not depend on time. Sets that are not distinguished in this way are
-given as one, with the reason. At `lam = 1` orbits stick for long times, and as long as most orbits of a set spread, no
-sets are distinguished.
+The comparison is repeated with orbits four times as long until two successive lengths give the same sets, every ratio
+decides, and orbits no longer spread: then the cells visited do not depend on time. Sets that cannot be distinguished in
+this way are listed as one, with the reason. At `lam = 1` orbits stick for long times, and as long as most orbits of a
+set spread, no sets are distinguished.
 """
 
 from collections.abc import Sequence
@@ -43,10 +44,11 @@ FEWEST = 64  # of each image
 
 
 class Gathered(NamedTuple):
-    """Indices of the compared particles, the set of each, the set of each set known before, all sets, and doubts.
+    """The chaotic sets of a few orbits: `looked` has the indices of the particles, and `member` the set of each.
 
-    Known sets come first, with points of new orbits added; if two of them turn out to be the same, both have the index
-    of the earlier one. A doubt is the reason why a set may be several sets; it is empty if there is none.
+    `known[i]` is the set to which the `i`-th set known before belongs. In `sets` the known ones come first, with points
+    of new orbits added; if two of them turn out to be the same, both have the index of the earlier one. The doubt of a
+    set is the reason why it may be several sets; it is empty if there is no such reason.
     """
 
     looked: Labels
@@ -94,7 +96,8 @@ def gathered(map: PinballMap, particles: PhasePoints, known: Sequence[PhasePoint
 
 
 def drawn(size: int, count: int) -> Labels:
-    """`count` of the indices below `size`, at random: regular steps could miss pieces that are visited in turn.
+    """`count` of the indices below `size`, drawn at random: regular steps could miss pieces that are visited
+    periodically.
 
     >>> drawn(5, 9).tolist()
     [0, 1, 2, 3, 4]
@@ -103,7 +106,10 @@ def drawn(size: int, count: int) -> Labels:
 
 
 class SetLabels(NamedTuple):
-    """The set of each orbit if ratios from `JOINED` on join orbits, or from `APART` on; and which orbits spread."""
+    """The set of each orbit, if ratios from `JOINED` on join orbits, and `coarser`, if ratios from `APART` on do.
+
+    `spreads` tells which orbits still spread.
+    """
 
     group: Labels
     coarser: Labels
@@ -111,7 +117,7 @@ class SetLabels(NamedTuple):
 
     @property
     def decided(self) -> bool:
-        """Do all ratios agree, and is there one set only, or none that consists mostly of orbits that spread?"""
+        """Do both thresholds give the same sets, and is there one set only, or no set whose orbits mostly spread?"""
         whole = self.group.max() == 0
         return np.array_equal(self.group, self.coarser) and (bool(whole) or not np.any(self.spreading()))
 
@@ -121,7 +127,8 @@ class SetLabels(NamedTuple):
 
 
 def with_doubts(found: SetLabels, before: Labels, elastic: bool = False) -> tuple[Labels, list[str]]:
-    """The sets, with indistinguishable ones joined, and for each the reason why it may be several; empty if none.
+    """The set of each orbit, where undistinguished sets are joined, and for each set why it may be several (empty if
+    not).
 
     >>> one, two, calm = np.array([0, 0, 1]), np.array([0, 1, 2]), np.zeros(3, dtype=bool)
     >>> with_doubts(SetLabels(one, one, calm), two)[1], with_doubts(SetLabels(two, one, calm), two)[1]
@@ -144,7 +151,7 @@ def with_doubts(found: SetLabels, before: Labels, elastic: bool = False) -> tupl
 
 
 def coarsest(*labels: Labels) -> Labels:
-    """The finest partition that keeps together whatever one of the given partitions keeps together.
+    """The finest partition that is coarser than each of the given partitions.
 
     >>> coarsest(np.array([0, 0, 1, 2]), np.array([0, 1, 1, 3])).tolist()
     [0, 0, 0, 1]
@@ -153,7 +160,7 @@ def coarsest(*labels: Labels) -> Labels:
 
 
 def linked(near: NDArray[np.bool_]) -> Labels:
-    """The set of each orbit, numbered from 0, when orbits that are `near` each other, also through others, are joined.
+    """The set of each orbit, numbered from 0: the connected components of the relation `near`.
 
     >>> linked(np.array([[True, False, True], [False, True, False], [False, False, True]])).tolist()
     [0, 1, 0]
@@ -165,7 +172,7 @@ def linked(near: NDArray[np.bool_]) -> Labels:
 
 
 def divided(map: PinballMap, along: PhasePoints) -> SetLabels:
-    """The sets on which orbits lie, particles along the first axis and bounces along the second."""
+    """The sets on which orbits lie; in `along`, particles run along the first axis and bounces along the second."""
     owners, bounces = along.theta.shape
     first = np.min(embedded(map, phase_points(along.theta.ravel(), along.phi.ravel(), along.component.ravel())), axis=0)
     corner, size = np.array([*first[:2], -1.0]), map.arclength.perimeter / map.states.size / 4
@@ -192,7 +199,7 @@ def divided(map: PinballMap, along: PhasePoints) -> SetLabels:
 
 
 def _together(on: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """For each two orbits: do they share an image? Images run along the rows of `on`."""
+    """For each pair of orbits: is there an image close to both? Images run along the rows of `on`."""
     return np.asarray(on.T.astype(float) @ on.astype(float) > 0)
 
 
@@ -212,9 +219,10 @@ def codes(*places: Labels) -> Labels:
 
 
 def finest(early: Labels, late: Labels) -> Labels:
-    """The finest level at which each point of `late` lies in a cell of one of `early`, both as sorted codes.
+    """The finest level at which each point of `late` lies in a cell of one of `early`, where both are sorted codes (see
+    `codes`).
 
-    Codes of one cell are neighbours: the longest beginning in common is with the one before or the one after.
+    Codes of one cell are consecutive, so only the code before and the one after can share the longest prefix.
 
     >>> finest(np.array([0, 64]), np.array([0, 7, 8])).tolist()
     [18, 17, 16]
@@ -225,8 +233,10 @@ def finest(early: Labels, late: Labels) -> Labels:
 
 
 class RecurrenceLevels(NamedTuple):
-    """For each orbit: the finest level at which it recurs; by level, the largest share of a quarter in cells of the
-    quarter before; and whether it spreads: neighbouring quarters still share more than the first and the last.
+    """How orbits recur: `level` is the finest level at which each orbit does.
+
+    `own` has, by level, the largest share of a quarter that lies in cells of the quarter before. An orbit `spreads` if
+    neighbouring quarters still have clearly more in common than the first and the last.
     """
 
     level: Labels
@@ -235,7 +245,7 @@ class RecurrenceLevels(NamedTuple):
 
 
 def _recurrence(quarters: Labels) -> tuple[int, Array, bool]:
-    """The entries of `RecurrenceLevels` for one orbit, from sorted codes of its quarters."""
+    """The level, shares and spreading of one orbit, as in `RecurrenceLevels`, from sorted codes of its quarters."""
     early, late = (0, 1, 2, 0), (1, 2, 3, 3)
     met = [finest(quarters[i], quarters[k]) for i, k in zip(early, late, strict=True)]
     shares = np.array([[float(np.mean(each >= level)) for level in range(FINEST + 1)] for each in met])
@@ -245,9 +255,11 @@ def _recurrence(quarters: Labels) -> tuple[int, Array, bool]:
 
 
 def ratios(here: Labels, points: Labels, of: Labels, recurring: RecurrenceLevels) -> Array:
-    """For each row of points and each orbit: how often the points lie in the orbit's cells, against its own quarters.
+    """For each row of points and each orbit: the share of points in the orbit's cells, divided by what an orbit itself
+    has.
 
-    Row `i` belongs to orbit `of[i]` or its image; the smaller of both orbits' own shares is taken. Rows are sorted.
+    Row `i` belongs to orbit `of[i]` or to its image. The divisor is the share that a quarter has in the cells of the
+    quarter before; of the values of both orbits the smaller is taken. Rows are sorted.
     """
     found, level = np.zeros((len(points), len(here))), recurring.level
     for one in np.unique(level):
@@ -261,7 +273,7 @@ def ratios(here: Labels, points: Labels, of: Labels, recurring: RecurrenceLevels
 
 
 def visits(first: Labels, points: Labels) -> Array:
-    """The share of each row's points that lie in cells of each row of `first`; fast where rows are sorted."""
+    """For each two rows, the share of the points in a row of `points` that lie in cells of a row of `first`."""
     from scipy.sparse import coo_array
 
     names = np.sort(first, axis=None)

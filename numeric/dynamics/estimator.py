@@ -1,9 +1,10 @@
-"""The estimator of exponents that all commands share: growth block by block, error bars, and bias from the start.
+"""The estimator of exponents that all commands share: growth in blocks of bounces, error bars, and the bias of the
+start.
 
-Vectors turn to the direction of growth before anything is counted (`Growth.settle`), and their remaining angle to it is
-included in the error. The paper (appendix A.2) counts with two vectors, after [DellagoPoschHoover1996]; here one vector
-and the determinant suffice. In a polygon angles contract by `lam` at each bounce, so that `nu_minus` is `log(lam)`
-exactly, and `nu_plus` is the rest of the determinant's rate.
+Vectors turn to the direction of growth before anything is counted (`Growth.settle`); the angle that remains is included
+in the error. The paper (appendix A.2) follows two vectors, after [DellagoPoschHoover1996]; here one vector and the
+determinant suffice. In a polygon angles contract by `lam` at each bounce, so that `nu_minus` is exactly `log(lam)`, and
+`nu_plus` is the logarithm of the determinant per bounce, less `log(lam)`.
 """
 
 from collections.abc import Iterator
@@ -64,8 +65,8 @@ class Count:
     """Growth per bounce along orbits, with blocks of bounces on the first axis and particles on the second.
 
     A block is one bounce at first; when there are `most` blocks, neighbours are merged in pairs. So there is an
-    estimate at every moment, and a run of any length fits in memory. For a run of `long` bounces blocks have their
-    final length from the beginning, unless an interruption would have to wait for it.
+    estimate at any time, and a run of any length fits in memory. If the run is known to be `long` bounces, blocks have
+    their final length from the beginning, unless a block would take so long that Ctrl-C is heard late.
     """
 
     def __init__(self, growth: Growth, most: int = MOST, long: int = 0) -> None:
@@ -106,8 +107,8 @@ class Count:
     def measured(self, members: Labels, blocks: int | None = None) -> ExponentEstimates:
         """The exponents of the particles `members`, from all blocks or from the first `blocks`.
 
-        A vector at a small angle to the direction of growth, as `Growth.settle` leaves it, gains or loses about that
-        angle while it turns there: divided by the bounces counted, this is a part of the error.
+        `Growth.settle` leaves a vector at a small angle to the direction of growth. While the vector turns to that
+        direction, it gains or loses about this angle; divided by the bounces counted, this is a part of the error.
         """
         plus = self.up[:blocks, members]
         contraction = self.growth.contraction[members]
@@ -125,7 +126,7 @@ class Count:
 
 
 def arrived(map: PinballMap, starts: Starts) -> Growth:
-    """The state of particles at their starts; at `lam = 0` at their first landing, as the slap map forgets `phi`."""
+    """The state of particles at their starts; at `lam = 0` at their first landing, since the map then forgets `phi`."""
     if map.law == "slap":
         landed = map.step(starts.theta, starts.phi, starts.component)
         return Growth(map, landed.theta, 0.0 * landed.phi, landed.component)
@@ -133,7 +134,7 @@ def arrived(map: PinballMap, starts: Starts) -> Growth:
 
 
 def skipped(growth: Growth, bounces: int) -> None:
-    """Moves particles by `bounces` without counting, about a second's work at a time, so that Ctrl-C is heard."""
+    """Moves particles by `bounces` without counting, about a second's work at a time, so that Ctrl-C can interrupt."""
     piece = max(1, HEARD // growth.theta.size)
     for done in range(0, bounces, piece):
         growth.skip(min(piece, bounces - done))
@@ -144,7 +145,8 @@ def measured_on(
 ) -> ExponentEstimates:
     """The exponents over the particles of an attractor, from all blocks or from the first few.
 
-    On a neutral set vectors grow like a power of time, so an exponent of 0 is measured as `log(n)/n`: the error has it.
+    On a neutral set vectors grow like a power of time, so an exponent of 0 is measured as about `log(n)/n`; the error
+    includes this difference.
 
     >>> from numeric.dynamics.exponents import surveyed
     >>> from numeric.pinball.sampling import interior_starts
@@ -186,6 +188,6 @@ def mean_flight(map: PinballMap, particles: PhasePoints, bounces: int) -> Estima
 
 
 def per_time(exponent: Estimate, flight: Estimate) -> tuple[float, float]:
-    """An exponent per bounce over the mean flight: per unit of time at speed 1, with its standard error."""
+    """An exponent per unit of time at speed 1, with its standard error: that per bounce over the mean flight."""
     rate = exponent.mean / flight.mean
     return rate, float(np.hypot(exponent.error, rate * flight.error) / flight.mean)

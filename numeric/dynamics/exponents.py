@@ -34,7 +34,9 @@ def nothing(_: float) -> None:
 
 
 class Group(NamedTuple):
-    """Particles that share an attractor (None: they do not stay on one), and the exponents found along them."""
+    """The indices of particles that share an attractor, and their exponents; `attractor` is None if they do not stay on
+    one.
+    """
 
     kind: str
     attractor: Attractor | None
@@ -44,7 +46,10 @@ class Group(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """The groups of particles, largest first, the count on which they rest, the bounces before it and why it ended."""
+    """The groups of particles, largest first, and the `count` from which their exponents come.
+
+    `transient` is the number of bounces before the count, and `ended` says why the count ended.
+    """
 
     groups: tuple[Group, ...]
     count: Count
@@ -53,7 +58,7 @@ class Survey:
 
     @property
     def error(self) -> float:
-        """The largest standard error of an exponent, without cycles, whose exponents come from their multipliers."""
+        """The largest standard error of an exponent, except those of cycles, which come from their multipliers."""
         sampled = [g for g in self.groups if g.attractor is None or g.attractor.kind is not Kind.CYCLE]
         return worst(tuple(group.measured for group in sampled))
 
@@ -75,8 +80,8 @@ def surveyed(
 ) -> Survey:
     """The exponents along orbits from `starts`, by attractor. Paper: appendix; figures in sections 4.1 and 5.3.
 
-    With `until` the count goes on, twice as long each time, until every error is at most that, or until `budget`
-    bounces, of all particles together, are spent. `say` is called with the fraction of the work that is done.
+    With `until`, the count goes on, twice as long each time, until every error is at most `until`, or until `budget`
+    bounces, of all particles together, are made. `say` is called with the fraction of the work that is done.
 
     >>> from numeric.pinball.sampling import interior_starts
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
@@ -126,9 +131,11 @@ def with_families(map: PinballMap, survey: Survey) -> Survey:
 
 
 def _settled(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> tuple[Labels, int]:
-    """Each particle's label, the index of the cycle that it has come near or else of its class; and the bounces made.
+    """The label of each particle, and the number of bounces made: the cycle that the particle has reached, or its
+    class.
 
-    After a long chaotic transient rounding decides which of several cycles a particle reaches: where it is now counts.
+    After a long chaotic transient rounding decides which of several cycles a particle reaches. So the label tells where
+    the particle is now, not where the classification found it.
     """
     waited = 0
     cyclic = np.isin(classified.label, [i for i, a in enumerate(classified.attractors) if a.kind is Kind.CYCLE])
@@ -151,7 +158,7 @@ def _sorted(label: Labels) -> list[tuple[int, Labels]]:
 
 
 def _groups(map: PinballMap, count: Count, classified: Classified) -> tuple[Group, ...]:
-    """The groups of particles after the count; those on a cycle that is not their label's form a group of their own."""
+    """The groups of particles after the count. Those now on another cycle than their label's form one more group."""
     caught = _caught(map, count.growth, classified)
     cycle = np.array([a.kind is Kind.CYCLE for a in classified.attractors] + [False])
     changed = (caught != classified.label) & (cycle[caught] | cycle[classified.label]) & (count.growth.code == 0)
@@ -182,7 +189,7 @@ def _kind(index: int, attractor: Attractor | None) -> str:
 
 
 def _remembering(map: PinballMap, count: Count, members: Labels, found: ExponentEstimates) -> ExponentEstimates:
-    """`found` with its naive error (for independent bounces), from the growth of single bounces of a few particles."""
+    """`found` completed by its naive error, as if bounces were independent, from single bounces of a few particles."""
     few, end = members[:WATCHED], count.growth
     watched = Growth(map.at(end.lam[few]), end.theta[few], end.phi[few], end.component[few])
     watched.settle(ALIGNED)
@@ -221,13 +228,15 @@ def angles(map: PinballMap, particles: PhasePoints, bounces: int, transient: int
 
 
 def _adjugate(slope: Array) -> Array:
-    """The inverse matrices up to a factor; without LAPACK, whose last bit depends on the processor."""
+    """The adjugates, inverses up to a factor; without LAPACK, whose last bit depends on the processor."""
     (a, b), (c, d) = np.moveaxis(slope, (-2, -1), (0, 1))
     return np.moveaxis(np.array([[d, -b], [-c, a]]), (0, 1), (-2, -1))
 
 
 def _carried(slopes: Array, vector: Array) -> Array:
-    """A vector carried along each orbit by the matrices `slopes` and normalised: at the start and after each step."""
+    """The images of a vector along each orbit under the matrices `slopes`, normalised: at the start and after each
+    step.
+    """
     here = np.broadcast_to(vector, (slopes[0].shape[0], 2))
     rows = [here]
     for slope in slopes:
@@ -238,7 +247,7 @@ def _carried(slopes: Array, vector: Array) -> Array:
 
 
 def slopes(map: PinballMap, count: int, seed: int, bounces: int = 600) -> tuple[Array, Array, Array]:
-    """Arc length, exit angle and the slope `dphi/ds` of the expanded direction, at points of random orbits."""
+    """The arc length, the exit angle, and the slope `dphi/ds` of the expanded direction, at points of random orbits."""
     starts = interior_starts(map, count, seed)
     begin = advanced(map, PhasePoints(*starts[:3]), 1000).points
     orbit = map.orbit(begin.theta, begin.phi, bounces, begin.component)
@@ -250,7 +259,7 @@ def slopes(map: PinballMap, count: int, seed: int, bounces: int = 600) -> tuple[
 
 
 def jump(s: Array, phi: Array, slope: Array, place: float, width: float = 0.01, near: float = 0.003) -> float:
-    """The median difference of slopes right and left of a place of the boundary, at nearly equal exit angles.
+    """The median difference of slopes right and left of the boundary point `place`, at nearly equal exit angles.
 
     >>> s, phi = np.array([-0.001, 0.001]), np.zeros(2)
     >>> jump(s, phi, np.array([1.0, 3.0]), 0.0)

@@ -1,4 +1,4 @@
-"""Arrays of phase points: moved along orbits, and embedded in a space in which distances are measured."""
+"""Arrays of phase points, which can be advanced along orbits, and embedded in a space with a distance."""
 
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ class PhasePoints(NamedTuple):
         return PhasePoints(self.component[which], self.theta[which], self.phi[which])
 
     def turned(self, bounces: int) -> "PhasePoints":
-        """The points rotated by `bounces` places: the same cycle from a later bounce on."""
+        """The points of a cycle in order, from its bounce number `bounces` on."""
         return PhasePoints(*(np.roll(row, -bounces) for row in self))  # type: ignore[arg-type]  # rows keep their kinds
 
     @property
@@ -34,7 +34,7 @@ class PhasePoints(NamedTuple):
 
 
 class Advanced(NamedTuple):
-    """Particles after some bounces, and the code of the outcome that stopped each: 0 for none, see `numeric.Status`."""
+    """Particles after some bounces, and for each the code of the outcome that stopped it (`numeric.Status`), or 0."""
 
     points: PhasePoints
     code: NDArray[np.int64]
@@ -57,7 +57,7 @@ def together(*parts: PhasePoints) -> PhasePoints:
 
 
 def advanced(map: PinballMap, particles: PhasePoints, bounces: int) -> Advanced:
-    """The particles after `bounces` bounces; nothing is recorded on the way."""
+    """The particles after `bounces` bounces, of which none is recorded."""
     if particles.size == 0 or bounces < 1:
         return Advanced(particles, np.zeros(particles.size, dtype=np.int64))
     growth = Growth(map, particles.theta, particles.phi, particles.component)
@@ -66,7 +66,7 @@ def advanced(map: PinballMap, particles: PhasePoints, bounces: int) -> Advanced:
 
 
 def embedded(map: PinballMap, particles: PhasePoints) -> Array:
-    """Rows `x, y, sin(phi)` for distances, with `x, y` in units of the table's size: no coordinate jumps like an angle.
+    """Rows `x, y, sin(phi)` in units of the table's size: coordinates for distances, without the jump of an angle.
 
     >>> embedded(PinballMap("circle"), phase_points([0.0], [0.0])).tolist()
     [[1.0, 0.0, 0.0]]

@@ -1,8 +1,8 @@
-"""Attractors: their kinds and data, the polishing of cycles, and the recognition of the one that a particle is on.
+"""Attractors: their kinds and data, the refinement of cycles, and the recognition of the one that a particle is on.
 
-A cycle is polished in float64 by multiple shooting: all bounces are unknowns at once, so that errors do not multiply
-along the cycle, and one of period 256 next to the accumulation of period doublings is distinguished from one of 128.
-For digits and proofs there is the chord system (`verification.cycles`).
+A cycle is refined in float64 by multiple shooting: all bounces are unknowns at once, so that errors do not multiply
+along the cycle. So a cycle of period 256 can be told from one of 128 close to the accumulation point of period
+doublings. For more digits, and for proofs, see the chord system in `verification.cycles`.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,7 +33,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Share:
-    """A share of the starts: how many they are, and the 95 per cent interval of the true share."""
+    """A share of the starts: the number of starts in it, and the 95 per cent interval of the true share."""
 
     count: int
     of: int
@@ -49,8 +49,8 @@ class Attractor:
     `reach` is the distance in `(x, y, sin(phi))` within which particles are taken to be caught, or to be on a chaotic
     set: sampled, not proved. `stay` is a lower bound, with 95 per cent confidence, of the mean number of bounces before
     a particle leaves a chaotic attractor: no observed particle left. `family` is one number for attractors that are
-    symmetry images of each other; `symmetry` is the attractor's own group, such as `D1`. `doubt` says why what is
-    listed as one chaotic set may be several; it is empty where it is one.
+    symmetry images of each other; `symmetry` is the attractor's own group, such as `D1`. `doubt` is the reason why a
+    chaotic attractor may be several sets; it is empty if there is no such reason.
     """
 
     kind: Kind
@@ -88,7 +88,7 @@ SAME = 1e-7  # a cycle whose points return earlier within this distance has a sh
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A cycle's bounces in order, from the one that comes first in `(component, theta)`, and both multipliers."""
+    """The bounces of a cycle in order, from the first one by `(component, theta)`, and both multipliers."""
 
     points: PhasePoints
     multipliers: tuple[complex, complex]
@@ -108,7 +108,7 @@ class Cycle:
 
 
 def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
-    """The cycle whose bounces lie near the given ones, in order; None when Newton's method does not settle there.
+    """The cycle with bounces near the given ones, in order; None if Newton's method does not converge near them.
 
     >>> axis = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points([1.5, -1.6], [0.01, 0.0]))
     >>> axis.period, axis.points.theta.round(12).tolist()
@@ -140,8 +140,8 @@ def polished(map: PinballMap, near: PhasePoints) -> Cycle | None:
 def round_the_cycle(slopes: Array, right: Array) -> Array:
     """The vectors `d` with `slopes[i] @ d[i] - d[i + 1] = right[i]`, where the last is followed by the first.
 
-    Unknowns are ordered from both ends of the ring, so that the matrix is a band and the work grows like the period.
-    `LinAlgError` where it is singular.
+    Unknowns are ordered from both ends of the ring, so that the matrix is a band and the work grows like the period. It
+    raises `LinAlgError` if the matrix is singular.
 
     >>> round_the_cycle(np.array([[[3.0, 0.0], [0.0, 0.5]]] * 2), np.array([[1.0, 1.0], [5.0, 1.0]])).tolist()
     [[1.0, -2.0], [2.0, -2.0]]
@@ -184,7 +184,8 @@ def multipliers(map: PinballMap, cycle: PhasePoints) -> tuple[complex, complex]:
 
 
 def eigenvalues(slopes: Array) -> tuple[complex, complex]:
-    """The eigenvalues of the product of the matrices, the larger first, from its trace and the determinants' product.
+    """The eigenvalues of the product of the matrices, the larger first, from its trace and from the product of
+    determinants.
 
     >>> [mu.real for mu in eigenvalues(np.array([[[2.0, 0.0], [0.0, 1.0]], [[4.0, 0.0], [0.0, 0.5]]]))]
     [8.0, 0.5]
@@ -206,7 +207,7 @@ def eigenvalues(slopes: Array) -> tuple[complex, complex]:
 
 
 def determinants(slopes: Array) -> Array:
-    """Determinants of 2 by 2 matrices, without LAPACK, whose last bit depends on the processor."""
+    """The determinants of 2 by 2 matrices. LAPACK is not used, as its last bit depends on the processor."""
     return np.asarray(slopes[..., 0, 0] * slopes[..., 1, 1] - slopes[..., 0, 1] * slopes[..., 1, 0])
 
 
@@ -219,16 +220,16 @@ def by_parameter(map: PinballMap, here: PhasePoints, after: PhasePoints) -> Arra
 
 
 def gap(map: PinballMap, left: Array, right: Array) -> Array:
-    """The difference of parameters, `left - right`; the short way round on a table of one closed component."""
+    """The difference of parameters, `left - right`; modulo a whole turn on a table of one closed component."""
     if len(map.states.ends) > 1:
         return left - right
     return np.asarray(np.remainder(left - right + np.pi, 2 * np.pi) - np.pi)
 
 
 def beyond(map: PinballMap, image: Orbit, after: PhasePoints) -> Array:
-    """How far images lie beyond the phase points `after`, in the parameter; nan where a corner lies between.
+    """The parameter of the images minus that of the phase points `after`; nan where a corner lies between the two.
 
-    Across a smooth join the difference is taken along the tangent; it is exact where it is 0.
+    Across a smooth join the difference is measured along the tangent; there it is exact only where it is 0.
     """
     found, other = gap(map, image.theta, after.theta), image.component != after.component
     if np.any(other):
@@ -268,7 +269,7 @@ VOTES = 16  # bounces that decide on which cloud a particle is
 
 
 def same(map: PinballMap, old: Attractor, new: Attractor) -> bool:
-    """Are two attractors the same cycle, the same neutral family, or the same way to stop?"""
+    """Are two attractors the same cycle, the same neutral family, or the same outcome that stops particles?"""
     if (old.kind, old.period, old.status) != (new.kind, new.period, new.status):
         return False
     if old.kind is not Kind.CYCLE:
@@ -327,7 +328,7 @@ def clouds(map: PinballMap, attractors: Sequence[Attractor]) -> Callable[[PhaseP
 
 
 def spacing(map: PinballMap, points: PhasePoints) -> float:
-    """The distance within which nearly every further point of the same cloud has a neighbour in it."""
+    """The distance within which nearly every further point of a chaotic attractor has a neighbour among `points`."""
     place = embedded(map, points)
     distance = tree_of(place[::2]).query(place[1::2])[0]
     return float(min(max(2 * np.quantile(distance, 0.999), SAME_POINT), NEAR))
@@ -353,7 +354,7 @@ def majority(votes: Labels) -> Labels:
 
 
 def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_]) -> list[Attractor]:
-    """The attracting or neutral cycles on which some particles are, or which some in the mask `calm` approach."""
+    """The attracting or neutral cycles on which a particle is, or which a particle in the mask `calm` approaches."""
     if particles.size == 0:
         return []
     orbit = map.orbit(particles.theta, particles.phi, LONGEST, particles.component)
@@ -373,7 +374,10 @@ def recognised(map: PinballMap, particles: PhasePoints, calm: NDArray[np.bool_])
 
 
 def _period(gaps: Array, loose: float) -> int:
-    """The number of bounces until a particle returns (within `RETURN`), or comes nearest, if within `loose`; else 0."""
+    """The number of bounces after which a particle first returns within `RETURN`, or comes nearest to its start.
+
+    The second counts only if the distance is below `loose`; otherwise the result is 0.
+    """
     back = np.nonzero(gaps < RETURN)[0]
     if back.size:
         return int(back[0]) + 1
@@ -386,7 +390,9 @@ def _at(map: PinballMap, attractor: Attractor, point: Array) -> bool:
 
 
 def _attractor(map: PinballMap, points: PhasePoints, miss: float) -> Attractor | None:
-    """The attracting or neutral cycle that runs near the points, which return with a gap of `miss`."""
+    """The attracting or neutral cycle near these points, whose orbit returns with a gap of `miss`; None if there is
+    none.
+    """
     if miss < RETURN and abs(abs(multipliers(map, points)[0]) - 1) < UNIT:
         larger, smaller = multipliers(map, points)
         with np.errstate(divide="ignore"):
@@ -400,7 +406,8 @@ def _attractor(map: PinballMap, points: PhasePoints, miss: float) -> Attractor |
 
 
 def reach(map: PinballMap, cycle: Cycle, seed: int = 0) -> float:
-    """The largest tried radius from which sampled particles all come ten times nearer to the cycle, or the least one.
+    """The largest tried radius from which all sampled particles come ten times nearer to the cycle; else the least
+    tried.
 
     >>> from numeric.dynamics.phase_points import phase_points
     >>> cycle = polished(PinballMap("ellipse", a=2, lam="0.5"), phase_points([1.5, -1.6], 0.0))

@@ -1,10 +1,10 @@
 """Error bars of time averages: batch means over orbits and blocks, with batches longer than the memory of an orbit.
 
-Blocks of an orbit depend on each other, so that their standard deviation over the square root of their number is wrong
-by an unknown factor. Neighbouring blocks are merged two by two [FlyvbjergPetersen1989] until only as many batches are
-left as an error bar needs, and further while neighbours are seen to be correlated; the remaining correlation is
-corrected with the autocorrelation time. The last level has one batch for each orbit: orbits start independently, so
-that its error is right however long the memory.
+Blocks of an orbit depend on each other, so their standard deviation over the square root of their number is no valid
+standard error. Neighbouring blocks are merged two by two [FlyvbjergPetersen1989] until only as many batches are left as
+an error bar needs, and further while neighbours are seen to be correlated; the remaining correlation is corrected with
+the autocorrelation time. The last level has one batch for each orbit: orbits start independently, so that its error is
+right however long the correlations last.
 """
 
 from dataclasses import dataclass
@@ -24,9 +24,9 @@ SHORTEST = 32  # steps to sum over at least
 
 @dataclass(frozen=True)
 class Batches:
-    """Batches of one size: blocks per batch, number of batches, the standard error from them, their correlation.
+    """Batches of equal size: blocks per batch, number of batches, the standard error from them, and their correlation.
 
-    `score` is the correlation of neighbours in units of its own standard deviation, were they independent.
+    `score` is the correlation of neighbours, divided by the standard deviation that it has for independent batches.
     """
 
     batch: int
@@ -82,7 +82,7 @@ class Estimate:
 
 
 def _without_skewness(t: float, skewness: float) -> float:
-    """The `t` at which Hall's polynomial for a mean of this skewness takes the given value."""
+    """The value of `t` at which Hall's polynomial, for a mean of this skewness, equals the given `t`."""
     if abs(skewness) < 1e-6:  # the limit
         return t
     cube = 1 + skewness * (t - skewness / 6)

@@ -1,4 +1,4 @@
-"""Images of phase points under the symmetries of a table, and which of these take orbits to orbits."""
+"""Images of phase points under the symmetries of a table, and the symmetries that take orbits to orbits."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -31,7 +31,7 @@ def moved(symmetry: "TableSymmetry", particles: PhasePoints) -> PhasePoints:
 
 
 def kept_by(law: "Law", symmetry: "TableSymmetry") -> bool:
-    """Does a symmetry take orbits to orbits? It does if the law is the same everywhere and, for a mirror, odd."""
+    """Does a symmetry take orbits to orbits? It does if the law is the same everywhere and, for reflections, odd."""
     return law.uniform or is_identity(symmetry) or (not law.placed and (symmetry.sign == 1 or law.odd))
 
 

@@ -1,11 +1,11 @@
 """The cardioid: the far end of a flight is a zero of a cubic, in an interval that one sign determines.
 
-State: `sigma = exp(i*theta/2)` and `exp(i*phi)`; the tangent is `i*sigma**3`, so no frame needs a
-root. With `k = sin(theta0/2 - phi)` the particle passes the cusp at the distance `2*cos(theta0/2)**2*|k|`.
-Seen from the cusp its polar angle falls (`k > 0`) or grows towards the direction `psi` of `v`, and it
-stays inside until it lands; the line behind the particle fills the angles beyond `psi - pi`. So of the
-zeros in `S = cos(theta0/2)*tan(theta1/2)` exactly one lies between `theta0` and `psi`: between two
-more the arc would have to bulge inwards. Paper: section 4; [BackerDullin1997].
+The state is `sigma = exp(i*theta/2)` and `exp(i*phi)`. The tangent is `i*sigma**3`, so no frame needs a root. With
+`k = sin(theta0/2 - phi)` the particle passes the cusp at the distance `2*cos(theta0/2)**2*|k|`. Seen from the cusp, its
+polar angle falls (`k > 0`) or grows towards the direction `psi` of the velocity `v`, and the particle stays inside the
+table until it lands. The line behind the particle has the angles beyond `psi - pi`. So exactly one of the zeros of the
+cubic in `S = cos(theta0/2)*tan(theta1/2)` lies between `theta0` and `psi`: with two more zeros there, the boundary
+would have to bulge inwards. Paper: section 4; [BackerDullin1997].
 """
 
 from collections.abc import Callable
@@ -82,7 +82,11 @@ class Cardioid(Family):
         return np.asarray(2 * elementary.arcsin(np.clip(s / 4, -1, 1)))
 
     def cubic(self, ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> tuple[list[N], N, N, Pair[N]]:
-        """Coefficients of the flight equation for `S`, mirrored for `k >= 0`; mirrored `sin(theta0/2)`; `k`; `-v`."""
+        """The cubic in `S` whose zero is the landing, constant first, mirrored if `k < 0`; then `sin(theta0/2)`, `k`
+        and `-v`.
+
+        The value `sin(theta0/2)` is mirrored in the same way.
+        """
         p, q = sigma
         k = plane.exact_cross(ops, (q, p), (exit[1], exit[0]))
         back = plane.times(plane.squared(sigma), (plane.dot(sigma, exit), k))
@@ -97,7 +101,7 @@ class Cardioid(Family):
     def interval(
         self, ops: Backend[N, M], cubic: Fields[N], Q: N, c: N, ahead: Pair[N]
     ) -> tuple[N, Callable[[], N], Callable[[N], M]]:
-        """A start for the zero below `Q`, a bound below it, and a test of being above that bound.
+        """A first guess of the zero below `Q`, a lower bound of this zero, and a test that a number is above the bound.
 
         The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless the particle would have to cross the negative
         axis to get there. In `z = Q - S > 0` the cubic is `2*c - D*z + 4*k*Q*z**2 - k*z**3`, `D` its slope at `Q`

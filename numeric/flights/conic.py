@@ -1,13 +1,13 @@
-"""An ellipse that is given by its radius about a focus, however long: no digit is lost at its far end or at its tips.
+"""An ellipse given by its radius about a focus, however long: no digit is lost at its far end or at its tips.
 
 A conic about the origin, `1/r = p + Q.n` with `n = (cos(theta), sin(theta))`, is an ellipse of which the origin is a
-focus. Its flight is the ellipse's, in the eccentric parameter `E`; users see the polar angle. With `e = |Q|/p`
-and angles from the direction of `Q`, `tan(theta/2) = sqrt((1 + e)/(1 - e))*tan(E/2)`.
+focus. Its flight is the ellipse's, in the eccentric parameter `E`; users see the polar angle. With `e = |Q|/p` and
+angles from the direction of `Q`, `tan(theta/2) = sqrt((1 + e)/(1 - e))*tan(E/2)`.
 
-At its tips the boundary turns by `1/sqrt(1 - e*e)` times as much as the parameter, 22 times at `e = 0.999`; so the
-rounding of a landing would show in the direction in which a particle leaves. Where that factor is above `ROUND`, the
-chord is found with twice the digits, which takes no longer than the egg's, and the velocity there before the landing is
-rounded: both are off by their own rounding and no more.
+At its tips the boundary turns `1/sqrt(1 - e*e)` times as fast as the parameter, 22 times at `e = 0.999`. So the
+rounding of a landing would be magnified in the direction in which the particle leaves. Where this factor is above
+`ROUND`, the chord is found with twice the digits, which takes no longer than on the egg. The tangent at the landing is
+computed before the landing is rounded, so that both have no more than their own rounding error.
 """
 
 from typing import Generic, NamedTuple
@@ -25,7 +25,7 @@ ROUND = 1.5  # the longer axis over the shorter
 
 
 class Focus(NamedTuple, Generic[N]):
-    """The numbers of a conic about the origin, in some arithmetic."""
+    """The numbers that describe a conic about the origin, in some arithmetic."""
 
     ahead: Pair[N]  # the direction of `Q`, from which its angles are counted
     p: N
@@ -35,7 +35,9 @@ class Focus(NamedTuple, Generic[N]):
 
 
 class Conic(Ellipse):
-    """An ellipse by its radius about a focus, without differences of the radius, which lose digits at the far tip."""
+    """An ellipse given by its radius about a focus; no differences of the radius occur, which lose digits at the far
+    tip.
+    """
 
     name, path = "conic", "closed form in unit numbers of the eccentric parameter"
 
@@ -74,7 +76,7 @@ class Conic(Ellipse):
         return found
 
     def focus(self, ops: Backend[N, M]) -> Focus[N]:
-        """The numbers of the conic at the boundary's shape."""
+        """The numbers that describe the conic, at the boundary's shape."""
         x, y, p, size, left = self.boundary.ir.program("focus")(
             ops, *(ops.number(float(a)) for a in self.boundary.shape)
         )
@@ -105,7 +107,9 @@ class Conic(Ellipse):
         return ops.number(0.0), ops.atan2(n[1], n[0])
 
     def _seen(self, theta: Array) -> tuple[Array, Array, Pair[Array]]:
-        """`1/r` at polar angles, and length and direction of the normal `p*n + Q` (letters: module docstring)."""
+        """At polar angles: `1/r`, and the length and the direction of the normal `p*n + Q` (see the module for the
+        symbols).
+        """
         ops, focus = self.boundary.ops, self.focus(self.boundary.ops)
         u = np.cos(theta), np.sin(theta)
         c, s = plane.dot(focus.ahead, u), plane.exact_cross(ops, focus.ahead, u)

@@ -40,13 +40,15 @@ class PieceNumbers(NamedTuple, Generic[N]):
 
 
 def piece_of(kind: str, x: Fields[N]) -> PieceNumbers[N]:
-    """The piece made from the fourteen numbers of its program."""
+    """The piece of the boundary that the fourteen numbers of its program describe."""
     pairs = [(x[i], x[i + 1]) for i in (0, 2, 4, 6, 10, 12)]
     return PieceNumbers(kind, pairs[0], pairs[1], pairs[2], pairs[3], x[8], x[9], pairs[4], pairs[5])
 
 
 def span(piece: PieceNumbers[N]) -> Pair[N]:
-    """`(base, slope)`: `base + slope*|p|` bounds the sum of the moduli of the terms of a piece's point at `p`."""
+    """`(base, slope)` such that `base + slope*|p|` bounds the sum of the moduli of the terms of the piece's point at
+    `p`.
+    """
     x, y, ax, ay, bx, by = (modulus(z) for pair in (piece.origin, piece.A, piece.B) for z in pair)
     if piece.kind == FOCAL:
         return ax + ay + ax + ay + bx + by, x - x
@@ -54,13 +56,13 @@ def span(piece: PieceNumbers[N]) -> Pair[N]:
 
 
 def from_focus(ops: Backend[N, M], gap: N, u: Pair[N]) -> N:
-    """`p - e` to its last bits, `e` being the eccentricity and `gap` one minus it."""
+    """`p - e` with all its digits, where `e` is the eccentricity and `gap` is `1 - e`."""
     one, (p, q) = ops.number(1.0), u
     return gap - ops.select(ops.number(0.0) < p, q * q / (one + p), one - p)
 
 
 def chosen(ops: Backend[N, M], component: N, values: list[N]) -> N:
-    """The value for the particle's piece, from `values`, one for each piece; equal neighbours need no choice."""
+    """The entry of `values` for the particle's piece; `values` has one entry for each piece."""
     if len(values) > MANY and all(map(ops.constant, values)):
         return values[0] if all(ops.same(value, values[0]) for value in values) else ops.look_up(values, component)
     found = values[0]
@@ -71,13 +73,13 @@ def chosen(ops: Backend[N, M], component: N, values: list[N]) -> N:
 
 
 def chosen_mask(ops: Backend[N, M], component: N, values: list[bool]) -> M:
-    """The mask of particles for whose piece `values`, one for each piece, is True."""
+    """The mask of particles on whose piece the entry of `values` is True; `values` has one entry for each piece."""
     marked: M = ops.number(0.5) < chosen(ops, component, [ops.number(float(value)) for value in values])
     return marked
 
 
 def loops(after: list[int]) -> list[list[int]]:
-    """The closed curves, each as the pieces in order."""
+    """The closed curves of the boundary, each as the list of its pieces in order."""
     found, first = [], 0
     for j, following in enumerate(after):
         if following <= j:
@@ -87,7 +89,7 @@ def loops(after: list[int]) -> list[list[int]]:
 
 
 def convex(boundary: Boundary, pieces: list[PieceNumbers[float]], loop: list[int]) -> bool:
-    """Does every arc of the curve focus, and every corner bend inwards?"""
+    """Is the closed curve convex: does every arc focus, and does every corner turn inwards?"""
     if any(pieces[j].kind != LINE and not pieces[j].D > 0 for j in loop):
         return False
     turning = 0.0
@@ -102,10 +104,10 @@ def convex(boundary: Boundary, pieces: list[PieceNumbers[float]], loop: list[int
 
 
 def inwards(boundary: Boundary, j: int) -> bool:
-    """Does the boundary turn into the table where a component ends, or go on smoothly?
+    """Does the boundary turn into the table where component `j` ends, or go on smoothly?
 
-    Not at a cusp, whose tangents do not show to which side it points. A corner that the ranges of the parameters
-    leave open is decided by its numbers.
+    The answer is no at a cusp, whose tangents do not show to which side it points. Where the sign of the corner's angle
+    is not the same for all parameters, its value at this shape decides.
     """
     after, contact, bend = boundary.ir.joins[j]
     if contact != "CORNER":
@@ -165,7 +167,7 @@ class Coordinates(Family):
                 yield j, (x, y), ratio
 
     def _there(self, ops: Backend[N, M], component: N, j: int, new: Pair[N], old: Pair[N]) -> Pair[N]:
-        """`new` for particles on piece `j`, and `old` for all others."""
+        """`new` for the particles on piece `j`, and `old` for all others."""
         here = modulus(component - ops.number(float(j))) < ops.number(0.25)
         return ops.select(here, new[0], old[0]), ops.select(here, new[1], old[1])
 
@@ -210,7 +212,7 @@ class Coordinates(Family):
 
     @cached_property
     def exactly(self) -> list[Axes[NDArray[np.float64], NDArray[np.bool_]]]:
-        """The axes of every piece with twice the digits, where there are no parameters."""
+        """The axes of every piece with twice the digits, for a table without parameters."""
         words = Doubles(self.boundary.ops)
         return [exact_axes(made(words), kind, words) for made, kind in zip(self.programs, self.kinds, strict=True)]
 
@@ -239,18 +241,21 @@ class Coordinates(Family):
         ]
 
     def _turning(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N) -> N:
-        """The cross product `A x B` of these vectors of the particle's piece."""
+        """The cross product `A x B` of the vectors `A` and `B` of the particle's piece."""
         return chosen(ops, component, [piece.D for piece in pieces])
 
     def tangent(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
-        """The velocity `d` at a boundary point."""
+        """The tangent `d` at a boundary point: the derivative of the point by the piece's parameter."""
         component, p, q = position
         A, B = self._axes(ops, self.pieces(ops, shape), component)
         return p * B[0] - q * A[0], p * B[1] - q * A[1]
 
     @cached_property
     def steep(self) -> float:
-        """The least `(|d|/(v x d))**2`, `v` the direction and `d` the tangent, of refined landings; 0 for all."""
+        """The threshold of `(|d|/(v x d))**2` above which a landing is refined; 0 if all landings are.
+
+        Here `v` is the direction of flight and `d` the tangent at the landing.
+        """
         if self.boundary.shape or any(kind != LINE for kind in self.kinds):
             return 0.0
         corners = [[float(x.high) for x in axes[0] + axes[1]] for axes in self.exactly]
@@ -258,7 +263,9 @@ class Coordinates(Family):
         return STEEP * STEEP if longest <= STEEP else 0.0
 
     def refined(self, flight: "Ray[N, M]", shape: Fields[N], best: Fields[N], d: Pair[N]) -> list[N]:
-        """`p` and `q` of a landing after its last step, and the velocity there before they are rounded."""
+        """`p` and `q` of a landing after a last step of Newton's method, and the tangent there from unrounded `p` and
+        `q`.
+        """
         ops, (_, p, q, along, _) = flight.ops, best
         if not self.steep:
             return self._moved(flight, shape, best, d)
@@ -291,7 +298,9 @@ class Coordinates(Family):
 
 
 class Ray(NamedTuple, Generic[N, M]):
-    """The line along which a particle leaves: piece, point `z0`, direction `v`, and `rate = d x v`, `d` the tangent."""
+    """The line along which a particle leaves: piece, point `z0`, direction `v`, and `rate = d x v` with the tangent
+    `d`.
+    """
 
     ops: Backend[N, M]
     component: N
@@ -304,7 +313,9 @@ class Ray(NamedTuple, Generic[N, M]):
 
 
 def exact_axes(piece: Sequence[Double[N, M]], kind: str, words: Doubles[N, M]) -> Axes[N, M]:
-    """The axes from the numbers of a piece's program; for an arc about a focus `C` is the centre."""
+    """The centre and the vectors `A` and `B` of a piece, from the numbers of its program; also for an arc about a
+    focus.
+    """
     centre, A, B = ((piece[i], piece[i + 1]) for i in (0, 2, 4))
     if kind == FOCAL:
         e = words.q(1, 1) - piece[9]
@@ -317,8 +328,9 @@ def last_step(
 ) -> N:
     """One more step of Newton's method, whose residual has twice the digits, from a landing `(p, q, v x d)`.
 
-    `start` and `end` are the axes of the two pieces, `short` is the difference to 1 of the lengths of the two vectors
-    `(p, q)`, and `size` that of the terms. A flight along the normal uses the normal before it is rounded.
+    `start` and `end` are the axes of the pieces of departure and landing. `short` has, for both vectors `(p, q)`, 1
+    minus the length, and `size` is the size of the terms. A flight along the normal uses the normal before it is
+    rounded.
     """
     ops, (p, q, along), sums = flight.ops, landing, []
     ends = (end, (p, q), short[1]), (start, (-flight.p, -flight.q), short[0])
@@ -346,7 +358,7 @@ def last_step(
 
 
 def passing(flight: Ray[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:
-    """Does a flight of length `t` come to a corner on its way, as near as its rounding?"""
+    """Does a flight of length `t` pass a corner so closely that rounding decides on which side?"""
     ops, (x, y) = flight.ops, corner
     slack = ops.number(UNSURE) * (start + modulus(x) + modulus(y))
     ahead = plane.dot(flight.v, (x - flight.z0[0], y - flight.z0[1]))
@@ -355,10 +367,10 @@ def passing(flight: Ray[N, M], corner: Pair[N], side: N, start: N, t: N) -> M:
 
 
 def halved(ops: Backend[N, M], component: N, count: int, side: Callable[[N], N]) -> list[N]:
-    """The piece of a closed curve whose first corner lies to the right of a line from `component`, and its last not.
+    """The piece of a closed curve that a line from `component` hits: its first corner lies to the right, its last not.
 
-    `side(k)`, of the first corner of piece `k`, is negative to the right. Returns the sides of the first corner after
-    the departure and of the last, the piece, and the sides of its two corners.
+    `side(k)` tells on which side the first corner of piece `k` lies; it is negative to the right. Returns five numbers:
+    the sides of the first corner after the departure and of the last one, the piece, and the sides of its two corners.
     """
     one, many = ops.number(1.0), ops.number(float(count))
 

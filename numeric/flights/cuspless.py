@@ -1,13 +1,14 @@
 """The cardioid cut off by the wall `x = -1/4`. A flight solves a cubic from arc to arc and a quartic from the wall.
 
-The table is convex, so a line leaves it at one further point; the sides on which it passes the two joins show on which
-component. State: the component (0 arc, 1 wall), `sigma = exp(i*theta/2)` on the arc or `(y, .)` on the wall, and
-`exp(i*phi)`. Paper: section 5 and the appendix, where it is the cut-off.
+The table is convex, so a line leaves it at one further point; the sides on which the line passes the two joins show
+whether this point is on the arc or on the wall. State: the component (0 arc, 1 wall), `sigma = exp(i*theta/2)` on the
+arc or `(y, .)` on the wall, and `exp(i*phi)`. Paper: section 5 and the appendix, where the wall is called the cut-off.
 
-Flights along the wall, from near one join to the wall or past the other join, need more digits. A rounding of the
-direction moves their landing by the inverse of the angle, or of its square. So the angle is formed from the state with
-twice the digits, and distances from the wall from exact squares: the arc lies `(2*p**2 - 1/2)**2` from it, at the
-height `4*p**3*q`, where `p, q` is `sigma`, whose length is one up to rounding only.
+Flights along the wall, from near one join to the wall or past the other join, need more digits: a rounding of the
+direction moves their landing by the inverse of their angle with the wall, or of its square. So this angle is formed
+from the state with twice the digits, and distances from the wall are formed from exact squares. With `p, q` for
+`sigma`, whose length is one up to rounding only, a point of the arc has the distance `(2*p**2 - 1/2)**2` from the wall,
+and the height `4*p**3*q`.
 """
 
 import numpy as np
@@ -116,9 +117,10 @@ class Cuspless(Cardioid):
         S = ops.polynomial_zero(poly, start, low, high, base, self.steps, ops.negated(to_wall | near_grazing))
 
         def from_the_join() -> list[N]:
-            """The quartic in `sqrt(3) - tan(theta1/2)`: near-grazing at the wall, or at the arc next to the join.
+            """Where a flight is near grazing, solves the quartic in `sqrt(3) - tan(theta1/2)`, in which nothing
+            cancels.
 
-            Nothing cancels in it.
+            Such flights graze the wall, or the arc next to the join. For all others the landing is unchanged.
             """
             turned = [-ops.number(16.0) * c * below, -four * c * (four * root3 * y - one)]
             turned += [ops.number(3.0) * up + ops.number(20.0) * c * y, -four * root3 * L, L]
@@ -151,9 +153,10 @@ class Cuspless(Cardioid):
         )
 
         def told() -> list[N]:
-            """The code of `JOIN` where the line passes a join nearer than rounding moves the line; else 0.
+            """The code of `JOIN` where rounding hides on which side of a join the line passes; else 0.
 
-            Elsewhere the arc bends away from a line along it. A flight from the wall lands on the arc in any case.
+            A line along the arc is in doubt only near the join, as elsewhere the arc bends away from it. A flight from
+            the wall lands on the arc in any case.
             """
             way = modulus(root3 * p - ops.times_sign(q, ops.select(to_wall, height, tangent)))
             least = (
@@ -188,7 +191,7 @@ class Cuspless(Cardioid):
 
 
 def sharp_back(ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> N:
-    """The real part of `sigma**3*conj(exit)` to the last bits however small it is."""
+    """The real part of `sigma**3*conj(exit)`, with all its digits however small it is."""
     (p, q), (c, s) = sigma, exit
     a, a_error = plane.cross_and_error(ops, sigma, (q, p))
     pq, pq_error = plane.product_and_error(ops, p, q)
@@ -200,7 +203,10 @@ def sharp_back(ops: Backend[N, M], sigma: Pair[N], exit: Pair[N]) -> N:
 
 
 def above_the_wall(ops: Backend[N, M], sigma: Pair[N]) -> Pair[N]:
-    """The square root of an arc point's distance from the wall, and its height, for `sigma` normalised."""
+    """The square root of the distance from the wall, and the height, of the point of the arc that `sigma` represents.
+
+    Both are those of `sigma` normalised.
+    """
     p, q = sigma
     (pp, low), (qq, lower) = plane.product_and_error(ops, p, p), plane.product_and_error(ops, q, q)
     steep, one, two = pp < qq, ops.number(1.0), ops.number(2.0)
@@ -214,9 +220,9 @@ def above_the_wall(ops: Backend[N, M], sigma: Pair[N]) -> Pair[N]:
 def sharpened(
     ops: Backend[N, M], sigma: Pair[N], exit: Pair[N], by: N, landing: Pair[N], along: N
 ) -> tuple[N, N, Pair[N]]:
-    """The real part of minus the direction, the height on the wall, and the landing after a Newton step.
+    """The real part of minus the direction, the height on the wall, and the landing after a step of Newton's method.
 
-    `by` is the imaginary part of minus the direction; `along` is the cosine of the incidence on the arc.
+    `by` is the imaginary part of minus the direction; `along` is the cosine of the incidence angle on the arc.
     """
     bx = sharp_back(ops, sigma, exit)
     gap, height = above_the_wall(ops, sigma)

@@ -84,7 +84,7 @@ class Boundary:
 
     @property
     def corner_parameters(self) -> list[tuple[float, float]]:
-        """The ends of each component's parameter, or far away where the boundary goes on smoothly."""
+        """The ends of each component's parameter; a smooth end is replaced by a parameter far away."""
         known = zip(self.ends, self.corners, strict=True)
         return [(low if first else -FAR, high if last else FAR) for (low, high), (first, last) in known]
 
@@ -95,7 +95,7 @@ class Boundary:
 
     @cached_property
     def convex(self) -> bool:
-        """Has a closed curve no curvature of the wrong sign on a fine grid, up to rounding?"""
+        """Is the curvature of a closed curve nowhere of the dispersing sign on a fine grid, up to rounding?"""
         curvature = self.bending(np.zeros(FINE, dtype=np.int64), np.linspace(-np.pi, np.pi, FINE))[1]
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
@@ -105,7 +105,7 @@ class Boundary:
         return np.array(np.broadcast_arrays(theta, *values)[1:], dtype=float)
 
     def curve(self, component: NDArray[np.int64], theta: Array, count: int = 6) -> Array:
-        """Rows `x, y`, first and second derivatives by `theta`: the first `count` of these six."""
+        """Rows with the first `count` of these six: `x`, `y`, and their first and second derivatives by `theta`."""
         rows = np.empty((count, *theta.shape))
         for index in np.unique(component):  # of hundreds of parts most calls ask for one
             here, part = component == index, self.ir.parts[index]
@@ -121,7 +121,7 @@ class Boundary:
         return Frame(x, y, dx / speed, dy / speed)
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
-        """`ds/dtheta`."""
+        """The speed of the boundary point, `ds/dtheta`."""
         return np.asarray(np.hypot(*self.curve(component, theta, 4)[2:]))
 
     def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
@@ -143,10 +143,11 @@ def law_of(lam_low: float, lam_high: float) -> str:
 
 @dataclass
 class Landing(Generic[N]):
-    """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence, up to a common factor.
+    """Where a flight ends. `across` and `along` are `sin` and `cos` of the incidence angle, up to a common factor.
 
-    `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` names an outcome that stops the
-    particle (0 none, else `Status`), or is None. `vectors` and `numbers` hold what the family's own methods need again.
+    `across` is the velocity's tangential part, `-sin(eta)`; `along` is positive. `code` is 0, or the code of the
+    `Status` that stops the particle; it is None for families without outcomes. `vectors` and `numbers` hold values that
+    the family's other methods use.
     """
 
     position: list[N]
@@ -188,7 +189,7 @@ class Family(ABC):
 
     @property
     def identity(self) -> str:
-        """Text of all that kernels depend on besides the table's programs and this package's sources."""
+        """A text that determines the kernels, together with the table's programs and this package's sources."""
         return ""
 
     def frame(self, component: NDArray[np.int64], theta: Array) -> Frame[Array]:
@@ -201,7 +202,7 @@ class Family(ABC):
         return x, y
 
     def speed(self, component: NDArray[np.int64], theta: Array) -> Array:
-        """`ds/dtheta`."""
+        """The speed of the boundary point, `ds/dtheta`."""
         return self.boundary.speed(component, theta)
 
     def bending(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
@@ -233,11 +234,11 @@ class Family(ABC):
         return frame.angle(ops, *leaving)
 
     def unit_direction(self, ops: Backend[N, M], frame: Frame[N], phi: N, leaving: Fields[N]) -> Pair[N]:
-        """The unit direction of a departing flight: the exit fields, if they hold it."""
+        """The unit direction of a departing flight, taken from the exit fields where these contain it."""
         return leaving[0], leaving[1]
 
     def distance(self, ops: Backend[N, M], fields: Fields[N], others: Fields[N]) -> N:
-        """The distance of two states on one component, in the family's fields."""
+        """The distance between two states on the same component, in the family's fields."""
         total = sum(((x - y) * (x - y) for x, y in zip(fields[1:], others[1:], strict=True)), start=ops.number(0.0))
         return ops.sqrt(total + (fields[0] - others[0]) * (fields[0] - others[0]))
 
@@ -250,7 +251,7 @@ class Family(ABC):
         raise NotImplementedError(self.name)
 
     def elliptic(self) -> float | None:
-        """The parameter `m` for which arc length from `theta = 0` is the elliptic integral `E(theta | m)`, if any."""
+        """The parameter `m` if arc length from `theta = 0` is the elliptic integral `E(theta | m)`, else None."""
         return None
 
     def parameter(self, component: int, s: Array) -> Array | None:
@@ -279,7 +280,11 @@ class Family(ABC):
         return self._known(law).exit(ops, -incidence, lam, *self._landing_place(ops, landing))[0]
 
     def slopes(self, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> tuple[N, list[N]]:
-        """Minus the derivative of the exit angle by the incidence angle; then those by `theta` and `s`, if any."""
+        """Minus the derivative of the exit angle with respect to the incidence angle, and a list for other dependences.
+
+        The list has minus the derivatives with respect to `theta` and `s` of the landing, as far as the law depends on
+        them.
+        """
         if law != FORMULA:
             return lam, []
         formula, place = self._known(law), self._landing_place(ops, landing)
@@ -287,11 +292,11 @@ class Family(ABC):
         return slope, drift if formula.placed else []
 
     def drifting(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
-        """`below` times the derivative `drift` by `theta`, converted to the parameter of the tangent vector."""
+        """`below` times the derivative of the law by `theta`, converted to the parameter of the tangent vector."""
         return drift * below
 
     def drifting_by_length(self, ops: Backend[N, M], landing: Landing[N], below: N, drift: N) -> N:
-        """`below` times a derivative `drift` by arc length, converted to the parameter of the tangent vector."""
+        """`below` times the derivative of the law by arc length, converted to the parameter of the tangent vector."""
         d = landing.vectors["d"]
         return drift * below * ops.sqrt(plane.dot(d, d))
 
@@ -322,7 +327,7 @@ class Family(ABC):
         """`N0 = speed*cos(phi0)` of a particle that leaves; `speed` is the length of the boundary's derivative."""
 
     def kept(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
-        """Values at one end of a flight that `length` needs, kept for the next bounce; for many families none."""
+        """Values at one end of a flight that `length` uses, and which are kept for the next bounce; often none."""
         return []
 
     def length(
@@ -333,10 +338,10 @@ class Family(ABC):
 
     @abstractmethod
     def scaled_curvature(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N]) -> Pair[N]:
-        """`(above, below)`: `above/below` is curvature times speed at a landing, negative if focusing; `below > 0`."""
+        """Two numbers: `above/below` is curvature times speed at a landing, negative if focusing, and `below > 0`."""
 
     def fields(self, law: str) -> tuple[str, ...]:
-        """The names of the fields of a particle's state under this law."""
+        """The names of the numbers (fields) that make up a particle's state under this law."""
         return self.position if law == SLAP else self.position + self.direction
 
     def bounce(
@@ -367,10 +372,11 @@ class Family(ABC):
         tangent: Fields[N],
         kept: Fields[N],
     ) -> tuple[list[N], N | None, list[N], list[N]]:
-        """`bounce`, with the rows `numeric.kernels.machine.TANGENT`, and what is kept for the next flight.
+        """`bounce` for a particle with a tangent vector, whose rows are those of `numeric.kernels.machine.TANGENT`.
 
-        The vector is turned round, and grows by `below*N1` too much: `down` counts that, and `up` counts `below*N0`,
-        with the slope of a law that is no uniform contraction.
+        Returns the new state, the code of the outcome or None, the new rows, and the values that the next flight uses.
+        To avoid divisions, the vector is not normalised: it changes sign and grows by the factor `below*N1` too much,
+        which `down` accumulates. `up` accumulates `below*N0`, times the slope of a law that is no uniform contraction.
         """
         position, exit = self._split(ops, shape, law, state, whole=True)
         landing = self.fly(ops, shape, law, position, exit)
@@ -410,17 +416,17 @@ class Family(ABC):
         )
 
     def normal_exit_of_unit_length(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
-        """The same as `normal_exit`, with length one; a flight alone may use a normal of any length."""
+        """`normal_exit` normalised; where only the flight is computed, a normal of any length will do."""
         return self.normal_exit(ops, shape, position)
 
 
 def grazing(ops: Backend[N, M], across: N, along: N) -> M:
-    """The mask of flights that end tangent to the boundary, or meet nothing."""
+    """The mask of flights that end tangent to the boundary, or that do not meet it."""
     return ops.negated(ops.number(GRAZE) * modulus(across) < along)
 
 
 def reflected(family: Family, ops: Backend[N, M], law: str, lam: N, landing: Landing[N]) -> list[N]:
-    """The unit direction after a reflection, from the flight's direction `v` and the boundary's velocity `d`."""
+    """The unit direction after a reflection, from the flight's direction `v` and the boundary's tangent `d`."""
     v, d = landing.vectors["v"], landing.vectors["d"]
     if law == ELASTIC:
         inverse = ops.number(1.0) / plane.dot(d, d)

@@ -1,9 +1,9 @@
-"""Any table: every zero of the flight function on every piece is bracketed, and the first hit wins.
+"""Any table: every zero of the flight function on every piece is bracketed, and the first hit is the landing.
 
-A component is cut where its tangent has turned by a quarter of a turn and where the turning changes
-sign, so on a piece the tangent is parallel to a flight at most once, and the flight function
-`F(theta) = v x (z(theta) - z0)` has at most one extremum and two zeros. Finding the extremum first
-brackets both zeros. State: the component, the parameter `theta`, and the direction `v`.
+A component is cut where its tangent has turned by a quarter of a turn and where the turning changes sign, so on a piece
+the tangent is parallel to a flight at most once, and the flight function `F(theta) = v x (z(theta) - z0)` has at most
+one extremum and two zeros. The extremum is found first, and then brackets both zeros. State: the component, the
+parameter `theta`, and the direction `v`.
 """
 
 import itertools
@@ -40,7 +40,7 @@ Stretch = tuple[int, float, float]  # of a component, between two parameters
 
 
 class General(Family):
-    """The map of section 2 of the paper, on any table."""
+    """The flight on any table. Paper: section 2."""
 
     name, path = "general", "every zero of the flight function on every piece, first hit"
     pairs = (2,)
@@ -71,7 +71,7 @@ class General(Family):
 
     @property
     def joins(self) -> list[tuple[float, float]]:
-        """The parameters of each component's ends in corners or cusps; a far parameter in the place of a smooth end."""
+        """The parameters of each component's two ends; a smooth end is replaced by a parameter far away."""
         return [] if self.closed else self.boundary.corner_parameters
 
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
@@ -112,7 +112,10 @@ class General(Family):
         return self._landed(ops, shape, law, best, v, (component, theta, x0, y0))
 
     def _beside(self, ops: Backend[N, M], piece: tuple[int, float, float], component: N, theta: N) -> list[M | None]:
-        """Does a particle leave from the start, or end, of a piece on the component joined to it? None if it cannot."""
+        """For both ends of a piece: does the particle leave from this point, but on the component joined there?
+
+        None for an end where this cannot be.
+        """
         (index, low, high), found = piece, list[M | None]()
         before = self.boundary.following.index(index)
         for end, other in ((0, before), (1, self.boundary.following[index])):
@@ -134,9 +137,9 @@ class General(Family):
     ) -> Landing[N]:
         """The landing at `best`, the nearest arrival, given by its length, component and parameter.
 
-        It is at a join where rounding hides on which side of it the line passes. The line is moved sideways by at most
-        `UNSURE` times the sum of the moduli of the numbers that go into its ends; on the component from which a
-        particle leaves, a short flight moves along with its start.
+        Its outcome is `JOIN` where rounding hides on which side of a join the line passes. Rounding moves the line
+        sideways by at most `UNSURE` times the sum of the moduli of the numbers that the two ends of the flight are
+        added up from. On the component from which a particle leaves, a short flight moves along with its start.
         """
         t, where, at = best
         far = ops.number(FAR)
@@ -174,7 +177,7 @@ class General(Family):
         return Landing([where, at], across, along, code, {"v": v, "d": (dx, dy)}, {"t": t})
 
     def _within(self, ops: Backend[N, M], component: N, theta: N) -> N:
-        """The parameter, no more than rounding beyond the end of a component, moved to the end."""
+        """The parameter; one that rounding has put beyond a smooth end of the component is moved to the end."""
         for index, (_, end) in enumerate(self.ends):
             if not self.boundary.corners[index][1]:
                 here = (modulus(component - ops.number(float(index))) < ops.number(0.25)) & (ops.number(end) < theta)
@@ -191,9 +194,9 @@ class General(Family):
         end: Pair[N],
         d: Pair[N],
     ) -> N:
-        """One more step of Newton's method, whose residual has more digits: what is left is the rounding of a landing.
+        """One more step of Newton's method, whose residual has more digits: only the rounding of the landing remains.
 
-        Its direction, and that of a flight along the normal, are those before anything is rounded.
+        The direction at the landing, and that of a flight along the normal, are computed before anything is rounded.
         """
         words = Doubles(ops)
         (x0, y0, dx, dy), (x1, y1, *_) = (self.doubled(words, shape, *place) for place in (start, end))
@@ -224,7 +227,7 @@ class General(Family):
         beside: Sequence[M | None] = (),
         narrow: bool = False,
     ) -> list[N]:
-        """The nearest landing: `best` or one on this piece, given by its component, both ends and length in `theta`."""
+        """The nearer landing: `best`, or one on the piece given by its component, both ends and length in `theta`."""
         index, a, b, scale = piece
         component, theta = start
         nought = ops.number(0.0)
@@ -302,10 +305,11 @@ class General(Family):
 
 @lru_cache(maxsize=4)  # a table is asked by more than one map
 def pieces(boundary: Boundary) -> tuple[list[Stretch], list[Stretch]]:
-    """The pieces of components on which the tangent turns one way, by a quarter at most; and those that are points.
+    """The pieces of components on which the tangent turns one way, by at most a quarter turn; and pieces that are
+    points.
 
-    Proved: the curve's program runs on intervals that cover each component (see `cells`). `ValueError` where they
-    become too many.
+    This is proved: the curve's program runs on intervals that cover each component (see `cells`). Raises `ValueError`
+    if there are too many intervals.
     """
     refuse_long(boundary)
     if boundary.ir.has("cubic 0"):
@@ -320,7 +324,7 @@ def pieces(boundary: Boundary) -> tuple[list[Stretch], list[Stretch]]:
 
 
 def _cubic_pieces(boundary: Boundary) -> list[Stretch]:
-    """The pieces of a boundary of cubics: the turning is a quadratic, and less than a whole turn in all."""
+    """The pieces of a boundary of cubics, on which the turning is a quadratic and less than a whole turn in all."""
     count = len(boundary.ends)
     programs = (boundary.ir.program(f"cubic {index}")(boundary.ops, *boundary.numbers) for index in range(count))
     c = np.array([[float(x) for x in row] for row in programs]).reshape(count, 2, 4).transpose(1, 2, 0)
@@ -350,7 +354,10 @@ def _cubic_pieces(boundary: Boundary) -> list[Stretch]:
 
 
 def _quarter(tangent: Callable[[Array], Pair[Array]], way: Array, low: Array, high: Array) -> Array:
-    """Where a tangent has turned by a quarter since `low`, to the left for a `way` of 1; or else `high`."""
+    """The parameter at which a tangent has turned by a quarter since `low`; `high` if it turns by less.
+
+    `way` is 1 where the tangent turns to the left, and -1 where it turns to the right.
+    """
     inside = 2.0**-20 * (high - low)  # at an end the speed may be 0
     first = tangent(low + inside)
 
@@ -402,11 +409,12 @@ def _cuts(boundary: Boundary, index: int) -> tuple[list[float], list[Pair[float]
 
 
 def cells(boundary: Boundary, index: int) -> tuple[Array, Array]:
-    """The edges of cells that cover a component, and how the tangent turns on each: to the left 1, to the right -1.
+    """The edges of cells that cover a component, and how the tangent turns on each cell.
 
-    Proved for every point of a cell: it turns that way, by less than `MOST_TURN`. Or 0, where it turns by `STRAIGHT`
-    at most (`ROUGH` where the rounding of the curve hides how), so that what crosses such a cell twice is within this
-    of a tangent; or `STANDS`, where a cell is one point up to rounding. Cells are halved until one of them holds.
+    A value of 1 (left) or -1 (right) is proved: the tangent turns that way at every point of the cell, by less than
+    `MOST_TURN` in all. The value 0 means that it turns by at most `STRAIGHT` (`ROUGH` where rounding hides how it
+    turns), so that a line which crosses the cell twice is within this angle of a tangent. `STANDS` means that the cell
+    is one point up to rounding. Cells are halved until one of these holds.
     """
     part, (start, end) = boundary.ir.parts[index], boundary.ends[index]
     if part.curve.constant(4) == 0 == part.curve.constant(5):  # a straight side
@@ -458,9 +466,10 @@ def refuse_long(boundary: Boundary) -> None:
 
 
 def _passed(boundary: Boundary, index: int, low: Array, high: Array, turn: Array) -> Array:
-    """Where the tangent has turned by `turn` since `low`; if that is 0, where its turning changes sign.
+    """The parameter at which the tangent has turned by `turn` since `low`; if `turn` is 0, where its turning changes
+    sign.
 
-    By bisection, of all intervals at once.
+    All intervals are bisected at once.
     """
 
     def turning(theta: Array) -> tuple[Pair[Array], Array]:

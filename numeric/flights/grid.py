@@ -1,8 +1,8 @@
 """On tables of many pieces a flight is tested only against those in the cells of a grid that it passes.
 
 From a cell without pieces a flight goes on at once to the end of the largest empty square of cells that begins there;
-which one that is depends on the signs of its direction, so every cell has four. As squares grow with the distance from
-the boundary, their number on a flight grows like the logarithm of the number of cells in a row.
+the square depends on the signs of the direction, so every cell has four. As squares grow with the distance from the
+boundary, their number on a flight grows like the logarithm of the number of cells in a row.
 
 **No piece is left out that could be hit first.** A point of a flight is a sum; rounding moves it by some units of
 `2**-52` of its terms. A piece is listed in every cell to which it comes as near as `2*slack`, where `slack` is
@@ -28,12 +28,12 @@ Array = NDArray[np.float64]
 
 
 class PieceGrid(NamedTuple):
-    """A grid of cells in rows, its outermost ring outside the table, and for each cell a list of pieces.
+    """A grid of cells in rows, with its outermost ring outside the table, and for each cell a list of pieces.
 
-    `squares` has four rows for each cell, by the signs of a direction in `x` and `y`: the coordinates of the edges
-    where a flight leaves the empty square, and the first line of the cell's list in `items`, `-1` for none, `-2`
-    outside. A line of `items` has what a flight needs of a piece, and its number `j`, or `-1 - j` on the last line of a
-    list.
+    `squares` has four rows for each cell, one for each pair of signs of a direction in `x` and `y`. A row has the
+    coordinates of the edges where a flight leaves the empty square, and the first line of the cell's list in `items`:
+    `-1` for no list, `-2` outside the table. A line of `items` has what a flight needs of a piece, and last the piece's
+    number `j`, or `-1 - j` on the last line of a list.
     """
 
     low: tuple[float, float]
@@ -45,10 +45,10 @@ class PieceGrid(NamedTuple):
 
 
 def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]], size: float) -> PieceGrid:
-    """The grid over a table, for pieces given by `boxes` that cover each; rows of boxes are left, right, low, high.
+    """The grid over a table, for pieces each of which is covered by boxes; a row of boxes is left, right, low, high.
 
-    `lines` has for each piece the numbers of its line, its own number last; `size` bounds the numbers that points are
-    added up from.
+    `lines` has the numbers of each piece that go into `items`, the piece's number last. `size` bounds the moduli of the
+    numbers that points are added up from.
     """
     slack = WIDER * size
     lowest, highest = table[:, (0, 2)].min(axis=0) - 4 * slack, table[:, (1, 3)].max(axis=0) + 4 * slack
@@ -82,7 +82,7 @@ def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]],
 
 
 def _square_rows(link: Array, way: int, low: Array, cell: Array) -> list[list[float]]:
-    """The rows of `PieceGrid.squares` for one quadrant of directions: leftwards if `way` is odd, downwards from 2."""
+    """The rows of `PieceGrid.squares` for one quadrant of directions: left if `way` is odd, down if it is 2 or more."""
     flip = (slice(None, None, -1 if way & 2 else 1), slice(None, None, -1 if way & 1 else 1))
     empty = (link == -1.0)[flip]
     side = np.zeros(link.shape)
@@ -108,7 +108,10 @@ def met(
     best: list[N],
     tried: Callable[[M, list[N], list[N]], list[N]],
 ) -> list[N]:
-    """The landing `best`, its length first, after `tried` was called for all lines of `items` that matter."""
+    """The landing, its length first, after `tried` was called for all lines of `items` along the flight.
+
+    `best` is the landing before; `tried` returns the nearer landing for one line.
+    """
     nought, one, half = ops.number(0.0), ops.number(1.0), ops.number(0.5)
     left, down = (ops.with_sign(one, side) < nought for side in v)  # of -0.0 too
     cells = float(grid.shape[0] * grid.shape[1])
@@ -124,7 +127,7 @@ def met(
     wide = ops.number(float(grid.shape[0]))
 
     def on(state: list[N]) -> list[N]:
-        """A step through the square where the flight is: the length up to its edge, and the list of its first cell."""
+        """One step through the empty square where the flight is: the length to its edge, and the next list."""
         t, _ = state
         i, j = (ops.rounded(step[axis] * t + start[axis]) for axis in (0, 1))
         x, y, link, _ = ops.look_up_row(grid.squares, j * wide + i + way)
@@ -162,7 +165,7 @@ class Box(NamedTuple):
 def boxed(boundary: Boundary, pieces: Sequence[tuple[int, float, float]], rows: Sequence[Sequence[float]]) -> list[Box]:
     """The boxes of pieces cubic in the parameter, in the order of the boundary.
 
-    A piece lies in the hull of its four control points, and they in the box.
+    A piece lies in the convex hull of its four control points, and the control points lie in the box.
     """
     size = max(abs(x) for row in rows for x in (row[0], row[4]))
     corners = joined(boundary, pieces)
@@ -205,10 +208,10 @@ def joined(boundary: Boundary, pieces: Sequence[tuple[int, float, float]]) -> li
 
 
 def grown(boundary: Boundary, pieces: Sequence[tuple[int, float, float]]) -> list[list[float]]:
-    """A tree of boxes round pieces in the order of the boundary, halved again and again.
+    """A binary tree of boxes round the pieces, in the order of the boundary.
 
-    Nodes stand in the order of a walk through it: middle, half the sides, the node to go on to where the box is not
-    met, and the piece of a leaf, else -1. Two columns are empty.
+    Nodes are listed in preorder: the middle, half the sides, the node to go to if the box is not met, and the piece of
+    a leaf, else -1. Two columns are empty.
     """
     boxes = []
     where, lows, highs = (np.array(row) for row in zip(*pieces, strict=True))

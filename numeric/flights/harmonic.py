@@ -1,7 +1,7 @@
-"""Tables whose boundary is a finite Fourier sum: the ellipse in closed form, any convex one by its chord polynomial.
+"""Tables whose boundary is a finite Fourier sum: the ellipse in closed form, any convex curve by its chord polynomial.
 
-State: the unit numbers `u = exp(i*theta)` and `v`, the particle's direction. The programs that a flight
-needs come from `symbolic.motion.flight` through the table IR.
+State: the unit numbers `u = exp(i*theta)` and `v`, the particle's direction. The programs that a flight needs come from
+`symbolic.motion.flight` through the table IR.
 """
 
 from collections.abc import Sequence
@@ -85,7 +85,7 @@ class Harmonic(Family):
     def landed(
         self, ops: Backend[N, M], shape: Fields[N], law: str, u: Pair[N], v: Pair[N], d: Pair[N] | None = None
     ) -> Landing[N]:
-        """The landing at `u` of a particle that flies along `v`; `d` is the velocity there, if known to more digits."""
+        """The landing at `u` of a particle that flies along `v`; `d` is the tangent there, if known to more digits."""
         dx, dy = d or self.velocity(ops, *u, *shape)
         across = plane.exact_dot(ops, (dx, dy), v)
         along = -plane.exact_cross(ops, (dx, dy), v)
@@ -123,7 +123,7 @@ class Harmonic(Family):
 
 
 class Ellipse(Harmonic):
-    """One harmonic: the middle of the chord lies along `support`, so that no equation is solved."""
+    """The ellipse, with a single harmonic: the midpoint of a chord lies along `support`, so no equation is solved."""
 
     name, path = "ellipse", "closed form in unit numbers"
     narrow = 32  # few values are alive at a time
@@ -165,7 +165,7 @@ class Ellipse(Harmonic):
         return self.turning(ops, shape), plane.dot(d, d)
 
     def turning(self, ops: Backend[N, M], shape: Fields[N]) -> N:
-        """Acceleration cross velocity, minus the determinant of the linear map from the circle: a constant."""
+        """Acceleration cross velocity: minus the determinant of the affine map from the circle, a constant."""
         start = ops.number(1.0), ops.number(0.0)
         ax, ay = self.acceleration(ops, *start, *shape)
         dx, dy = self.velocity(ops, *start, *shape)
@@ -177,7 +177,7 @@ class Ellipse(Harmonic):
 
 
 class Fourier(Harmonic):
-    """Any convex sum of harmonics: the one real zero of the chord polynomial, from the circle's chord."""
+    """Any convex Fourier sum: the only real zero of the chord polynomial is found from the circle's chord."""
 
     steps = 1, 1
 

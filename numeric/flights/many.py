@@ -1,9 +1,9 @@
 """Tables of many sides and arcs that are not convex: the first hit by a grid of cells over the table.
 
-The closed forms are those of `numeric.flights.pieces`, and so is every decision: only pieces in the cells that a flight
-comes through are tried, and of those that it meets the nearest is taken. What is left out could not have been taken, so
-a landing is the same to the last bit as that of the walk through all pieces. A short convex curve round the table, such
-as the walls round many discs, is tested first, because its piece is found at once.
+The closed forms and the decisions are those of `numeric.flights.pieces`, but only the pieces in the cells that a flight
+comes through are tried. The pieces left out cannot be hit first, so a landing is the same to the last bit as if all
+pieces were tried. A short convex curve round the table, such as the walls round many discs, is tested first, because
+its piece is found at once.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ PARTS = 64  # boxes round a piece
 
 
 class Many(Pieces):
-    """`Pieces` with a grid, by which a flight tests few of them."""
+    """The flight of `Pieces`, with a grid by which a flight tests few pieces."""
 
     path = "closed form on sides and arcs from a grid, first hit"
     width = 8
@@ -98,7 +98,7 @@ class Many(Pieces):
         return self._landed(flight, shape, pieces, [t, *best, where], [*ends, *passed])
 
     def _where(self, flight: Ray[N, M], kind: str, where: N, best: list[N]) -> list[N]:
-        """`p`, `q` and `v x d` of the landing, where it is on a piece of this kind; else `best`."""
+        """`p`, `q` and `v x d` of the landing if it is on a piece of the kind `kind`; else the numbers `best`."""
         ops, marked = flight.ops, [known == kind for known in self.kinds]
         if all(marked):
             return list(self._met(flight, self._at(ops, kind, where), where)[1:4])
@@ -111,11 +111,11 @@ class Many(Pieces):
         return list(ops.when(here, best, found))
 
     def _sides(self, flight: Ray[N, M], corners: Sequence[Pair[N]]) -> list[N]:
-        """The sides of the line on which some corners lie."""
+        """On which side of the line each corner lies: positive to the left, negative to the right."""
         return [plane.cross(flight.v, (x - flight.z0[0], y - flight.z0[1])) for x, y in corners]
 
     def _tried(self, flight: Ray[N, M], reached: M, line: list[N], best: list[N]) -> list[N]:
-        """The nearer of the landing `best` and that on the piece of a grid's line; and the nearest corner passed."""
+        """The nearer landing, `best` or one on the piece of this line of the grid; and the nearest corner passed."""
         ops, nought, (x0, y0, x1, y1, j), (t, where, *passed) = flight.ops, flight.ops.number(0.0), line, best
         first, last = self._sides(flight, ((x0, y0), (x1, y1)))
         if passed:
@@ -133,11 +133,11 @@ class Many(Pieces):
         return [t, where, *passed]
 
     def _side(self, flight: Ray[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
-        """The nearer of the landing on a straight side that is met and the landing known so far."""
+        """The nearer of two landings: the known one, and the one on a straight side that the line meets."""
         return self._nearer(flight.ops, here, self._met(flight, self._at(flight.ops, kind, j), j)[0], j, t, where)
 
     def _arc(self, flight: Ray[N, M], kind: str, here: M, j: N, first: N, last: N, t: N, where: N) -> list[N]:
-        """The nearer of the landing on an arc that may be met and the landing known so far."""
+        """The nearer of two landings: the known one, and the one on an arc that the line may meet."""
         ops, piece, nought = flight.ops, self._at(flight.ops, kind, j), flight.ops.number(0.0)
         new, p, q, _, left = self._met(flight, piece, j)
         own = modulus(flight.component - j) < ops.number(0.25)
@@ -157,7 +157,7 @@ class Many(Pieces):
         return self._nearer(ops, here & turns, new, j, t, where)
 
     def _nearer(self, ops: Backend[N, M], meets: M, new: N, j: N, t: N, where: N) -> list[N]:
-        """The nearer of a new landing and the known one; of two at the same length the first in order."""
+        """The nearer of a new landing and the known one; at equal length the one on the piece with the lower number."""
         meets = meets & (ops.number(0.0) < new) & ((new < t) | ((new == t) & (j < where)))
         return [ops.select(meets, new, t), ops.select(meets, j, where)]
 
@@ -220,7 +220,7 @@ class Many(Pieces):
 
 
 def boxes_of(piece: PieceNumbers[float], ends: Pair[float]) -> NDArray[np.float64]:
-    """Boxes round parts of a piece: left, right, low, high."""
+    """Boxes that cover a piece, each round one part of it: left, right, low, high."""
     low, high = (float(end) for end in ends)
     p = np.linspace(low, high, PARTS + 1)
     found = []

@@ -6,21 +6,21 @@ A piece is `O + p*A + q*B`: an arc of an ellipse for `(p, q)` on the unit circle
     a = v x A,    b = v x B,    m = v x (z0 - O),
 
 and of the two points of an ellipse a particle from inside arrives at the one where `v x d = sqrt(a*a + b*b - m*m)` is
-positive, whichever way the arc bends. On the arc from which it leaves the root is that of the departure, which no
-subtraction spoils.
+positive, whichever way the arc bends. On the arc from which it leaves, the root is known from the departure, so that no
+digits cancel.
 
-Whether a side is met is decided by which side of the line its two ends lie on; two pieces that share a corner compare
-the same number there, so nothing passes between them. Round a convex curve that sign changes once from minus to plus:
-there the piece is chosen first, by halving if there are many, and one equation solved.
+The line meets a side if the side's ends lie on different sides of the line. Two pieces that share a corner use the same
+number for it, so no flight passes between them. Round a convex curve this sign changes from minus to plus only once. So
+the piece is found first, by bisection if there are many, and then one equation is solved.
 
 **Corners and tangencies are told from landings beside them by the flight's own error.** Let `S` be the sum of the
 moduli of the numbers from which the two ends of a flight are added up. Rounding moves the line sideways by at most
-`UNSURE*S = 8*2**-52*S`: in units of `2**-53`, a computed point is off by 5 of its share of `S`, a corner by 2, and a
-direction and a product by 3 each of the length, which is at most `S`. So a flight that passes a corner no farther
-aside ends there, as a `JOIN`, on whichever side the line seems to land, and also where it would fly past a corner
-that bends into the table. One that comes as near to a tangent of a dispersing arc is `GRAZING`, whether it seems to
-touch or not. A flight that ends on the arc from which it started is known far better when it is short: its departure is
-off by `UNSURE*S` along the arc, and the line moves sideways by `UNSURE` times its length.
+`UNSURE*S = 8*2**-52*S`: in units of `2**-53`, a computed point is off by 5 times its part of `S`, a corner by 2 times,
+and a direction and a product each by 3 times the length, which is at most `S`. So a flight that passes a corner no
+farther aside ends there, as a `JOIN`, on whichever side the line seems to land, and also where it would fly past a
+corner that bends into the table. A flight that comes as near to a tangent of a dispersing arc is `GRAZING`, whether it
+seems to touch the arc or not. A flight that ends on the arc from which it started is known far better when it is short:
+its departure is off by `UNSURE*S` along the arc, and the line moves sideways by `UNSURE` times its length.
 
 State: the piece, `p`, `q`, and the direction `v`.
 """
@@ -60,7 +60,7 @@ OWN = 2.0**-40  # beyond the end of its own arc, on which a particle lands: a si
 
 
 class Pieces(Coordinates):
-    """Several curves, each of several pieces: a table with corners, smooth joins and holes."""
+    """Several curves, each of several pieces, so that a table may have corners, smooth joins and holes."""
 
     name, path = "pieces", "closed form on every side and arc, first hit"
     pairs = (3,)
@@ -119,7 +119,7 @@ class Pieces(Coordinates):
 
     @cached_property
     def arcs(self) -> list[int]:
-        """The pieces that are no straight sides."""
+        """The pieces that are not straight sides."""
         return [i for i, kind in enumerate(self.kinds) if kind != LINE]
 
     def arc(self, ops: Backend[N, M], position: Fields[N], component: N, theta: N, law: LawIR) -> N:
@@ -198,7 +198,7 @@ class Pieces(Coordinates):
     def _ends_of_own(
         self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], corners: list[Pair[N]], first: N, last: N
     ) -> Pair[N]:
-        """The sides of a flight on which the ends of its own piece lie, with corners looked up; see `_sides_of_own`."""
+        """On which sides of a flight the ends of its own piece lie, with corners looked up; see `_sides_of_own`."""
         ops, smooth = flight.ops, [not start for start, _ in self.corners]
         if not any(smooth):
             return first, last
@@ -217,10 +217,10 @@ class Pieces(Coordinates):
         return ahead, behind
 
     def _round(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], sides: Fields[N]) -> list[N]:
-        """The landing of a flight on the convex curve round all others.
+        """The landing of a flight on the outer curve, which is convex.
 
-        If the sides of corners do not show the piece, the line crosses one arc twice: its own, or one that a flight
-        from another curve comes to.
+        If no piece has its ends on different sides of the line, the line crosses one arc twice: the arc of departure,
+        or for a flight from another curve any arc.
         """
         ops, where = flight.ops, flight.component
         nought, sides = ops.number(0.0), self._sides_of_own(flight, pieces, sides)
@@ -235,9 +235,10 @@ class Pieces(Coordinates):
         return [*self._met(flight, self._gathered(ops, where, pieces), where)[:4], where]
 
     def _sides_of_own(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], sides: Fields[N]) -> list[N]:
-        """Sides on which corners of the convex curve lie; by their order at smooth joins from which a particle starts.
+        """On which side of the line each corner of the convex curve lies.
 
-        There the first end of its piece lies to its left, the last to its right, whatever rounding says.
+        At a smooth join from which a particle starts, rounding is overruled: the first end of its piece is taken to lie
+        to the left of the line, the last end to the right.
         """
         ops, found, smooth = flight.ops, list(sides), [j for j in self.outer if not self.corners[j][0]]
         if not smooth or len(self.outer) == 1:
@@ -262,7 +263,7 @@ class Pieces(Coordinates):
         return list(ops.when(near, found, ordered))
 
     def _twice(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], arcs: list[int]) -> N:
-        """The arc among `arcs` of a convex curve that a line crosses twice, if it passes all corners on one side."""
+        """The arc among `arcs` that a line crosses twice, if all corners of a convex curve lie on one side of it."""
         ops, nought = flight.ops, flight.ops.number(0.0)
         where, most = nought * flight.component + ops.number(float(arcs[0])), nought
         for j in arcs if len(arcs) > 1 else []:
@@ -273,21 +274,21 @@ class Pieces(Coordinates):
         return where
 
     def _beyond(self, ops: Backend[N, M], own: M, ends: Sequence[N], side: N) -> N:
-        """How far beyond the end of an arc a landing may seem to be: a little at a smooth join, more on its own arc.
+        """The tolerance for a landing beyond the end of an arc: small at a smooth join, larger on the arc of departure.
 
-        So no flight passes between two arcs. A particle that left from its end may have that end on the wrong side of
-        its flight, by rounding, and then seems to come back to an arc that it does not come back to.
+        So no flight passes between two arcs. By rounding, the end from which a particle left may lie on the wrong side
+        of its flight; then the particle seems to come back to the arc that it has left.
         """
         return ops.select(own, ops.number(-OWN), ops.select(side <= ops.number(0.0), *ends))
 
     def _spans(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]]) -> list[Pair[N]]:
-        """`span` of every piece; constants, if there are no parameters."""
+        """`span` of every piece, as constants if there are no parameters."""
         if self.boundary.shape:
             return [span(piece) for piece in pieces]
         return [(ops.number(float(x)), ops.number(float(y))) for x, y in map(span, self.known)]
 
     def _size(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], component: N, p: N) -> N:
-        """The sum of the moduli of the numbers that a point of a piece is added up from, or a bound of it."""
+        """The sum of the moduli of the numbers that a point of a piece is added up from, or a bound of this sum."""
         base, slope = self._pair(ops, component, self._spans(ops, pieces))
         return base + slope * modulus(p)
 
@@ -301,7 +302,9 @@ class Pieces(Coordinates):
         return largest
 
     def _slack(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], piece: PieceNumbers[N]) -> N:
-        """The `(v x d)**2`, `d` an arc's tangent, below which rounding hides on which side of it the line passes."""
+        """The bound of `(v x d)**2`, for an arc's tangent `d`, below which rounding hides whether the line meets the
+        arc.
+        """
         ops, radius = flight.ops, piece.radius
         if piece.kind != CIRCLE:
             a, b = plane.cross(flight.v, piece.A), plane.cross(flight.v, piece.B)
@@ -310,7 +313,7 @@ class Pieces(Coordinates):
         return ops.number(2 * UNSURE) * radius * size
 
     def _gathered(self, ops: Backend[N, M], where: N, pieces: list[PieceNumbers[N]]) -> PieceNumbers[N]:
-        """The piece of every particle; its kind is that of the pieces round the table, or empty if these differ."""
+        """The piece of every particle. Its kind is that of the pieces of the outer curve, or empty if those differ."""
         several = len({self.kinds[j] for j in self.outer}) > 1
         origin, A, B = self._axes_at(ops, pieces, where)
         D, radius = self._turning(ops, pieces, where), chosen(ops, where, [piece.radius for piece in pieces])
@@ -319,7 +322,7 @@ class Pieces(Coordinates):
         return PieceNumbers(kind, origin, A, B, origin, D, radius, origin, origin)
 
     def _met(self, flight: Ray[N, M], piece: PieceNumbers[N], where: N) -> tuple[N, N, N, N, N]:
-        """Length, `p`, `q` and `v x d` of a landing on the piece, and a number, positive if the line meets it."""
+        """Length, `p`, `q` and `v x d` of a landing on the piece, and a number that is positive if there is one."""
         ops, v = flight.ops, flight.v
         w = flight.z0[0] - piece.origin[0], flight.z0[1] - piece.origin[1]
         a, b, m = plane.cross(v, piece.A), plane.cross(v, piece.B), plane.cross(v, w)
@@ -422,25 +425,25 @@ class Pieces(Coordinates):
         return ops.select(sure, code, ops.number(float(Status.JOIN.code)))
 
     def _near(self, ops: Backend[N, M], farthest: N, sides: Fields[N]) -> Iterator[M]:
-        """Masks: does the line pass a corner so near that its side may be in doubt?"""
+        """For each corner: does the line pass so near that rounding may hide on which side?"""
         for side in sides:
             yield ops.negated(ops.number(8 * UNSURE) * farthest < modulus(side))
 
     def _passes(
         self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], start: N, t: N, sides: Fields[N]
     ) -> Iterator[M]:
-        """Masks, one for each corner that a flight may pass: does rounding hide on which side the flight passes it?"""
+        """For each corner that a flight may pass: does rounding hide on which side the flight passes it?"""
         for j in self.passed:
             yield passing(flight, pieces[j].start, sides[j], start, t)
 
     def _slack_at(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], where: N) -> N:
-        """`_slack` of the dispersing arc on which a flight ends; negative on other pieces."""
+        """`_slack` of the arc on which a flight ends, if it is dispersing; negative on all other pieces."""
         none, known = -flight.ops.number(1.0), zip(pieces, self.bulges, strict=True)
         slack = [self._slack(flight, pieces, piece) if bulges else none for piece, bulges in known]
         return chosen(flight.ops, where, slack)
 
     def _gap(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], where: N, u: Pair[N]) -> N:
-        """How far a landing is from the nearer end of its piece, in units of the velocity; negative beyond it.
+        """The parameter's distance of a landing from the nearer end of its piece; negative beyond the end.
 
         A smooth join is not an end.
         """

@@ -1,9 +1,9 @@
 """Tables given by their radius `r(theta)`, convex or not: a march along the ray that cannot jump over the first hit.
 
-As a particle flies, the polar angle of its place runs one way, from `theta0` towards the direction of `v`, by less than
-half a turn; so the first hit is the first zero in `theta`, whatever the table looks like. With `x` the angle run
-through, `h = |z0 x v|` and `S(x)` the sine of the angle from the place to `v`, the ray is at `1/rho = S/h`, and it is
-inside the table as long as
+As a particle flies, the polar angle of its position changes monotonically, from `theta0` towards the direction of `v`,
+by less than half a turn; so the first hit is the first zero in `theta`, whatever the table looks like. Let `x` be the
+change of the angle, `h = |z0 x v|`, and `S(x)` the sine of the angle from the position to `v`. The ray is at
+`1/rho = S/h`, and it is inside the table as long as
 
     K(x) = S(x)/h - 1/r > 0.
 
@@ -14,21 +14,22 @@ negative just where the wall disperses, and the constant `1/(semi-latus rectum)`
     K(x + y) = K cos y + K' sin y - (integral of sin(y - s)*w(x + s), s from 0 to y)
             >= K cos y + K' sin y - W(1 - cos y)
 
-for `0 <= y <= pi`, where the sine is not negative. The march goes to the first zero of the right-hand side, which is
-in closed form with one square root and one division and no angle. Before it `K` is positive: **no zero is jumped
-over.** Near a zero the steps are those of Newton's method up to second order, so few are needed; on a conic about the
-origin one is.
+for `0 <= y <= pi`, where the sine is not negative. The march goes to the first zero of the right-hand side, which is in
+closed form with one square root and one division and no angle. Before it `K` is positive: **no zero is jumped over.**
+Near a zero the steps agree with Newton's method up to second order, so few are needed, and only one on a conic about
+the origin.
 
-A march ends where `K' < 0` and `2*L*K <= HALT*K'*K'` with `|w| + |K| <= L` near by: there a zero lies ahead by
-Kantorovich's theorem, and Newton's method converges to it. It takes the last steps, on the flight equation with its
-known zero divided out (see `Secant`), so that short flights are as exact as long ones. The last residual is that of the
-equation as it stands, with more digits (see `Doubles`): only the rounding of the landing is left. Where the radius has
-elementary functions, whose ten further bits are too few for a short flight, such a flight keeps the divided equation.
+A march ends where `K' < 0` and `2*L*K <= HALT*K'*K'` with `|w| + |K| <= L` in a neighbourhood: then a zero lies ahead
+by Kantorovich's theorem, and Newton's method converges to it. It takes the last steps, on the flight equation divided
+by its known zero (see `Secant`), so that short flights are as exact as long ones. The last residual is that of the
+undivided equation, with more digits (see `Doubles`), so that only the rounding of the landing remains. Where the radius
+has elementary functions, whose ten further bits are too few for a short flight, such a flight uses the divided equation
+to the end.
 
-Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: a flight that passes or cuts a bulge of the wall by less
-than this may be mistaken for the other; its incidence is within 1e-7 of a tangent. A march that does not end has met a
-tangency: its outcome is `Status.GRAZING`.
-`W` and `L` are proved, not sampled: the program of the radius runs on intervals that cover the whole turn.
+Rounding makes `K*h*r*r` wrong by some units of `2**-52*r*r`: a flight that misses a bulge of the wall by less than this
+may be taken for one that hits it, and the reverse; its direction is within 1e-7 of a tangent. A march that does not end
+has met a tangency: its outcome is `Status.GRAZING`. `W` and `L` are proved, not sampled: the program of the radius runs
+on intervals that cover the whole turn.
 """
 
 from functools import lru_cache
@@ -108,7 +109,7 @@ class Polar(Harmonic):
 
 
 class March(Generic[N, M]):
-    """A ray and the march along it, on some arithmetic."""
+    """A ray from a boundary point, and the march along it, in some arithmetic."""
 
     def __init__(self, family: Polar, ops: Backend[N, M], shape: Fields[N], u0: Pair[N], v: Pair[N]) -> None:
         self.family, self.ops, self.shape, self.u0, self.v = family, ops, shape, u0, v
@@ -120,7 +121,7 @@ class March(Generic[N, M]):
         self.rate = slope * sine - self.r0 * cosine  # N0
 
     def marched(self) -> list[N]:
-        """The unit vector where the march ends, a flag that is 1 if it does not end, and a bound of its last step."""
+        """The unit vector where the march stops, a flag that is 1 if it has not converged, and the bound of a step."""
         ops, family = self.ops, self.family
         one, nought = ops.number(1.0), ops.number(0.0)
         bound = self.size * self.r0 * ops.number(family.bounds.highest)
@@ -140,12 +141,12 @@ class March(Generic[N, M]):
         return list(ops.when(shallow, state, careful))
 
     def _going(self, state: list[N]) -> M:
-        """Is the march still going?"""
+        """Has the march not yet ended?"""
         going: M = self.ops.number(0.5) < state[2]
         return going
 
     def _step(self, state: list[N]) -> list[N]:
-        """A step of the march; the third number becomes 0 where it was the last."""
+        """A step of the march; the third number of the state becomes 0 at the last step."""
         ops, u = self.ops, (state[0], state[1])
         r, slope = self.family.radius(ops, *u, *self.shape)
         S = ops.times_sign(plane.cross(u, self.v), self.side)
@@ -154,7 +155,7 @@ class March(Generic[N, M]):
         return [*self._turned(u, c, s), ends, modulus(s)]
 
     def _careful(self, state: list[N]) -> list[N]:
-        """A `_step` for flights that begin along the wall and may follow it from where it is almost straight.
+        """A `_step` for flights that begin almost along the wall, where the wall may be almost straight.
 
         `K` is computed from the divided equation, without cancellation. A step is at most `GROWTH` times the one
         before, so that `w` here and the bound of its slope give a better bound than `W` does.
@@ -177,7 +178,10 @@ class March(Generic[N, M]):
         return [*self._turned(u, c, s), ends, ops.maximum(modulus(s), ops.number(2.0**-52))]
 
     def _stepped(self, u: Pair[N], r: N, slope: N, k: N, floor: N, highest: N) -> tuple[N, N, N]:
-        """Cosine and sine of a step, safe if the module's `w <= highest`; and 0 if the march ends with it, else 1."""
+        """Cosine and sine of a step that jumps over no zero if `w <= highest` (see the module), and a flag.
+
+        The flag is 0 if the step is the last one, else 1.
+        """
         ops, one, nought = self.ops, self.ops.number(1.0), self.ops.number(0.0)
         square = r * r
         k1 = self.h * slope - square * plane.dot(u, self.v)
@@ -198,8 +202,8 @@ class March(Generic[N, M]):
     def _divided(self, u: Pair[N]) -> tuple[N, N, N]:
         """`H`, `scale` and `weight` with `v x (z - z0) = H*scale/weight`, all three computed without cancellation.
 
-        `u - u0 = tan(B)*i*(u + u0)` for half the angle `B` between them: up to a quarter of a turn differences are
-        divided by `tan(B) = scale/weight`, beyond it by one.
+        If `B` is half the angle between `u0` and `u`, then `u - u0 = tan(B)*i*(u + u0)`. For angles up to a quarter
+        turn differences are divided by `tan(B) = scale/weight`, for larger ones by one.
         """
         ops, one, u0, v = self.ops, self.ops.number(1.0), self.u0, self.v
         near = ops.number(0.0) < plane.dot(u0, u)
@@ -216,7 +220,7 @@ class March(Generic[N, M]):
         return self.r0 * plane.exact_cross(ops, v, f) + r.slope * plane.cross(v, u), scale, weight
 
     def sharpened(self, u: Pair[N], reach: N) -> Pair[N]:
-        """The landing, from the end of the march: Newton's steps on the divided equation."""
+        """The landing, by steps of Newton's method on the divided equation, from the end of the march."""
         ops, one, two = self.ops, self.ops.number(1.0), self.ops.number(2.0)
 
         def at(x: N) -> Pair[N]:
@@ -236,17 +240,17 @@ class March(Generic[N, M]):
         return at(x)
 
     def goes_back(self, u: Pair[N]) -> M:
-        """The mask of landings that are not ahead: no flight is as short as its rounding."""
+        """The mask of landings that are not ahead of the departure, which only rounding can produce."""
         nought = self.ops.number(0.0)
         ahead = nought < self.side * plane.exact_cross(self.ops, self.u0, u)
         back: M = self.ops.negated(ahead) & (nought < plane.dot(self.u0, u))
         return back
 
     def refined(self, u: Pair[N], normal: bool) -> tuple[Pair[N], Pair[N]]:
-        """The landing after one more step of Newton's method, whose residual has more digits; the velocity there.
+        """The landing after one more step of Newton's method, whose residual has more digits; and the tangent there.
 
-        Only the rounding of the landing is left. The velocity is computed before the landing is rounded, without
-        cancellation among harmonics, and so is the direction of a flight along the `normal`.
+        Only the rounding of the landing remains. The tangent is computed before the landing is rounded, without
+        cancellation among harmonics; so is the direction of a flight along the `normal`.
         """
         ops, family, v = self.ops, self.family, self.v
         r, slope, bent = family.bent(ops, *u, *self.shape)
@@ -287,7 +291,7 @@ class Bounds(NamedTuple):
 def bounds(boundary: Boundary) -> Bounds:
     """Proved bounds of a boundary, rounded up to four bits so that similar shapes share a kernel; infinite if unknown.
 
-    Cells that give no bounds below `STEEP` are halved, until one of them is proved to be steeper.
+    Cells whose bounds are above `STEEP` are halved, until the bounds fit or a cell is proved to exceed `STEEP`.
     """
     shape = [Interval.around(np.array(x)) for x in boundary.shape]
     program, none = boundary.ir.program("radius"), Bounds(np.inf, np.inf, np.inf)

@@ -1,7 +1,7 @@
-"""Methods for finding the next bounce, in the order in which they are asked whether they serve a table.
+"""The methods for finding the next bounce; the first one that fits a table is used.
 
-A new method is a module beside these and a line here: its module, its class, and the table of the paper that it is for,
-if it serves one alone.
+To add a method, write a module beside these, and add a line here: its module, its class, and the name of the paper's
+table that it is for, if it serves only this one.
 """
 
 from importlib import import_module
@@ -24,7 +24,7 @@ FAMILIES = (
 
 
 def family_of(boundary: Boundary) -> Family:
-    """The first family that serves the table; those after it, and those for another table, are not even imported."""
+    """The first family that serves the table; the modules of later families are not imported."""
     for module, name, table in FAMILIES:
         if table not in ("", boundary.ir.same_as):
             continue

@@ -1,13 +1,13 @@
-"""Splines: a boundary of pieces that are polynomials of degree three, whose numbers lie in memory.
+"""Splines: a boundary of pieces that are polynomials of degree three, with their coefficients in memory.
 
-Round a convex curve the corners between pieces lie to the right of a line through the boundary up to one of them, and
-to its left from there on. So the piece on which a flight lands is found by halving, in as many steps as the number of
-pieces has binary digits, and one polynomial is solved there; on the piece of departure the known root is divided out.
-Elsewhere every piece has a box along its chord, and pieces are tried in the order in which the flight may come to
-their boxes: a few at most. Many boxes stand in a tree. A piece turns by a quarter of a turn at most and one way, so on
-it the flight function has one zero if its two ends lie on different sides of the flight, and two or none elsewhere.
-Whether an end of the piece of departure lies left or right is decided after the known zero is divided out,
-and so is a landing on that piece. State: the component, the parameter `theta`, and the direction `v`.
+Consider a line through a point of a convex curve. Along the curve the corners between pieces lie to the right of the
+line up to some corner, and to its left from there on. So the piece on which a flight lands is found by bisection, in as
+many steps as the number of pieces has binary digits, and one polynomial is solved; on the piece of departure it is
+divided by the known root. On other tables every piece has a box along its chord, and the few pieces whose boxes the
+flight may meet are tried in that order. If there are many boxes, they form a tree. On a piece the tangent turns one
+way, by at most a quarter turn, so the flight function has one zero there if the two ends lie on different sides of the
+flight, and two or none otherwise. On the piece of departure both the sides of its ends and a landing are computed after
+division by the known zero. State: the component, the parameter `theta`, and the direction `v`.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ SCANNED = 64  # pieces, up to which all their boxes are looked at: beyond, a tre
 
 
 class Spline(General):
-    """The map of section 2 of the paper, on tables whose pieces are cubic in the parameter."""
+    """The flight on tables whose pieces are cubic in the parameter. Paper: section 2."""
 
     name = "spline"
     width = 16
@@ -160,7 +160,7 @@ class Spline(General):
         return [ops.select(lands, x, y) for x, y in zip(back, best, strict=True)]
 
     def _first(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
-        """The nearest landing: on the pieces whose box the flight may meet, the nearest box first."""
+        """The nearest landing, from the pieces whose box the flight may meet, tried from the nearest box on."""
         far, (component, theta) = ops.number(FAR), start
         each = ops.number(0.0) * theta
         best, sides = self._own(ops, start, own, v, [far + each, component + each, theta])
@@ -191,14 +191,14 @@ class Spline(General):
         return low, high
 
     def _neighbour(self, ops: Backend[N, M], component: N, theta: N) -> Pair[N]:
-        """The component that goes on smoothly from the end where a particle is, and the parameter there; -1 if none."""
+        """The component that joins smoothly at the end where a particle is, and its parameter there; -1 for none."""
         columns = [[ops.number(row[i]) for row in self.neighbours] for i in range(5)]
         middle, before, end, after, begin = (ops.look_up(column, component) for column in columns)
         first = theta < middle
         return ops.select(first, before, after), ops.select(first, end, begin)
 
     def _back(self, ops: Backend[N, M], start: Pair[N], v: Pair[N], best: list[N]) -> list[N]:
-        """The nearest of `best` and, if a particle leaves from an end, landings on its neighbour; and the neighbour."""
+        """The nearer landing, `best` or one on the neighbour of the end where a particle starts; and the neighbour."""
         none, at_end = ops.number(-1.0) + ops.number(0.0) * start[0], self._at_end(ops, *start)
 
         def found() -> list[N]:
@@ -212,9 +212,10 @@ class Spline(General):
     def _own(
         self, ops: Backend[N, M], start: Pair[N], own: list[N], v: Pair[N], best: list[N]
     ) -> tuple[list[N], Pair[N]]:
-        """The nearest landing: `best` or one on the piece of departure, whose zero at the start is divided out.
+        """The nearest landing: `best` or one on the piece of departure, whose zero at the start is divided out; and the
+        sides of its ends.
 
-        The second result says on which sides of the flight the two ends of this piece lie.
+        The second result has for each end of this piece the side of the flight on which the end lies.
         """
         component, theta = start
         low, high = self._ends_of(ops, component)
@@ -253,10 +254,11 @@ class Spline(General):
         return best, (least(ops, low, ops.number(-TINY)) * first, most(ops, high, ops.number(TINY)) * last)
 
     def _ahead(self, ops: Backend[N, M], component: N, z0: Pair[N], v: Pair[N], floor: N) -> tuple[list[N], list[N], N]:
-        """The nearest two pieces whose boxes the flight may meet, none nearer than `floor`; how near the third one is.
+        """The two nearest pieces, not nearer than `floor`, whose boxes the flight may meet; and the bound of the third
+        one.
 
-        A piece is given as minus a length before which the flight does not meet it, and its number. Each choice has one
-        mask: combining masks takes longer than choosing.
+        A piece is given by its number and by minus a lower bound of the length at which the flight meets it. Each
+        choice has its own mask: to combine masks takes longer than to choose.
         """
         nought, never = ops.number(0.0), ops.number(-FAR)
         aside, begin = plane.cross(z0, v), plane.dot(v, z0)
@@ -280,7 +282,7 @@ class Spline(General):
         return one, two, third
 
     def _side(self, ops: Backend[N, M], corner: Fields[N], component: N, ends: Pair[N], v: Pair[N], aside: N) -> N:
-        """How far a corner lies to the left of the flight; `ends` has better values for the piece of departure."""
+        """How far a corner lies to the left of the flight; for the piece of departure, the better value in `ends`."""
         x, y, before, after = corner
         side = v[0] * y + (aside - v[1] * x)
         return ops.select(component == before, ends[1], ops.select(component == after, ends[0], side))
@@ -325,7 +327,7 @@ class Spline(General):
         begin = [rise, low, high, guess, none, none, ops.select(folded, nought, one + none)]
 
         def parted() -> list[N]:
-            """The part of a piece that a flight meets first, and where the piece turns back."""
+            """The part of a piece that the flight meets first, and the parameter of the flight function's extremum."""
             root = ops.sqrt(ops.maximum(p[2] * p[2] - ops.number(3.0) * p[3] * p[1], nought))
             w = -(p[2] + ops.times_sign(root, p[2]))
             near, other = p[1] / w, w / (ops.number(3.0) * p[3])
@@ -366,7 +368,7 @@ class Spline(General):
         behind = meets & (t <= nought) & (half < modulus(back))
 
         def other() -> list[N]:
-            """The other part, where the first zero lies behind the departure."""
+            """The landing on the second part of a piece, where the zero on the first lies behind the departure."""
             left = back < nought
             ends = ops.select(left, low, m), ops.select(left, m, high)
             return list(arrival(-rise, *ends, half * (ends[0] + ends[1]), behind, best)[1])
@@ -374,10 +376,10 @@ class Spline(General):
         return list(ops.when(behind, best, other))
 
     def _nearest(self, ops: Backend[N, M], start: Pair[N], own: list[N], z0: Pair[N], v: Pair[N]) -> list[N]:
-        """The nearest landing: down the tree wherever the flight meets a box before the best so far.
+        """The nearest landing, by a walk down the tree of boxes that leaves out boxes beyond the best landing so far.
 
-        With more digits than doubles have, every zero on a piece is sought as on any table: so it shares nothing with
-        the search by boxes, and can serve to test it.
+        With numbers of more digits than doubles, all pieces are searched as on any table. This uses none of the boxes,
+        and can serve to test them.
         """
         component, theta = start
         one, half, nought, far = (ops.number(x) for x in (1.0, 0.5, 0.0, FAR))
@@ -389,7 +391,7 @@ class Spline(General):
             *best, other = self._back(ops, start, v, best)
 
         def walked(state: list[N]) -> list[N]:
-            """Next node of the tree, until a piece is reached or the tree ends."""
+            """The next node of the tree, until a piece is reached or the tree ends."""
             node, _, best = state
             x, y, wide, high, skip, piece, *_ = ops.look_up_row(self.tree, node)
             c = x - z0[0], y - z0[1]
@@ -441,7 +443,7 @@ def most(ops: Backend[N, M], x: N, y: N) -> N:
 
 
 def convex(boundary: Boundary) -> bool:
-    """Does one closed curve of pieces on [0, 1] turn to the left all the way, and once round?"""
+    """Is the boundary one closed curve of pieces on [0, 1] that turns always to the left, and once round?"""
     if any((low, high) != (0.0, 1.0) for low, high in boundary.ends) or len(loops(boundary.following)) > 1:
         return False
     if not all(inwards(boundary, i) for i in range(len(boundary.ends))):

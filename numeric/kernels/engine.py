@@ -1,6 +1,6 @@
-"""Runs trajectories: rows are padded to whole blocks and blocks are divided among threads; or NumPy runs them.
+"""Runs many trajectories: by kernels on whole blocks of lanes, divided among threads; or else by NumPy.
 
-Every lane computes as if it were alone, so results depend neither on threads nor on blocks.
+Every lane computes independently of the others, so results depend neither on threads nor on blocks.
 """
 
 import itertools
@@ -63,7 +63,7 @@ class Engine(NamedTuple):
         threads: int | None = None,
         outcome: Sequence[Array] = (),
     ) -> EngineResult:
-        """Bounces every particle `bounces` times, from the rows `own`, `tangent` and `outcome` (code, lost)."""
+        """Advances every particle by `bounces` bounces, from the rows `own`, `tangent` and `outcome` (code, lost)."""
         names = fields(self.family, spec)
         count = own[0].size
         width = -(-count // self.width) * self.width
@@ -95,7 +95,7 @@ class Engine(NamedTuple):
         shape: Sequence[float],
         length: tuple[Series, Sequence[float]] = (CLOSED, ()),
     ) -> "BatchRun | None":
-        """A batch for up to `count` particles that records the fields `told`; None if there are no kernels for it."""
+        """A batch for up to `count` particles that records the fields `told`; None if no kernel can do it."""
         if not self.can_record:
             return None
         found = BatchRun(self, law, tuple(told), count, shape, length)
@@ -113,7 +113,7 @@ class Engine(NamedTuple):
     ) -> Array | None:
         """One bounce from the arrays `start` into the arrays `out`; returns the codes of the outcomes.
 
-        None where there are no kernels for it.
+        The result is None if no kernel can do it.
         """
         if not self.can_record:
             return None
@@ -155,7 +155,7 @@ class Engine(NamedTuple):
         page: Array | None,
         threads: int | None,
     ) -> None:
-        """Bounces all columns of `state` in place."""
+        """Advances all columns of `state` by `bounces` bounces, in place."""
         function = None
         if self.kernels:
             function = machine.compiled(self.family, self.identity, self.names, spec, self.width)
@@ -168,11 +168,11 @@ class Engine(NamedTuple):
 
 
 class BatchRun:
-    """A batch of particles: `begin` sets where they start, `advance` bounces them and records each bounce.
+    """A batch of particles: `begin` sets where they start, `advance` advances them and records each bounce.
 
     Whole blocks of lanes write records straight into the caller's arrays, a few bounces of all of them at a time,
-    because a block's records of successive bounces lie far apart. Incomplete blocks, and arrays that are not float64,
-    are filled by way of a page of memory that stays in the cache.
+    because a block's records of successive bounces lie far apart. For incomplete blocks, and for arrays that are not
+    float64, a page of memory that stays in the cache is filled first and then copied.
     """
 
     def __init__(
@@ -194,7 +194,10 @@ class BatchRun:
         self.page, self.begun = np.empty(0), False
 
     def begin(self, start: Sequence[NDArray[Any] | float], lam: Array) -> "BatchRun":
-        """Sets particles, no more than there is room for, at component, parameter and exit angle; returns the batch."""
+        """Sets the starts, at most as many as the batch has room for, by component, parameter and exit angle.
+
+        Returns the batch.
+        """
         self.count, self.begun = lam.size, False
         self.columns = -(-self.count // self.width) * self.width
         for row, values in zip((*self.state[-len(START) :], self.lam), (*start, lam), strict=True):
@@ -204,7 +207,7 @@ class BatchRun:
         return self
 
     def restore(self, rows: Array) -> "BatchRun":
-        """Sets the state to these rows, to go on from it; returns the batch."""
+        """Sets the state to `rows`, as saved before, so that the run can go on from it; returns the batch."""
         self.state[: len(rows), : self.count] = rows
         self.state[: len(rows), self.count :] = rows[:, -1:]
         self.begun = True
@@ -216,7 +219,7 @@ class BatchRun:
         return {name: row[: self.count] for name, row in zip(self.names, self.state, strict=False)}
 
     def kernel(self, starts: bool = False, told: bool = True, streams: bool = False) -> machine.Run | None:
-        """The kernel that begins from the starts or goes on from the state, with or without recording."""
+        """The compiled kernel: with `starts`, one that begins from the starts; with `told`, one that records."""
         engine = self.engine
         told_of = self.told if told else ()
         spec = KernelSpec(self.law, told=told_of, starts=starts, length=self.how, streams=streams)
@@ -225,7 +228,7 @@ class BatchRun:
     def advance(
         self, bounces: int, out: Mapping[str, Array], top: int, every: int = 1, threads: int | None = 1
     ) -> None:
-        """Bounces all particles, and stores every `every`-th bounce in the rows of `out` from `top` on."""
+        """Advances all particles, and stores every `every`-th bounce in the rows of `out`, from row `top` on."""
         rows = [out[name][top : top + bounces // every] for name in self.told]
         if not rows:
             self.start()._call(self.kernel(told=False), bounces // every * every, None, threads)
@@ -237,14 +240,14 @@ class BatchRun:
                 self._tell([row[i : i + 1] for row in rows], threads)
 
     def start(self) -> "BatchRun":
-        """Computes the state from the starts, unless it is computed; returns the batch."""
+        """Computes the state from the starts if that is not yet done; returns the batch."""
         if not self.begun:
             self._call(self.kernel(starts=True, told=False), 0, None, 1)
             self.begun = True
         return self
 
     def _tell(self, rows: list[Array], threads: int | None) -> None:
-        """Bounces all particles once for each row of `rows`, and records the bounce there."""
+        """Makes one bounce for each row of the arrays `rows`, and stores the recorded fields there."""
         starts, self.begun = not self.begun, True
         step = rows[0].strides[0]
         alike = all(row.dtype == np.float64 and row.strides == (step, row.itemsize) for row in rows)
@@ -255,7 +258,7 @@ class BatchRun:
             self._through_a_page(starts, rows, whole, threads)
 
     def _where_wanted(self, starts: bool, rows: list[Array], whole: int, threads: int | None) -> None:
-        """The work of `_tell` for whole blocks, straight into `rows`: a few bounces of all blocks at a time."""
+        """The part of `_tell` for whole blocks, which write straight into `rows`, a few bounces at a time."""
         bounces, apart = rows[0].shape[0], rows[0].strides[0]
         begin = np.array([*(row.ctypes.data for row in rows), 0])
         streams = sum(row.nbytes for row in rows) >= STREAM and not np.any(np.append(begin, apart) % LINE)
@@ -269,7 +272,7 @@ class BatchRun:
             done += part
 
     def _through_a_page(self, starts: bool, rows: list[Array], left: int, threads: int | None) -> None:
-        """The work of `_tell` for the particles from number `left` on, by way of a page of memory."""
+        """The part of `_tell` for the particles from number `left` on, recorded in a page of memory and then copied."""
         columns, bounces = self.columns - left, len(rows[0])
         most = min(bounces, max(1, PART // (len(rows) * columns)))
         need = most * len(rows) * columns
@@ -307,7 +310,7 @@ def shared(
     bounces: int,
     threads: int | None,
 ) -> None:
-    """Runs a kernel on some columns of rows of length `row`, divided among threads."""
+    """Runs a kernel on a range of columns, divided among threads; the rows have length `row`."""
     first, last = columns
     pieces = _pieces((last - first) // width, (last - first) * bounces, threads)
     calls = [(*pointers, row, first + one * width, first + other * width, bounces) for one, other in pieces]
@@ -321,7 +324,7 @@ def shared(
 
 
 def _pieces(blocks: int, work: int, threads: int | None) -> list[tuple[int, int]]:
-    """Consecutive ranges of blocks, one for each thread."""
+    """The blocks divided into consecutive ranges, one for each thread."""
     wanted = 1 + work // WORTH_A_THREAD if threads is None else threads
     if threads is None and wanted > 1:
         wanted = min(wanted, os.cpu_count() or 1)
@@ -339,7 +342,7 @@ def _run_arrays(
     bounces: int,
     record: Array | None,
 ) -> None:
-    """The kernel's loop on NumPy arrays: the same step, the same rows."""
+    """The kernel's loop on NumPy arrays: with the same steps and the same rows."""
     ops = ArrayBackend()
     own = len(family.fields(spec.law))
     extra = own + (2 if family.stops else 0)

@@ -1,10 +1,10 @@
-"""Kernels as machine code: their specification and rows of state; compiled, kept on disk, called without the GIL.
+"""Kernels as machine code: specified, compiled, kept on disk, and called without the GIL.
 
-llvmlite compiles the text, ctypes calls it. On disk is a flat image: the sections of the object file laid out and
-joined once, so that a later process maps and calls it without importing LLVM (a process that asks for one orbit is
-ready in half the time). Only an object file in the ELF format of x86-64 becomes an image; any other, or one with
-inconsistent fields, is kept unchanged and loaded by LLVM. Files are not trusted: every offset, size, index and
-alignment is checked before it is used.
+llvmlite compiles the text, and ctypes calls the code. On disk is a flat image: the sections of the object file laid out
+and linked once. A later process maps it into memory and calls it without importing LLVM, which halves the time until a
+first orbit. Only an object file in the ELF format of x86-64 becomes an image; any other, or one with inconsistent
+fields, is kept unchanged and loaded by LLVM. Files are not trusted: every offset, size, index and alignment is checked
+before it is used.
 """
 
 import ctypes
@@ -28,7 +28,7 @@ LINE = 64  # bytes that go to memory together
 
 
 class KernelSpec(NamedTuple):
-    """The choice of what a kernel computes and records besides the last state."""
+    """Specifies what a kernel computes, and what it records besides the last state."""
 
     law: str
     record: bool = False
@@ -54,7 +54,7 @@ def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:
 
 
 def starting(q: Array, omega: Array, n0: Array) -> list[Array]:
-    """The rows of a tangent vector at the start: `q` across the first flight, `omega`, and `N0` of its departure."""
+    """The rows of a tangent vector at the start, where `q` is the shift across the first flight and `n0` its `N0`."""
     nought = 0.0 * q
     return [q, omega, nought, nought + 1.0, nought + 1.0, nought, n0]
 
@@ -95,7 +95,7 @@ NEAR = 64  # an address relative to the next instruction lies this much before w
 
 
 class ObjectSection(NamedTuple):
-    """One line of the section table, all of whose bytes lie in the file."""
+    """One line of the section table; all bytes of the section lie in the file."""
 
     kind: int
     flags: int
@@ -107,7 +107,11 @@ class ObjectSection(NamedTuple):
 
 
 def image(code: bytes, entry: bytes = b"run") -> bytes | None:
-    """The image of an object file: magic, count of places to move, entry, these places, code; None for other files."""
+    """The image of an object file; None if the file is of another format.
+
+    It consists of a magic number, the count of addresses to relocate, the entry, these addresses' offsets, and the
+    code.
+    """
     sections = _sections(code)
     if sections is None:
         return None
@@ -156,7 +160,7 @@ def _sections(code: bytes) -> list[ObjectSection] | None:
 def _joined(
     code: bytes, sections: list[ObjectSection], table: ObjectSection, at: dict[int, int], laid: bytearray
 ) -> list[int] | None:
-    """Applies a table of relocations to `laid`; returns the places that hold addresses in it, None for a bad table."""
+    """Applies a table of relocations to `laid`, and returns the offsets of addresses in it; None for a bad table."""
     symbols, moved = sections[table.link], []
     if symbols.kind != SYMBOLS:
         return None
@@ -180,7 +184,7 @@ def _joined(
 
 
 def _entry(code: bytes, sections: list[ObjectSection], entry: bytes, at: dict[int, int]) -> int | None:
-    """The offset in the image of the function of this name; None if there is none."""
+    """The offset of the function named `entry` within the image; None if there is no such function."""
     for table in sections:
         if table.kind != SYMBOLS or sections[table.link].kind != 3:
             continue
@@ -197,7 +201,7 @@ def _entry(code: bytes, sections: list[ObjectSection], entry: bytes, at: dict[in
 def entered(image: bytes) -> tuple[int, Untyped] | None:
     """The address of an image's function, in memory that is executable and no longer writable, and that memory's owner.
 
-    None where the system refuses such memory, and for bytes that are not an image with every place within the code.
+    None if the system refuses such memory, or if the bytes are no valid image (every offset must lie within the code).
     """
     import mmap
 
@@ -251,7 +255,7 @@ def _llvm() -> Untyped:
 
 @memoised
 def _processor() -> tuple[str, ...] | None:
-    """Texts that identify the processor, from Linux or else from LLVM; None where neither can."""
+    """Texts that identify the processor, from Linux or from LLVM; None if neither gives them."""
     try:
         with open("/proc/cpuinfo", "rb", buffering=0) as file:  # noqa: PTH123  (pathlib takes 3 ms to import)
             first = file.read(4096).partition(b"\n\n")[0].decode()
@@ -283,9 +287,9 @@ def available() -> bool:
 
 
 def compiled(family: Family, identity: str, shape: Sequence[str], spec: KernelSpec, width: int) -> Run | None:
-    """The kernel as a function: kept in memory, loaded from disk or compiled; None if only NumPy can be used.
+    """The kernel as a function, from memory, from disk, or newly compiled; None if only NumPy can be used.
 
-    `identity` is a text of all that the family's steps depend on besides this package's sources.
+    `identity` is a text that determines the family's steps, together with this package's sources.
     """
     key = (identity, family.name, spec.text, str(width), ",".join(shape))
     if key not in _loaded:
@@ -323,7 +327,7 @@ def from_text(text: str) -> Run | None:
 
 
 def _load(key: tuple[str, ...], kind: str, stamp: tuple[str, ...], written: Callable[[], str | None]) -> None:
-    """Sets `_loaded[key]` to a function, from disk or compiled from the text of `written`; or does nothing."""
+    """Sets `_loaded[key]` to a function from disk or compiled from `written()`; does nothing without a compiler."""
     code = cache.read(kind, *stamp)
     found = _entered(code) if code is not None else None
     if found is None:
@@ -345,7 +349,7 @@ def _made(text: str) -> tuple[bytes, tuple[int, Untyped] | None]:
 
 
 def _function(address: int, owner: Untyped) -> Run:
-    """The function at an address, in memory that is kept as long as its owner."""
+    """The function at an address; it keeps the owner of its memory alive."""
     pointer, number = ctypes.c_void_p, ctypes.c_int64
     prototype = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, pointer, number, number, number, number)
     _kept.append(owner)
@@ -353,7 +357,7 @@ def _function(address: int, owner: Untyped) -> Run:
 
 
 def _entered(code: bytes) -> tuple[int, Untyped] | None:
-    """The address of a kernel's code in memory, and the memory's owner: an image needs no LLVM, an object file does."""
+    """The address of a kernel's code in memory, and the memory's owner. LLVM is needed only for an object file."""
     if code[: len(MAGIC)] == MAGIC:
         return entered(code)
     llvm = _llvm()
@@ -385,7 +389,7 @@ def object_code(text: str, target: Untyped = None) -> bytes:
 
 
 def _version() -> str | None:
-    """The version of the compiler that writes the code; None, and a warning, where there is none."""
+    """The version of llvmlite, which is part of a kernel's key; None, and a warning, if llvmlite cannot be used."""
     try:
         import llvmlite
     except ImportError:

@@ -3,13 +3,14 @@
     void run(double state[], const double lam[], const double shape[], double record[],
              int64 width, int64 first, int64 last, int64 bounces)
 
-`state` holds one row of `width` doubles for each field: the particle's own; then `code` and `lost` if the family has
-outcomes; then the tangent vector's for exponents, or the component, parameter and exit angle from which a particle
-starts. The kernel works on columns `first` to `last`. To record states, `record` receives the particle's own rows
-after every bounce. To record other fields (parameter, angles, point, arc length), `record` is a table: an address for
-each field, then the number of doubles between two bounces, so that a kernel writes where its caller wants the data. In
-a kernel of one bounce (`once`) `state` is a table too: the addresses of the particles' component, parameter and exit
-angle, and of their outcomes; no state is kept. In `shape` the numbers of the arc length follow those of the shape.
+`state` holds one row of `width` doubles for each field. First come the fields of the particle's own state, then `code`
+and `lost` if the family has outcomes; then those of the tangent vector for exponents, or the component, parameter and
+exit angle from which a particle starts. The kernel works on columns `first` to `last`. To record states, `record`
+receives the particle's own rows after every bounce. To record other fields (parameter, angles, point, arc length),
+`record` is a table: an address for each field, then the number of doubles between two bounces, so that a kernel writes
+where its caller wants the data. In a kernel of one bounce (`once`) `state` is a table too: the addresses of the
+particles' component, parameter and exit angle, and of their outcomes; no state is kept. In `shape` the numbers of the
+arc length follow those of the shape.
 
 Inside, the processor flushes numbers below 2**-1022 to zero: a particle at rest on a cycle reaches them, and on many
 processors such an operation takes sixty times as long. The caller's mode is restored on return.
@@ -36,7 +37,7 @@ TAIL = (
 
 
 class Mode(NamedTuple):
-    """Code that makes a processor flush subnormal numbers to zero: on entry, on exit, and declarations."""
+    """The code that makes a processor flush subnormal numbers to zero: on entry, on exit, and its declarations."""
 
     entry: tuple[str, ...] = ()
     exit: tuple[str, ...] = ()
@@ -153,7 +154,7 @@ def _stored(ops: LLVMBackend, rows: Sequence[str], addresses: Sequence[str]) -> 
 
 
 def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], mode: Mode) -> str:
-    """The whole LLVM module, from the lines written so far and those of the end."""
+    """The text of the whole LLVM module: the lines written so far, followed by the lines `end`."""
     lines = [*ops.lines, *end, "exit:", *(f"  {line}" for line in mode.exit)]
     title = f"; {family.name}, {spec.text}: written by numeric.kernels.text from numeric.flights"
     arrays = [f"{name} = private unnamed_addr constant {array}, align 64" for array, name in ops.constants.items()]
@@ -167,7 +168,7 @@ def _module(ops: LLVMBackend, family: Family, spec: KernelSpec, end: list[str], 
 def _joined(
     ops: LLVMBackend, index: str, names: list[str], first: tuple[str, str, list[str]], again: tuple[str, str, list[str]]
 ) -> list[str]:
-    """The head of a loop: instructions that take index and rows from the block before it, or from its last block."""
+    """The phi instructions of a loop's head: index and rows come from the block before it, or from its last block."""
     (before, zero, begins), (last, following, ends) = first, again
     phis = [f"  %{index} = phi i64 [{zero}, %{before}], [{following}, %{last}]"]
     for name, begin, end in zip(names, begins, ends, strict=True):
@@ -176,7 +177,7 @@ def _joined(
 
 
 def _broadcast(ops: LLVMBackend, i: int, name: str) -> LLVMVector:
-    """The shape's number `i`, in every lane."""
+    """The number `i` of the shape, in every lane."""
     address = ops.emit(f"getelementptr double, ptr %shape, i64 {i}")
     scalar = ops.emit(f"load double, ptr {address}, align 8", key=f"shape {name}")
     one = ops.emit(f"insertelement {ops.type} poison, double {scalar}, i64 0")
@@ -190,7 +191,7 @@ def _address(ops: LLVMBackend, base: str, row: str) -> str:
 
 
 def _started(ops: LLVMBackend, family: Family, law: str, shape: list[LLVMVector], rows: list[str]) -> list[str]:
-    """The state's fields of particles that leave from the given rows: component, parameter, exit angle."""
+    """The fields of the state of particles that leave from `rows`: component, parameter and exit angle."""
     component, theta, phi = (LLVMVector(ops, row) for row in rows)
     position = family.enter(ops, component, theta)
     if law == SLAP:
@@ -249,7 +250,7 @@ def _matrix(
 
 
 def _entry(ops: LLVMBackend, table: str, kind: str, i: int) -> str:
-    """Writes the load of entry `i` of a table of addresses; its value, of the LLVM type `kind`."""
+    """Writes the load of entry `i` of a table of addresses; returns the value, of the LLVM type `kind`."""
     return ops.emit(f"load {kind}, ptr {ops.emit(f'getelementptr i64, ptr %{table}, i64 {i}')}, align 8")
 
 
@@ -271,7 +272,7 @@ def _record(ops: LLVMBackend, texts: list[str]) -> None:
 
 
 def alive(lines: list[str]) -> list[str]:
-    """The lines that a store or a branch depends on.
+    """The lines without those on which no store and no branch depends.
 
     >>> alive(["  %a = fadd double 1.0, 2.0", "  %b = fadd double 3.0, 4.0", "  store double %b, ptr %p"])
     ['  %b = fadd double 3.0, 4.0', '  store double %b, ptr %p']
@@ -294,7 +295,7 @@ def alive(lines: list[str]) -> list[str]:
 
 
 def operations(text: str) -> dict[str, int]:
-    """The number of vector instructions of each kind in one bounce, without branches that are rarely taken."""
+    """The number of vector instructions of each kind in one bounce, not counting branches that are rarely taken."""
     counts = dict.fromkeys(("fma", "add", "mul", "div", "sqrt", "compare", "select"), 0)
     words = {"fadd": "add", "fsub": "add", "fmul": "mul", "fdiv": "div", "fcmp": "compare", "select": "select"}
     rare = True
@@ -325,7 +326,7 @@ def _bounced(
     lam: LLVMVector,
     state: list[LLVMVector],
 ) -> tuple[list[LLVMVector], Landing[LLVMVector] | None]:
-    """All rows after one bounce, and the landing, which is None with a tangent vector.
+    """All rows after one bounce, and the landing (None if there is a tangent vector).
 
     A lane whose bounce has an outcome keeps its rows, and counts the bounces that it misses.
     """

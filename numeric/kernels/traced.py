@@ -1,11 +1,10 @@
-"""Functions of arrays, written in NumPy, as one loop of machine code with the same bits.
+"""Compiles functions of arrays, written in NumPy, to one loop of machine code with the same bits.
 
-A function that is made of sums, products, quotients, roots, comparisons and selections of NumPy is called with `Lanes`
-in place of arrays: each operation writes the instruction of LLVM that IEEE 754 rounds in the same way, and none is
-joined with another. So results have the bits that NumPy gives, without its temporary arrays: an array of a few thousand
-doubles is read once. The function itself is called where there is no compiler, and where it makes an array by
-`np.asarray` or `np.broadcast_arrays`, as an exponential by powers of two does. Any other operation is refused: the bits
-of NumPy's sine, say, are not those of every machine.
+A function that consists of sums, products, quotients, roots, comparisons and selections of NumPy is called with `Lanes`
+in place of arrays. Each operation writes the LLVM instruction that IEEE 754 rounds in the same way, and no two are
+fused. So results have the bits that NumPy gives, without temporary arrays. Where there is no compiler, or where the
+function makes an array by `np.asarray` or `np.broadcast_arrays`, as an exponential by powers of two does, the function
+itself is called. Any other operation is refused: the bits of NumPy's sine, for example, differ between machines.
 """
 
 import ctypes
@@ -55,7 +54,7 @@ class Lanes(NDArrayOperatorsMixin):
         self.trace, self.text, self.mask = trace, text, mask
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> "Lanes":
-        """Traces one operation; its result is a new value, also where NumPy would write it in place of an operand."""
+        """Traces one operation. Its result is a new value, even where NumPy would overwrite an operand."""
         return self.trace.applied(ufunc, inputs) if method == "__call__" else NotImplemented
 
     def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> "Lanes":
@@ -72,7 +71,7 @@ class Trace:
         self.declared: set[str] = set()
 
     def emit(self, text: str) -> str:
-        """The name of an instruction's result; equal instructions are written once."""
+        """Writes an instruction, or finds an equal one written before; returns the name of its result."""
         if text not in self.known:
             self.known[text] = f"%v{len(self.known)}"
             self.lines.append(f"  {self.known[text]} = {text}")

@@ -1,6 +1,6 @@
 """What must a kernel know of an exact table? Straight-line programs and a few facts, as plain data kept on disk.
 
-`lower` is the only module of the storey that imports SymPy, and it is imported only when the data are not on disk.
+`lower` is the only module of `numeric` that imports SymPy, and it is imported only when the data are not on disk.
 """
 
 import lazy_loader

@@ -1,10 +1,10 @@
-"""Files kept between runs: scenes, table IRs, machine code. None is needed; trusted if only the user can write them.
+"""Files kept between runs: scenes, table IRs and machine code. The program works without them.
 
-An entry is found by a key that contains everything it depends on. It is written to a temporary
-file and renamed, so that two processes cannot mix; it carries a digest of its name and content, so that a
-truncated or renamed file is no entry. A digest keeps out accidents, not people: therefore the folder is made for
-the user alone, and a folder or an entry that belongs to somebody else, or that others can write, is not used.
-When the folder cannot be used the work is done without it, and one warning says so.
+An entry is found by a key that contains everything it depends on. It is written to a temporary file and renamed, so
+that two processes cannot mix. It carries a digest of its name and content, so that a truncated or renamed file is not
+accepted. A digest protects from accidents, not from people. Therefore the folder is made for the user alone, and a
+folder or an entry that belongs to another user, or that others can write, is not used. If the folder cannot be used,
+the program goes on without it, after one warning.
 """
 # Every warm start passes here, and pathlib alone takes 3 ms to import.
 # ruff: noqa: PTH103, PTH105, PTH108, PTH111, PTH116, PTH118, PTH120, PTH123
@@ -40,9 +40,9 @@ def folder() -> str | None:
 
 
 def distrust(place: str) -> str | None:
-    """The reason to distrust a folder: others could have written in it; None if only the user can.
+    """The reason to distrust a folder, because others could have written in it; None if only the user can.
 
-    It is None too for a folder that does not exist, and on systems on which files have no owners (Windows).
+    The result is None too for a folder that does not exist, and on systems where files have no owners (Windows).
     """
     try:
         found = os.stat(place)
@@ -52,7 +52,7 @@ def distrust(place: str) -> str | None:
 
 
 def _foreign(found: os.stat_result) -> str | None:
-    """The reason why others may have written a file or folder; None if only the user can."""
+    """The reason why others may have written to a file or folder; None if only the user can."""
     if not hasattr(os, "geteuid"):
         return None
     if found.st_uid != os.geteuid():
@@ -64,9 +64,9 @@ def _foreign(found: os.stat_result) -> str | None:
 
 @memoised
 def sources(*packages: str) -> str:
-    """A digest of the program text of some of this project's packages, each as a path such as `numeric/flights`.
+    """A digest of the source text of some of this project's packages, each given by a path such as `numeric/flights`.
 
-    The text is read once: as long as no file has another length or time, its digest is taken from the folder.
+    The text is read once. As long as all lengths and times of the files are unchanged, the stored digest is returned.
     """
     root = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
     found = sorted(path for package in packages for path in _files(os.path.join(root, package)))
@@ -84,7 +84,7 @@ def sources(*packages: str) -> str:
 
 
 def _files(place: str) -> Iterator[tuple[str, os.stat_result]]:
-    """The files of Python in a folder and in those inside it, with their lengths and times."""
+    """The Python files in a folder and its subfolders, with their lengths and times."""
     with os.scandir(place) as entries:
         for entry in entries:
             if entry.name.endswith(".py"):
@@ -122,7 +122,7 @@ def read(kind: str, *parts: str) -> bytes | None:
 
 
 def write(kind: str, *parts_and_content: str | bytes) -> None:
-    """Keeps an entry, given by the texts of its key and then its bytes; beyond `LIMIT` bytes the oldest entries go."""
+    """Keeps an entry, given by the texts of its key and then its bytes; above `LIMIT` bytes removes the oldest ones."""
     *parts, content = parts_and_content
     assert isinstance(content, bytes)
     place = _trusted()
@@ -147,13 +147,13 @@ def write(kind: str, *parts_and_content: str | bytes) -> None:
 
 
 def entries() -> list[tuple[str, int, float]]:
-    """The files that this package keeps: path, bytes and time of writing, oldest first. Other files are left alone."""
+    """The files that this package keeps: path, bytes and time of writing, oldest first. Other files are not listed."""
     place = folder()
     return sorted(_entries(place), key=lambda entry: entry[2]) if place is not None else []
 
 
 def clear() -> tuple[int, int]:
-    """Removes all entries and files that an interrupted run left; returns how many files and bytes that were."""
+    """Removes all entries, and files that an interrupted run left; returns the number of files and of bytes."""
     place, removed, size = folder(), 0, 0
     why = None if place is None else distrust(place)
     if why is not None:

@@ -1,7 +1,8 @@
 """The one way in which this package writes a file: a reader finds the old content or the new, and never half of either.
 
 The content goes to a temporary file in the same folder, then to the disk, and then takes the place of the old file. So
-neither Ctrl-C nor a full disk breaks a file that was there. (Entries of the cache, which may be lost, have their own.)
+neither Ctrl-C nor a full disk breaks a file that was there. (Entries of the cache are written by
+`numeric.lowering.cache`, since they may be lost.)
 """
 
 import itertools
@@ -56,7 +57,7 @@ def replacing(path: str | Path) -> Iterator[IO[bytes]]:
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:
-    """Writes a file, with text in UTF-8; what was there before stays when that fails."""
+    """Writes a file, with text in UTF-8; if writing fails, the old content of the file remains."""
     with replacing(path) as file:
         file.write(content.encode() if isinstance(content, str) else content)
 

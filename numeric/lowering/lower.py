@@ -1,6 +1,7 @@
 """Lowering: turns an exact table into its table IR (intermediate representation), the plain data that kernels need.
 
-It is the only module of `numeric` that imports SymPy, when a table IR is not on disk, and never while a map runs.
+It is the only module of `numeric` that imports SymPy. It is used when a table IR is not on disk, never while a map
+runs.
 """
 
 import json
@@ -43,8 +44,8 @@ ROOT = 12  # the highest root
 def lower(table: Table) -> TableIR:
     """The table IR of a table; shape parameters without a value are inputs of its programs.
 
-    It is proved here, unless it was before, that the boundary bounds a table. `ValueError` where it does not,
-    and for a formula of more than `LARGEST` numbers and operations.
+    First it is proved, unless this was done before, that the boundary bounds a table. `ValueError` if it does not, or
+    if a formula has more than `LARGEST` numbers and operations.
     """
     for component in table.components:
         if (count := max(map(size, component.point))) > LARGEST:
@@ -116,12 +117,12 @@ def in_unit(table: Table, length: Fraction, x: Fraction, y: Fraction) -> Table:
 
 
 def symmetry_text(table: Table) -> str:
-    """The symmetries of a table that are proved, in numbers, the identity first; as JSON."""
+    """A JSON text of the symmetries that are proved for a table, the identity first, with floats for exact numbers."""
     return json.dumps([[g.sign, float(g.angle), g.onto, [float(x) for x in g.shift]] for g in group(table)])
 
 
 def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
-    """The node of a SymPy expression in the closed vocabulary; `ValueError`, never a rounding, for anything else."""
+    """The node of a SymPy expression in the program's vocabulary; `ValueError`, never a rounding, for anything else."""
     if expression.has(Float):
         raise ValueError(f"{expression} contains a rounded float; write its numbers exactly, as Rational(2, 25)")
     if expression in nodes:
@@ -165,7 +166,10 @@ def _whole_power(builder: Builder, base: Node, n: int) -> Node:
 
 
 def _circular(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> Node:
-    """The node of a cosine or sine; for whole multiples of `theta` from products, so that one call serves all."""
+    """The node of a cosine or sine.
+
+    For whole multiples of `theta` it is formed from products, so that one cosine and one sine serve all multiples.
+    """
     (argument,) = expression.args
     multiple = argument / theta
     index = 0 if isinstance(expression, cos) else 1
@@ -224,7 +228,7 @@ def _part(component: Component, symbols: list[Symbol], ranges: Box) -> Component
 def _long_curve(component: Component, symbols: list[Symbol]) -> Program:
     """Point, velocity and acceleration of a long formula: harmonic by harmonic, or one operation after the other.
 
-    Its derivatives are not written out: those of a product of thirty factors have some thousand factors each.
+    Derivatives are not written out, as those of a product of thirty factors have some thousand factors.
     """
     x, y = component.point
     found = waves(x + I * y)
@@ -348,7 +352,7 @@ def _conic(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
     """The program of `r(theta)` and three derivatives in cosine and sine, for a boundary given by its radius.
 
-    Empty for other boundaries, and where `theta` has a place outside sines and cosines of its whole multiples.
+    The result is empty for other boundaries, or if `theta` occurs outside sines and cosines of its whole multiples.
     """
     whole = table.components[0]
     x, rho, turn = whole.point[0], whole.radius, whole.end - whole.start
@@ -371,11 +375,12 @@ def _radius(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
 
 def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
-    """One program for each component, when all are straight sides or arcs of ellipses, or all cubic; empty otherwise.
+    """One program for each component, if all are straight sides or arcs of ellipses, or if all are cubic; otherwise
+    empty.
 
-    Its outputs for a cubic are the coefficients of `x` and `y`, for an arc about a focus those of `flight.focal_arc`.
-    For the others they are the point, which is `O + p*A + q*B` with `(p, q)` the cosine and sine of the parameter, or
-    the parameter and -1; the first corner; `A x B`; the radius; numbers that mark the ends.
+    For a cubic the outputs are the coefficients of `x` and `y`, for an arc about a focus those of `flight.focal_arc`.
+    For the others they are: the coefficients of the point `O + p*A + q*B`, where `(p, q)` is the cosine and sine of the
+    parameter, or the parameter and -1; the first corner; `A x B`; the radius; and numbers that mark the ends.
     """
 
     def program(numbers: list[Expr]) -> Program:

@@ -1,12 +1,12 @@
 """Straight-line programs: the form in which formulas pass from `symbolic` to `numeric`.
 
-A program is a list of lines in a closed vocabulary, without names, branches or floats. Any backend
-(LLVM lanes, NumPy arrays, multiprecision numbers) runs it, and it is plain data: it can be
-hashed, and written to a file from which it is read back without importing SymPy.
+A program is a list of lines in a closed vocabulary, without names, branches or floats. Any backend (LLVM lanes, NumPy
+arrays, multiprecision numbers) runs it, and it is plain data: it can be hashed, and written to a file from which it is
+read back without importing SymPy.
 
-A table IR (intermediate representation) is the plain data that kernels need of a table. It is made once from
-the exact table, through `numeric.lowering.lower`, the only place where SymPy is imported. Those of tables with a name
-are kept on disk, so that a warm run never imports it.
+A table IR (intermediate representation) is the plain data that kernels need of a table. It is made once from the exact
+table, by `numeric.lowering.lower`, the only module that imports SymPy. The IRs of tables with a name are kept on disk,
+so that later runs do not import SymPy.
 """
 
 import functools
@@ -39,7 +39,7 @@ class Program(NamedTuple):
     outputs: tuple[int, ...]
 
     def __call__(self, ops: NumberSystem[R], *values: R) -> list[R]:
-        """The outputs, in the arithmetic of `ops`; every rational enters as `ops.q(p, n)`."""
+        """The outputs, computed in the arithmetic of `ops`, in which every rational is `ops.q(p, n)`."""
         known = list(values)
         turned: dict[int, tuple[R, R]] = {}
         both = getattr(ops, "turned", None)  # number systems may have cosine and sine at the cost of one
@@ -86,7 +86,7 @@ class Program(NamedTuple):
 
     @staticmethod
     def from_data(data: list[Any]) -> "Program":
-        """The inverse of `as_data`; a word outside the vocabulary is an error."""
+        """The inverse of `as_data`; `ValueError` for a word outside the vocabulary."""
         inputs, lines, outputs = data
         for line in lines:
             if line[0] not in VOCABULARY:
@@ -95,7 +95,7 @@ class Program(NamedTuple):
 
 
 class Builder:
-    """Writes a program: run any formula on its nodes, then name the outputs.
+    """Writes a program: evaluate a formula on `nodes`, then call `program` with the outputs.
 
     >>> builder = Builder("x", "y")
     >>> x, y = builder.nodes
@@ -110,7 +110,7 @@ class Builder:
         self.nodes = [Node(self, None, i) for i in range(len(inputs))]
 
     def number(self, line: Line) -> int:
-        """The number of the value that `line` computes; equal lines are written once."""
+        """The number of the value that `line` computes; a line equal to an earlier one is not written again."""
         if line not in self.numbers:
             self.numbers[line] = len(self.inputs) + len(self.lines)
             self.lines.append(line)
@@ -254,10 +254,11 @@ def _first(program: Program, count: int) -> Program:
 
 
 class LawIR(NamedTuple):
-    """A reflection law for kernels: programs in `eta`, `lam` and the place, with numbers for its own parameters.
+    """A reflection law for kernels: programs in `eta`, `lam` and the position, with numbers for the law's own
+    parameters.
 
-    The place is `theta`, and the arc length `s` after it where the law is `measured`. `exit` gives the exit angle;
-    `slopes` minus its derivative by `eta`, and those by the place.
+    The position is `theta`, followed by the arc length `s` if the law is `measured`. `exit` gives the exit angle, and
+    `slopes` gives minus its derivative with respect to `eta`, then those with respect to the position.
     """
 
     text: str
@@ -277,9 +278,10 @@ class LawIR(NamedTuple):
 class TableIR(NamedTuple):
     """A table as the kernels see it.
 
-    `same_as` names the paper's table with the same boundary, if it has a flight method of its own; `programs` are
-    those of other flights, by name. `joins` has for the end of every component the component that begins there, the
-    name of their `symbolic.tables.joins.Contact`, and the side to which a corner turns (1 left, -1 right).
+    `same_as` names the paper's table with the same boundary, if that table has a flight method of its own; `programs`
+    has the programs for other flight methods, by name. For the end of every component, `joins` has the component that
+    begins there, the name of the `symbolic.tables.joins.Contact`, and the side to which a corner turns (1 left, -1
+    right).
     """
 
     table: str
@@ -328,14 +330,14 @@ class TableIR(NamedTuple):
 
 
 class Named(NamedTuple):
-    """A table of `symbolic.tables.gallery` by its name, with the lengths that are given for it, as exact text."""
+    """A table of `symbolic.tables.gallery`, given by its name and the values of its lengths, as exact text."""
 
     name: str
     lengths: tuple[tuple[str, str], ...] = ()
 
 
 def by_name(name: str, lengths: Mapping[str, Any]) -> Named:
-    """The name of a table of the gallery, with lengths; an unknown length is refused when the table is made.
+    """A table of the gallery by its name, with lengths; an unknown length is refused when the table is made.
 
     >>> by_name("stadium", {"straight": "0.50"})
     Named(name='stadium', lengths=(('straight', '1/2'),))
@@ -345,9 +347,10 @@ def by_name(name: str, lengths: Mapping[str, Any]) -> Named:
 
 
 def table_ir(table: "Table | Scene | Named | str", K: int = 3) -> TableIR:
-    """The table IR of an exact table, of one of the paper's or the gallery's by name, or of a scene's with its numbers.
+    """The table IR of an exact table, of a table of the paper or the gallery by name, or of a scene with its numbers.
 
-    A shape parameter that has a range stays open. IRs of names and scenes are kept between runs, and need SymPy once.
+    A shape parameter that has a range stays open. IRs of names and scenes are kept between runs, and need SymPy only
+    once.
 
     >>> table_ir("circle").same_as
     'circle'
@@ -391,7 +394,7 @@ class TableSymmetry(NamedTuple):
 
 
 def symmetries(table: "Table | Scene | Named | str", K: int, shape: dict[str, Any]) -> tuple[TableSymmetry, ...]:
-    """The symmetries that are proved of a table with numbers for its shape, the identity first.
+    """The proved symmetries of a table with numbers for its shape, the identity first.
 
     >>> [symmetry.sign for symmetry in symmetries("cuspless", 3, {})]
     [1, -1]
@@ -411,14 +414,14 @@ def symmetries(table: "Table | Scene | Named | str", K: int, shape: dict[str, An
 
 
 def symmetry_name(table: "Scene | Named | str", K: int, shape: dict[str, Any]) -> str:
-    """What the symmetries that are kept are known by."""
+    """The key under which the proved symmetries of a table are kept."""
     return f"symmetries of {ir_name(table, K)}, {sorted(shape.items())}"
 
 
 def kept(name: str, made: Callable[[], str], read: Callable[[str], Kept]) -> Kept:
-    """What `read` finds in a text that SymPy makes: from disk, or as it came with the package, or made and kept.
+    """What `read` makes of the text of this name: from disk, or from the package, or else newly made by SymPy and kept.
 
-    The name says all on which the text depends, except for this project's own sources.
+    The name determines the text, together with this project's own sources.
     """
     sources = cache.sources(*SOURCES)
     found = cache.read("table_ir", name, sources)

@@ -1,6 +1,6 @@
 """Table IRs and symmetries of tables with a name, which come with the package, so that a first run needs no SymPy.
 
-They are no second definition. Each is derived by `lower` from the exact table, written by
+They are copies, not a second definition. Each is derived by `lower` from the exact table, written by
 
     python -m numeric.lowering.shipped
 

@@ -1,4 +1,4 @@
-"""What does a table do, asked in angles, points and arc lengths? The map that users call, and what it answers with."""
+"""How do users run the map? Starts and results are given in angles, points and arc lengths."""
 
 import lazy_loader
 

@@ -1,15 +1,15 @@
-"""A particle's state in users' coordinates: boundary parameter, angle, arc length, Cartesian point; and back.
+"""Conversion between a kernel's state and users' coordinates: boundary parameter, angle, arc length, Cartesian point.
 
-`States` translates between the fields of a kernel and `(component, theta, phi)`, in NumPy
-arrays, once for each call and not for each bounce; of a recorded orbit, a tile at a time.
+`States` translates between the fields of a kernel and `(component, theta, phi)`, in NumPy arrays: once for each call,
+not for each bounce. A recorded orbit is translated in tiles.
 
 `located` finds the component and the parameter of a boundary point from its Cartesian coordinates.
 
 `ArcLength` is the arc length on every component, counted counterclockwise from the table's origin, and its inverse.
 
-It has closed forms for circle and cardioid, SciPy's elliptic integral for the ellipse, and for other tables a Fourier
-or Chebyshev series of the speed, extended until its tail is below rounding, integrated term by term. The inverse is
-Newton's method on these, whose derivative is the speed itself.
+It has closed forms for the circle and the cardioid, and SciPy's elliptic integral for the ellipse. For other tables a
+Fourier or Chebyshev series of the speed is extended until its tail is below rounding, and integrated term by term. The
+inverse is found by Newton's method, where the derivative is the speed itself.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,7 +31,7 @@ ORDINARY = 8.0  # distances are measured in units of 1 if half the longer side l
 
 
 class States:
-    """The translation of coordinates for one table with its shape, by the methods of its family of tables."""
+    """Translates coordinates for one table and shape, by the methods of its family."""
 
     def __init__(self, family: Family, unit: Unit = ONE) -> None:
         self.family, self.boundary, self.unit = family, family.boundary, unit
@@ -39,7 +39,7 @@ class States:
 
     @cached_property
     def size(self) -> float:
-        """The length in which distances between phase points are measured, a power of two: 1 for a size of about 1."""
+        """The unit of distances between phase points: 1, or a power of two near a size that is not about 1."""
         at = [(np.full(PLACES, i), np.linspace(low, high, PLACES)) for i, (low, high) in enumerate(self.ends)]
         points = np.concatenate([self.family.cartesian(*place) for place in at], axis=1)
         half = float(np.max(np.ptp(points, axis=1))) / 2
@@ -87,7 +87,7 @@ class States:
     def enter(
         self, component: NDArray[np.int64], theta: Array, phi: Array, law: str, frame: Frame[Array] | None = None
     ) -> list[Array]:
-        """The kernel's fields of particles that leave `theta` at the exit angle `phi`; `frame` is theirs, if known."""
+        """The kernel's fields of particles that leave `theta` at exit angle `phi`; `frame` may be given if known."""
         fields = self.family.enter(self.ops, component.astype(float), theta)
         if law != SLAP:
             fields = fields + self.family.exit_fields(self.ops, frame or self.frame(component, theta), phi)
@@ -111,7 +111,7 @@ class States:
         law: str,
         frame: Frame[Array] | None = None,
     ) -> Array:
-        """The exit angle, in radians, from the kernel's fields; `frame` is that of their place, if it is known."""
+        """The exit angle, in radians, from the kernel's fields; `frame` is the frame at `theta`, if it is known."""
         if law == SLAP:
             return np.zeros_like(theta)
         return np.asarray(self.family.exit(self.ops, frame or self.frame(component, theta), self.kept(rows)))
@@ -123,7 +123,7 @@ class States:
         return self.family.unit_direction(self.ops, frame, phi, self.kept(rows))
 
     def kept(self, rows: Sequence[Array]) -> list[Array]:
-        """The rows of the kernel's fields that hold the direction: those after the position's."""
+        """The rows of the kernel's fields that hold the direction; they follow those of the position."""
         begin = len(self.family.position)
         return list(rows[begin : begin + len(self.family.direction)])
 
@@ -239,7 +239,7 @@ class Waves(NamedTuple):
 
     @staticmethod
     def of(speed: Callable[[Array], Array]) -> "Waves | None":
-        """The Fourier sum of the arc length, from as many samples as it needs; None if it needs more than `MOST`."""
+        """The Fourier sum of the arc length, from as many samples as necessary; None if these are more than `MOST`."""
         count = 64
         while True:
             theta = 2 * np.pi * np.arange(count) / count - np.pi
@@ -263,7 +263,7 @@ class Waves(NamedTuple):
 
 
 def in_powers(sines: Array) -> list[float]:
-    """The polynomial in `cos(x)` whose product with `sin(x)` is the sum of `sines[k-1]*sin(k*x)`, rounded once.
+    """The polynomial in `cos(x)` whose product with `sin(x)` is the sum of `sines[k-1]*sin(k*x)`; one rounding each.
 
     >>> in_powers(np.array([1.0, 1.0, 1.0]))  # 1 + 2*c + (4*c**2 - 1)
     [0.0, 2.0, 4.0]
@@ -277,7 +277,7 @@ def in_powers(sines: Array) -> list[float]:
 
 
 def settled(coefficients: Array | NDArray[np.complex128], values: Array) -> bool:
-    """Are the coefficients in the last third no larger than the rounding of such values?"""
+    """Are the coefficients in the last third no larger than the rounding error of the values?"""
     last = coefficients[2 * (len(coefficients) - 1) // 3 :]
     return bool(np.max(np.abs(last)) < ROUNDING * np.max(values))
 
@@ -285,8 +285,8 @@ def settled(coefficients: Array | NDArray[np.complex128], values: Array) -> bool
 def chebyshev(speed: Length, low: float, high: float, highest: int = HIGHEST, anyway: bool = False) -> Length | None:
     """The integral of a speed from 0, or from `low` if 0 lies outside, as a Chebyshev series of sufficient degree.
 
-    The degree is doubled until it suffices. None where `highest` does not, unless `anyway` is set. The coefficients are
-    those of the cosine series of the speed in an angle whose cosine runs from one end to the other.
+    The degree is doubled until it suffices. The result is None if degree `highest` does not suffice, unless `anyway` is
+    set. The coefficients are those of the cosine series in an angle whose cosine is the variable, scaled to [-1, 1].
     """
     from numpy.polynomial import Chebyshev
 
@@ -311,7 +311,8 @@ def chebyshev(speed: Length, low: float, high: float, highest: int = HIGHEST, an
 def halved(speed: Length, low: float, high: float) -> Length:
     """The integral of a speed with narrow features, from 0, or from `low` if 0 lies outside, as in `chebyshev`.
 
-    The range is halved until a series serves on each part, or there are `PARTS` parts: what is left then is rounding.
+    The range is halved until a series suffices on each part, or until there are `PARTS` parts; the error is then
+    rounding.
     """
     open, done = [(low, high)], list[tuple[float, float, Length]]()
     while open:
@@ -383,7 +384,7 @@ class ArcLength:
 
     @cached_property
     def series(self) -> tuple[Series, list[float]] | None:
-        """The series by which kernels compute arc length, and its numbers; None where it needs too many waves."""
+        """The series by which kernels compute arc length, and its coefficients; None if it has too many terms."""
         family, index = self.states.family, np.zeros(1, dtype=np.int64)
         if family.arclength(self.states.ops, 0, np.zeros(1)) is not None:
             return (Series(len(self.offsets)), self.offsets) if self.states.unit == ONE else None

@@ -43,11 +43,11 @@ ROUNDED = 2.0**-48  # of a component's range
 class PinballMap:
     """The map `T_lambda` of a table. Paper: section 2.
 
-    `table` is a scene or another map, which contain everything; or an exact table, or the name of one of the paper's or
-    of `tables.GALLERY`: then shape parameters and lengths are keywords, exact or decimal, and a decimal, as text or as
-    a float, means the decimal it shows. `lam` is one number or one for each particle, and replaces a scene's own. `law`
-    is another law than the paper's, with numbers for its own parameters. With `kernels=False` the same steps run on
-    NumPy arrays.
+    `table` is a scene or another map, which determine everything, or an exact table, or the name of a table of the
+    paper or of `tables.GALLERY`. For the latter, shape parameters and lengths are keywords, exact or decimal: `0.08`,
+    as text or float, means 2/25. `lam` is one number or one for each particle, and replaces that of a scene. `law` is a
+    law other than the paper's, with numbers for its parameters. With `kernels=False` the same steps run on NumPy
+    arrays.
 
     >>> ellipse = PinballMap("ellipse", lam=1, a=2)
     >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
@@ -109,7 +109,7 @@ class PinballMap:
 
     @property
     def scene(self) -> Scene:
-        """The scene of the map, exact, in which a float is the decimal it shows.
+        """The exact scene of the map, in which a float is the decimal that it shows.
 
         >>> PinballMap("egg", lam=0.5, alpha=0.08).scene
         Scene('egg', alpha='2/25', lam='1/2')
@@ -150,7 +150,7 @@ class PinballMap:
 
     @cached_property
     def symmetries(self) -> tuple[TableSymmetry, ...]:
-        """The symmetries of the table that are proved, the identity first."""
+        """The proved symmetries of the table, the identity first."""
         return symmetries(*self._given, dict(zip((s.name for s in self.ir.shape), self.exact_shape, strict=True)))
 
     @cached_property
@@ -203,8 +203,8 @@ class PinballMap:
     ) -> "Orbit | dict[str, NDArray[Any]]":
         """The orbit of each particle: the start and `bounces` bounces after it.
 
-        With `fields`, names of an `Orbit`'s fields or `s` for the arc length, only these are computed, for every
-        `every`-th bounce, as float64 or float32, and returned as arrays by name.
+        If `fields` are given, names of an `Orbit`'s fields or `s` for arc length, only these are computed, for every
+        `every`-th bounce, as float64 or float32, and returned as a dict of arrays.
 
         >>> told = PinballMap("ellipse", lam=0.5, a=2).orbit([0.1, 0.2], 0.3, 6, fields=("phi", "s"), every=3)
         >>> {name: rows.shape for name, rows in told.items()}
@@ -252,7 +252,7 @@ class PinballMap:
         """`d(s1, phi1)/d(s0, phi0)`, a matrix for each particle. Paper: eq. (derivative_of_map).
 
         The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is. For any
-        other law its slope stands in the place of `lam`, and its derivative along the boundary times `ds1` is added.
+        other law, its slope replaces `lam`, and its derivative along the boundary times `ds1` is added.
         """
         ordinary = self.unit == ONE
         if (
@@ -294,7 +294,8 @@ class PinballMap:
         component: ArrayLike = 0,
         threads: int | None = None,
     ) -> Exponents:
-        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` that do not count.
+        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` bounces that do not
+        count.
 
         `nu_plus` is the growth of one vector, which starts in a fixed generic direction and turns to the direction of
         growth in the last 256 bounces of the transient; `nu_minus` comes from the determinant. At `lam = 0` the map is
@@ -376,7 +377,7 @@ class PinballMap:
         return self._with(lam, Law())
 
     def slopes(self, eta: Array, theta: Array, component: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Minus the derivative of the exit angle by the incidence angle; and that by the landing's arc length."""
+        """Minus the derivative of the exit angle by the incidence angle, and that by the arc length of the landing."""
         formula, lam = self.family.formula, np.broadcast_to(self.lam, eta.shape)
         if formula is None or self.reflection.uniform:
             return np.asarray(lam, dtype=float), np.zeros(eta.shape)
@@ -398,12 +399,12 @@ class PinballMap:
         return other
 
     def _check_law(self) -> None:
-        """Raises `ValueError` for a law that leads out of the table for some of the contractions."""
+        """Raises `ValueError` for a law that leads out of the table at some of the contractions."""
         places = self.reflection.places(self.table) if self.reflection.placed else ()
         self.reflection.check((Fraction(float(np.min(self.lam))), Fraction(float(np.max(self.lam)))), *places)
 
     def _law(self, phi: Array) -> str:
-        """The law of a run: not `slap` where a particle starts off the normal, which the slap kernel cannot do."""
+        """The law whose kernel a run needs: not `slap`, even at `lam = 0`, if a particle does not start normally."""
         return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
 
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
@@ -462,7 +463,7 @@ class PinballMap:
         return where, theta, phi
 
     def _single(self, names: tuple[str, ...]) -> SingleBounce:
-        """The cached `SingleBounce` that gives these fields of one bounce of one particle."""
+        """The cached `SingleBounce` that computes the fields `names` of one bounce of one particle."""
         found = self._singles.get(names)
         if found is None or not found.serves(self):
             law = PINBALL if names is MATRIX and self.law == SLAP else self.law
@@ -487,7 +488,7 @@ class PinballMap:
 def _unpacked(
     scene: Scene, lam: Contraction | None, shape: dict[str, Any]
 ) -> "tuple[Scene | str, Contraction, int, dict[str, Any]]":
-    """The table of a scene, its contraction, points of the egg and shape; the scene itself if its table has no name."""
+    """A scene's table (the scene itself if that has no name), its contraction, its `K` for the egg, and its shape."""
     if shape:
         raise ValueError(f"{scene.name}: {', '.join(shape)} given beside a scene; change its shape by scene.at")
     numbers: dict[str, Any] = dict(scene.shape)

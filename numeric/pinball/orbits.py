@@ -1,8 +1,8 @@
 """Orbits recorded bounce by bounce in users' coordinates: by kernels, or translated from recorded states.
 
-The paper's tables, and other ellipses and finite sums, have kernels that record component, parameter, angles, point
-and arc length themselves, where these are wanted. For other tables, and without kernels, the recorded states are
-translated; arc length is then computed from the parameter, as it is where too many waves would be needed.
+For the paper's tables, other ellipses and finite Fourier sums, kernels record the wanted fields themselves: component,
+parameter, angles, point and arc length. For other tables, and without kernels, the recorded states are translated. Then
+arc length is computed from the parameter; so it is where its series would have too many terms.
 """
 
 import ctypes
@@ -32,7 +32,7 @@ FIELDS = (*Orbit._fields, "s")
 
 
 class OrbitRun:
-    """Moves particles piece by piece: `advance` returns the fields `names` of every `every`-th bounce."""
+    """Advances particles piece by piece: `advance` returns the fields `names` of every `every`-th bounce."""
 
     def __init__(
         self,
@@ -45,7 +45,7 @@ class OrbitRun:
         dtype: DTypeLike = np.float64,
         keep: bool = False,
     ) -> None:
-        """`keep` must be set if `advance` is to be called more than once."""
+        """Prepares the run; `keep` must be set if `advance` is to be called more than once."""
         where, at, angle = map._start(theta, phi, component)
         self.map, self.shape, self.law = map, at.shape, map._law(angle)
         self.where, self.theta, self.phi = where.ravel(), at.ravel(), angle.ravel()
@@ -82,7 +82,7 @@ class OrbitRun:
         return self._chosen(out, made)
 
     def saved(self) -> Array:
-        """The state on which the rest of the orbit depends, besides its start: rows with a number for each particle."""
+        """The state from which the orbit can go on, in addition to its start: rows with a number for each particle."""
         if self.kernels:
             known = [kernel.rows for kernel in self.kernels.values() if kernel is not None]
             own = [np.concatenate([rows[name] for rows in known]) for name in known[0]]
@@ -112,7 +112,7 @@ class OrbitRun:
         return np.dtype(np.float64) if name == "theta" and "s" in self.names and not self.length else self.dtype
 
     def _first(self) -> dict[str, NDArray[Any]]:
-        """The fields of the start, or those recorded last; `eta` is nan at a start, since nothing has landed."""
+        """The fields of the start, or the last ones recorded; `eta` is nan at a start, since nothing has landed."""
         if self.last:
             return self.last
         known: dict[str, NDArray[Any]] = {"component": self.where, "theta": self.theta, "phi": self.phi}
@@ -126,7 +126,10 @@ class OrbitRun:
     def _advanced(
         self, bounces: int, out: dict[str, NDArray[Any]], top: int, threads: int | None
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Bounces some thousand particles at a time, which stay in the cache; codes of outcomes, and bounces missed."""
+        """Advances all particles, some thousand at a time, so that they stay in the cache.
+
+        Returns the codes of the outcomes, and the number of bounces that each particle missed.
+        """
         if bounces == 1 and not (self.keep or self.done):
             given, rows = (self.where, self.theta, self.phi), {name: values[top] for name, values in out.items()}
             length = self.length or (CLOSED, ())
@@ -152,7 +155,7 @@ class OrbitRun:
         return ends
 
     def _kernel(self, part: slice, other: BatchRun | None) -> BatchRun | None:
-        """A batch with some of the particles; the batch `other`, whose particles are finished, may be used again."""
+        """A batch with the particles of `part`; it may reuse `other`, a batch whose particles are finished."""
         if other is None or self.keep:
             count = min(self.lam.size - part.start, SIDE_BY_SIDE)
             length = self.length or (CLOSED, ())
@@ -167,7 +170,7 @@ class OrbitRun:
         out: dict[str, NDArray[Any]],
         made: NDArray[np.int64],
     ) -> None:
-        """Gives particles that stopped the fields of their last regular bounce, and no incidence angle."""
+        """Gives each particle that stopped the fields of its last regular bounce, and nan for the incidence angle."""
         self.code = code.astype(np.int64)
         missed = np.flatnonzero(self.code)
         self.bad[missed] = self.done + bounces + 1 - lost[missed].astype(np.int64)
@@ -200,7 +203,7 @@ class OrbitRun:
         return result.rows
 
     def _chosen(self, out: dict[str, NDArray[Any]], made: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
-        """The fields that were wanted, in their order."""
+        """The fields that the caller asked for, in the same order."""
         shape = len(made), self.lam.size
         if "component" not in out and {"component", "s"} & {*self.names}:
             out["component"] = np.zeros(shape, dtype=np.int64)
@@ -252,7 +255,7 @@ def _real(dtype: DTypeLike) -> np.dtype[Any]:
 
 
 def derivatives(map: "PinballMap", law: str, start: tuple[NDArray[np.int64], Array, Array], lam: Array) -> Array | None:
-    """The derivative of one bounce of each particle, by kernels; None if there are none or a particle stops."""
+    """The derivative of one bounce of each particle, by kernels; None if there is no kernel, or if a particle stops."""
     found = room((4, lam.size), {"": np.dtype(float)})[""].reshape(2, 2, -1)
     out = dict(zip(MATRIX, found.reshape(4, -1), strict=True))
     code = map.engine.once(law, start, lam, map.shape, out)
@@ -265,8 +268,9 @@ REALS, WHOLES = frozenset({float, int, np.float64}), frozenset({int, np.int64})
 class SingleBounce:
     """One bounce of one particle in some microseconds: everything that does not depend on the particle is prepared.
 
-    `told` returns None where the general method is needed: for a particle that stops, bad input, or an angle beyond a
-    whole turn. Buffers are taken from a list and put back, so threads, and a call within a call, have their own.
+    `told` returns None where the general method is needed: if a particle stops, if the input is bad, or if an angle
+    exceeds a whole turn. Buffers are taken from a list and put back, so that concurrent and nested calls use different
+    ones.
     """
 
     def __init__(self, map: "PinballMap", law: str, names: tuple[str, ...]) -> None:
@@ -284,7 +288,7 @@ class SingleBounce:
         return self.lam is map.lam and self.reflection is map.reflection
 
     def told(self, theta: Any, phi: Any, component: Any) -> list[float] | None:
-        """The values that the kernel records of the bounce, in the order of the names; None where it does not serve."""
+        """The values that the kernel records of the bounce, in the order of the names; None for the general method."""
         if not (self.run is not None and type(theta) in REALS and type(phi) in REALS and type(component) in WHOLES):
             return None
         if not (-HALF_PI < phi < HALF_PI and 0 <= component < len(self.ends)):
@@ -304,7 +308,7 @@ class SingleBounce:
         return found
 
     def _buffer(self) -> tuple[tuple[int, ...], Any, Any, Any, int, int]:
-        """A buffer: the kernel's arguments, state, record, its table; the offsets of start and outcome (0 for none)."""
+        """A new buffer: the kernel's arguments, state, record and table, and the offsets of start and outcome."""
         assert self.batch is not None
         rows, code = self.batch.state.shape[0], "code" in self.batch.names
         state = (ctypes.c_double * (rows * ALONE))(*self.batch.state.ravel())

@@ -2,16 +2,16 @@
 
 Starts are random points of phase space, random points of the table, or a grid for pictures.
 
-A start in the interior is the paper's: a point uniform in the table with a uniform direction, mapped to the first
-collision, which is elastic. It needs no ray from an interior point. The elastic map's measure `ds d(sin(phi))` counts
-chords, and a chord holds points in proportion to its length `t`; so a chord drawn from that measure and kept with
-probability `t/diameter` carries, uniformly along it, points uniform in the table with uniform directions (Santalo).
-Its other end is the first collision. This holds on every table, with the flights of the table's own kernel.
+A start in the interior is the paper's: a point uniform in the table, with a uniform direction, moved to its first
+collision, which is elastic. No flight from an interior point is computed. Instead a chord is drawn from the measure
+`ds d(sin(phi))` of the elastic map, and kept with probability `t/diameter` for its length `t`. Points uniform on such
+chords are uniform in the table, with uniform directions (Santalo), and the far end of the chord is the first collision.
+This holds on every table, and uses only the flights of the table's own kernel.
 
 All draws come from one seeded generator in one order: they depend neither on threads nor on batches.
 
-A `Growth` is a set of particles on their way, each with a tangent vector. Sums of logarithms are kept from the
-start, so differences between two moments are the growth between them, and reading them often loses nothing.
+A `Growth` is a set of particles on their way, each with a tangent vector. Sums of logarithms are kept from the start,
+so that the growth between two moments is a difference of sums, and no digits are lost if it is read often.
 """
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ RULER = 512  # boundary points between which the diameter is measured
 
 
 class Starts(NamedTuple):
-    """Particles about to leave the boundary; `x, y` is the interior point they came from, or else their own place."""
+    """Particles about to leave the boundary; `x, y` is the interior point they came from, else the boundary point."""
 
     component: NDArray[np.int64]
     theta: Array
@@ -73,8 +73,8 @@ def phase_starts(map: "PinballMap", count: int, seed: int) -> Starts:
 def interior_starts(map: "PinballMap", count: int, seed: int) -> Starts:
     """Random particles after their first collision: points uniform in the table, directions uniform.
 
-    Paper: appendix. That collision is elastic whatever `lam` is, so that every exit angle occurs, also at
-    `lam = 0`. The first particles of a longer list are those of a shorter one.
+    Paper: appendix. The first collision is elastic whatever `lam` is, so that every exit angle occurs, even at
+    `lam = 0`. With the same seed, a shorter list is the beginning of a longer one.
 
     >>> from numeric import PinballMap
     >>> starts = interior_starts(PinballMap("circle", lam=0), 1000, seed=0)
@@ -179,7 +179,7 @@ def flight_through(map: "PinballMap", x: float, y: float, vx: float, vy: float) 
 def _crossings(
     map: "PinballMap", x: float, y: float, vx: float, vy: float, points: int
 ) -> tuple[NDArray[np.int64], Array, Array]:
-    """Where a line meets the boundary, searched for on a grid of `points`: component, parameter, place on the line."""
+    """Where a line meets the boundary, by a search on `points` points: component, parameter, and place on the line."""
     ends = np.array(map.states.ends)
     each = max(4, points // len(ends))
     share = np.linspace(0, 1, each + 1)
@@ -251,7 +251,7 @@ class Growth:
     """Particles, each with a tangent vector in the coordinates `(s, phi)`; `advance` moves all of them.
 
     `stretch` is the logarithm of the vector's length, `volume` that of `|det|` without the `contraction` of each
-    bounce, both since the start; `bounces` is the number that each particle made, until it stopped if it did.
+    bounce, both since the start; `bounces` is the number of bounces that each particle made before it possibly stopped.
 
     >>> import numpy as np
     >>> from numeric import PinballMap
@@ -274,7 +274,7 @@ class Growth:
 
     @property
     def contraction(self) -> Array:
-        """The term `log(lam)` for each bounce, the contraction of angles, that `volume` leaves out.
+        """The contraction of angles, `log(lam)`, which is the term of each bounce that `volume` leaves out.
 
         For any law but the uniform contraction it is 0: there `volume` contains the slopes.
         """
@@ -308,10 +308,12 @@ class Growth:
         self.misalignment = np.ones(self.theta.size)
 
     def settle(self, bounces: int, threads: int | None = None) -> None:
-        """Moves particles without counting; in the last `ALIGNED` bounces their vectors turn to the growing direction.
+        """Moves particles without counting; during the last `ALIGNED` bounces their vectors turn to the direction of
+        growth.
 
-        These vectors are kept. `misalignment` is then the ratio of the singular values of the derivative of those
-        bounces, about the vector's angle to the direction of growth. It is 1 for a new vector.
+        Later calls of `advance` go on with these vectors. `misalignment` is set to the ratio of the singular values of
+        the derivative of those bounces, which is about the vector's angle to the direction of growth; it is 1 for a new
+        vector.
 
         >>> from numeric import PinballMap
         >>> growth = Growth(PinballMap("cardioid", lam=0.5), 0.3, 0.2)

@@ -92,7 +92,7 @@ def contraction(given: Contraction) -> Array:
 
 
 def shape_value(label: str, given: Any) -> Fraction | float:
-    """A shape parameter as the number that it shows: `0.08` is 2/25; a float for other numbers.
+    """A shape parameter as an exact number, in which `0.08` is 2/25; a float if it is another kind of number.
 
     >>> shape_value("alpha", 0.08)
     Fraction(2, 25)
@@ -162,12 +162,12 @@ def equal(one: Any, other: Any) -> bool:
 
 
 def plotted(kind: str, *results: Any, axes: Any = None) -> Any:
-    """The figure `kind` that a function of `verification.plots` draws, on the given axes or on a page of its own."""
+    """The figure `kind` as `verification.plots` draws it, on the given axes or on a new page."""
     return import_module("verification.plots.results").shown(kind, results, axes)
 
 
 class Labelled:
-    """Shared by results: comparison, a one-line text, and conversion to xarray and pandas."""
+    """The common part of all results: comparison, a one-line text, and conversion to xarray and pandas."""
 
     axes: ClassVar[tuple[str, ...]]
 
@@ -223,8 +223,8 @@ class OrbitFields(NamedTuple):
 class Orbit(Labelled, OrbitFields):
     """Bounces along the first axis, particles along the others; `eta[0]` is nan, since nothing landed there.
 
-    A particle that stopped repeats its last good state; `status` gives the bounce from which on, and the reason. An
-    orbit of `PinballMap.orbit` has its `map`, so that it can be drawn: `orbit.plot()`.
+    A particle that stopped repeats its last good state; `status` shows from which bounce on, and why. An orbit of
+    `PinballMap.orbit` has its `map`, so that it can be drawn: `orbit.plot()`.
 
     >>> from numeric import PinballMap
     >>> PinballMap("circle", lam=0.5).orbit([0.0, 1.0], 0.3, 4)
@@ -240,7 +240,7 @@ class Orbit(Labelled, OrbitFields):
         return STATUSES[self.code]
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the flights in the table and the bounces in phase space; on one given pair of `axes` the flights."""
+        """Draws the flights in the table and the bounces in phase space; on one given pair of `axes` only flights."""
         if self.map is None:
             raise ValueError("orbit.plot: only an orbit that PinballMap.orbit gave has its table; it draws itself")
         return plotted("results.flights", self, axes=axes)
@@ -273,7 +273,7 @@ class Exponents(Labelled, ExponentFields):
     """Finite-time Lyapunov exponents per bounce, in the coordinates `(s, phi)`, and the bounces each particle made.
 
     `nu_plus_error` and `nu_minus_error` are standard errors, from the scatter over 16 blocks of the same run, which is
-    computed once more for them; they are too small where an orbit's memory is longer than a block.
+    repeated when they are first read. They are too small if an orbit is correlated over more than a block.
     """
 
     axes = ("particle",)
@@ -352,7 +352,7 @@ def html_table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def labelled(columns: Mapping[str, Any], axes: tuple[str, ...]) -> "xr.Dataset":
-    """Named arrays as an xarray Dataset, with particles on one axis; an array with fewer axes has the last ones."""
+    """Named arrays as an xarray Dataset, with particles on one axis; an array with fewer axes lacks the first ones."""
     try:
         import xarray
     except ImportError:

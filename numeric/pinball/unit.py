@@ -1,8 +1,8 @@
-"""The unit of length and the origin in which a map computes: its table's, unless that is very small, large or far away.
+"""The unit of length and the origin in which a map computes: the table's own, or others if numbers would lose digits.
 
-Products of four lengths stay far from the ends of float64, and no digit is lost to a distance from the origin: a table
-whose size is outside `RANGE` is divided by a power of two, and one that is `AWAY` times its size from the origin is
-moved to it, exactly and before anything is rounded. Results are multiplied and moved back.
+Products of four lengths must stay far from the ends of float64, and no digit should be lost to a distance from the
+origin. So a table whose size is outside `RANGE` is divided by a power of two, and one that is `AWAY` times its size
+from the origin is moved to it, exactly and before anything is rounded. Results are converted back.
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ PLACES = 9  # points on each component, for the box
 
 
 class Unit(NamedTuple):
-    """An exact change of unit and origin: points are those of the map times `length`, a power of two, plus `(x, y)`."""
+    """An exact change of unit and origin: table's point = map's point times `length` (a power of two) plus `(x, y)`."""
 
     length: float = 1.0
     x: float = 0.0
@@ -36,7 +36,7 @@ class Unit(NamedTuple):
         return (x, y) if self == ONE else (x * self.length + self.x, y * self.length + self.y)
 
     def restore(self, rows: Mapping[str, NDArray[Any]]) -> None:
-        """Replaces the rows `x` and `y` among some rows by the table's coordinates, in place."""
+        """Converts the arrays `x` and `y`, if they are among `rows`, to the table's own coordinates, in place."""
         if self != ONE:
             for name, away in (("x", self.x), ("y", self.y)):
                 if name in rows:
@@ -47,9 +47,10 @@ ONE = Unit()
 
 
 def unit_of(boundary: Boundary) -> Unit:
-    """The unit in which a table has a size of about 1 and lies about the origin; `ONE` for an ordinary one.
+    """The unit and origin for which a table has a size of about 1 and lies near the origin; `ONE` for an ordinary
+    table.
 
-    `ValueError` where points do not fit float64, and where the table is flatter than `FLAT`.
+    `ValueError` if points do not fit float64, or if the table is flatter than `FLAT`.
     """
     name = boundary.ir.table
     if boundary.ir.same_as:

@@ -1,8 +1,9 @@
-"""The cost of a sweep before it begins: seconds, bytes of results, and memory.
+"""The cost of a sweep, estimated before it begins: seconds, bytes of results, and memory.
 
-The sweep's own task is timed on some of its parts, spread over the grid, until their mean is known: on whole parts
-where these are short, else on thinned ones at two sizes, which separate the fixed cost of a part from the cost of each
-coordinate; and once when its map is made. The processor's time is measured, which other work hardly lengthens.
+The sweep's task is timed on some of its parts, spread over the grid, until the mean is known. Short parts are timed
+whole; long ones are thinned to two sizes, from which the fixed cost and the cost of each coordinate follow. The first
+run of a part also makes its map; its additional time is the cost of a map. What is measured is processor time, which
+other programs hardly lengthen.
 """
 
 import time
@@ -29,12 +30,13 @@ Clock = Callable[[], float]
 
 
 class Cost(NamedTuple):
-    """The estimated cost of a sweep: processor `nanoseconds` for a bounce, all included; at most about `memory` bytes.
+    """The estimated cost of a sweep: processor time per bounce in `nanoseconds`, all included, and at most `memory`
+    bytes.
 
     `error` is the relative standard error of the seconds, from the differences between the `looked` parts that were
-    timed; None where only the kernel's speed was measured. `memory` is added to that of the program and its libraries.
-    At most `workers` parts are worked on at a time, so memory does not grow with the grid, except for results that go
-    into no store.
+    timed; it is None if only the kernel's speed was measured. `memory` comes on top of that of the program and its
+    libraries. At most `workers` parts are worked on at a time, so `memory` does not grow with the grid, unless the
+    results are kept in memory and not in a store.
     """
 
     parts: int
@@ -83,7 +85,7 @@ def size(count: int) -> str:
 
 
 def cost(sweep: Sweep, workers: int | None = None, stored: bool = True, clock: Clock = time.process_time) -> Cost:
-    """The cost of all parts of a sweep; `stored` if results go into a store, not memory. `clock` gives seconds."""
+    """The cost of all parts of a sweep. `stored` is true if results go into a store; `clock` returns seconds."""
     workers, parts = workers or cores(), len(sweep.indices())
     kept = AHEAD * workers * sweep.size // parts + (0 if stored else sweep.size)
     each, length = max(sweep.collisions / parts, 1.0), prod(_cut(sweep).values())
@@ -126,7 +128,7 @@ def cost(sweep: Sweep, workers: int | None = None, stored: bool = True, clock: C
 
 
 def _spread(sweep: Sweep) -> Iterator[tuple[int, ...]]:
-    """Every part once, in an order in which each is far from those before it and follows no axis."""
+    """Yields every part once, in an order in which each part is far from those before it."""
     indices = sweep.indices()
     seen: set[int] = set()
     for i in range(8 * len(indices)):
@@ -148,12 +150,12 @@ def _error(found: list[float], places: list[int], parts: int) -> float:
 
 
 def _scenes(sweep: Sweep) -> int:
-    """The number of maps to prepare: one for each combination of values on axes that are cut into single values."""
+    """The number of maps to prepare: one for each combination of values on the axes where a part has a single value."""
     return prod(axis.size for axis in sweep.axes if axis.part == 1)
 
 
 def _places(sweep: Sweep, part: SweepPart) -> int:
-    """The number of grid points of a part along those axes that are cut into pieces."""
+    """The number of grid points of a part along the axes on which a part has several values."""
     return prod(len(part.values[name]) for name in _cut(sweep))
 
 
@@ -171,12 +173,12 @@ def speed(map: PinballMap) -> float:
 
 
 def _cut(sweep: Sweep) -> dict[str, int]:
-    """The axes along which a part takes several values, with the number of values in a part."""
+    """The axes along which a part takes several values, with the number of values."""
     return {axis.name: min(axis.part, axis.size) for axis in sweep.axes if axis.part > 1}
 
 
 def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> SweepPart:
-    """A part thinned to about `count` coordinates: the middle ones of as many equal shares."""
+    """A part thinned to about `count` coordinates, equally spaced along its axes."""
     part, values = sweep.part(index), {}
     for name in _cut(sweep):
         here = part.values[name]
@@ -187,7 +189,7 @@ def _thinned(sweep: Sweep, index: tuple[int, ...], count: int) -> SweepPart:
 
 
 def _line(few: int, more: int, length: int, small: float, large: float) -> float:
-    """The cost of a whole part, extrapolated from the costs `small` and `large` of two thinned ones."""
+    """The cost of a whole part, extrapolated from the costs `small` and `large` of two thinned parts."""
     if more == few:
         return large * length / more
     rise = max(0.0, large - small) / (more - few)
@@ -195,7 +197,7 @@ def _line(few: int, more: int, length: int, small: float, large: float) -> float
 
 
 def _largest(sweep: Sweep, at: tuple[int, ...], few: int, more: int, length: int) -> float:
-    """Bytes that a whole part takes at once, extrapolated from thinned ones."""
+    """The largest number of bytes that a whole part takes at once, extrapolated from thinned parts."""
     ends = [_peak(sweep, _thinned(sweep, at, count)) for count in (few, more)[: 1 + (few < more)]]
     return _line(few, more, length, float(ends[0]), float(ends[-1]))
 

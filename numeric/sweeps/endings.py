@@ -1,9 +1,10 @@
 """The sets on which random starts end at many values of a parameter: cycles, chaos, neutral orbits, corners.
 
 Every start runs at the kernel's own speed, so that hundreds of starts at hundreds of values take seconds. A cycle is
-identified by its period and by `MARKS` numbers that its images under the symmetries of the table share: means of
-distances between bounces. A start that ends on no cycle is chaotic if its exponent is above `calm`, else neutral. Where
-areas shrink slowly, chaos may last for long and end on a cycle: it counts once areas have shrunk by `exp(-LASTING)`.
+identified by its period and by `MARKS` numbers that are the same for its images under the symmetries of the table:
+means of distances between bounces. A start that ends on no cycle is chaotic if its exponent is above `calm`, else
+neutral. Where areas shrink slowly, a long chaotic transient may end on a cycle; so an orbit counts as chaotic only
+after areas have shrunk by the factor `exp(-LASTING)`.
 """
 
 from dataclasses import dataclass
@@ -31,7 +32,7 @@ CYCLE, CHAOTIC, NEUTRAL, STOPPED, UNSETTLED = range(5)  # in the order of `Kind`
 
 @dataclass(frozen=True, eq=False)
 class Endings:
-    """The ends of all starts at one value of the parameter: a row for each start, with its last phase points."""
+    """Where all starts end at one value of the parameter: arrays with one entry for each start."""
 
     value: float
     kind: Labels
@@ -58,7 +59,7 @@ def endings(
     starts: int,
     seed: int,
 ) -> list[Endings]:
-    """The ends of `starts` random starts at each of the values; `lam` is the contraction where another one varies.
+    """Where `starts` random starts end, for each value of the parameter; `lam` is the contraction if it does not vary.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -83,7 +84,10 @@ def endings(
 def _of(
     map: PinballMap, theta: Array, phi: Array, component: Labels
 ) -> tuple[Labels, Labels, Array, Array, PhasePoints]:
-    """Kind, period, marks and gap of each particle, and its last phase point; those nearing a cycle go on longer."""
+    """Kind, period, marks and gap of each particle, and its last phase point.
+
+    Particles that approach a cycle slowly are followed for longer.
+    """
     points = phase_points(theta, np.zeros_like(theta) if map.law == "slap" else phi, component)
     size = points.size
     kind, period = np.full(size, UNSETTLED), np.zeros(size, dtype=np.int64)
@@ -123,9 +127,9 @@ def _at(map: PinballMap, which: Labels) -> PinballMap:
 
 
 def _returns(map: PinballMap, points: PhasePoints, drawn: NDArray[np.bool_]) -> tuple[Labels, Array, Array]:
-    """For each particle the number of bounces until it returns, the marks of that cycle, and the gap where it returns.
+    """The number of bounces after which each particle returns, the marks of its cycle, and the distance at the return.
 
-    Particles that are `drawn` to a cycle may still be some way off.
+    A larger distance is accepted for particles in the mask `drawn`, which still approach their cycle.
     """
     orbit = map.orbit(points.theta, points.phi, LONGEST + 1, points.component)
     bad = np.any(orbit.code != 0, axis=0)
@@ -144,7 +148,7 @@ def marks_of(place: Array, period: Labels | None = None) -> Array:
     """Numbers that identify cycles, one row for each: mean distances of bounces, equal for images under a symmetry.
 
     `place` has x and y along the first axis, bounces along the second one and cycles along the third; without a
-    `period` each closes after its last bounce.
+    `period` each cycle closes after its last bounce.
     """
     if period is None:
         once, twice = (np.linalg.norm(np.roll(place, -k, axis=1) - place, axis=0) for k in (1, 2))

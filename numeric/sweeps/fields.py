@@ -1,10 +1,11 @@
 """The sweeps and their fields: basins of attraction, bifurcation diagrams, exponents by attractor.
 
-Basins (paper: appendix): the attractors are found once, from random starts; then each cell's centre is a particle,
-and its label is the number of the attractor that it reaches. Bifurcation diagrams (section 6.6): the places of random
-particles after a long time, against the contraction or another parameter. Exponents (sections 4.1 and 5.3):
-orbits that share an attractor make a group, and groups are never averaged together; the groups of one value are
-numbered from the one with the most orbits on, and the same number at two values need not be the same branch.
+Basins (paper: appendix): the attractors are found once, from random starts; then a particle starts at each cell's
+centre, and the cell's label is the number of the attractor that the particle reaches. Bifurcation diagrams (section
+6.6) show the phase points of random particles after a long time, against the contraction or another parameter.
+Exponents (sections 4.1 and 5.3): orbits that share an attractor form a group, and no average is taken over several
+groups. At each value groups are numbered by size, the largest first; groups of the same number at two values need not
+belong to the same branch.
 """
 
 import json
@@ -70,9 +71,9 @@ def basins(
     images: bool = False,
     known: tuple[Attractor, ...] | None = None,
 ) -> Sweep:
-    """The sweep over the cells of a window, or of all phase space; `images` adds those under the symmetries.
+    """The sweep over the cells of a window, or of all phase space; `images` adds images of attractors under symmetries.
 
-    Attractors that are `known` already are not searched for.
+    If the attractors are `known`, none are searched for.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -116,7 +117,7 @@ def described(attractor: Attractor) -> dict[str, Any]:
 
 
 def attractors_of(settings: str) -> list[dict[str, Any]]:
-    """The descriptions of attractors by `described`, from the settings that label a result."""
+    """The attractors, as `described` returns them, read from the `settings` that are stored with a result."""
     found: list[dict[str, Any]] = json.loads(settings)["attractors"]
     return found
 
@@ -140,7 +141,7 @@ DIAGRAM_FIELDS = (
 
 @dataclass(frozen=True)
 class DiagramTask:
-    """The task of a bifurcation diagram: the orbits at a few contractions, or at one shape, on their attractors."""
+    """The task of a bifurcation diagram: orbits on their attractors, at a few contractions or at one shape."""
 
     scene: str
     orbits: int
@@ -180,9 +181,9 @@ def bifurcation(
     parameter: str = "lam",
     lam: float = 1.0,
 ) -> Sweep:
-    """The sweep over `lams`: for each the last `points` bounces of `orbits` particles. `s` is nan where one stopped.
+    """The sweep over `lams`, with the last `points` bounces of `orbits` particles for each; `s` is nan after a stop.
 
-    With another `parameter`, of the table or of the law, `lams` holds its values, and `lam` is fixed.
+    If `parameter` is another one, of the table or of the law, `lams` holds its values, and `lam` is fixed.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -228,7 +229,7 @@ EXPONENT_FIELDS = (
 
 @dataclass(frozen=True)
 class Surveys:
-    """The task of a sweep over exponents: the groups at one contraction, or at one shape."""
+    """The task of a sweep over exponents: groups of orbits and their exponents, at one contraction or one shape."""
 
     scene: str
     orbits: int
@@ -277,7 +278,7 @@ def exponents(
     parameter: str = "lam",
     lam: float = 1.0,
 ) -> Sweep:
-    """The sweep over `lams`, or over another `parameter` at one `lam`; it keeps `groups` groups for each value.
+    """The sweep over `lams`, or over another `parameter` at a fixed `lam`; it keeps `groups` groups for each value.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of

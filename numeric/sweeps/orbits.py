@@ -1,8 +1,8 @@
-"""Orbits that do not fit in memory, written piece by piece into a Zarr store, and resumed where they were stopped.
+"""Orbits that do not fit in memory: written piece by piece into a Zarr store, and resumed after an interruption.
 
 The store is that of a sweep over bounces and particles whose parts depend on each other. Besides the fields it holds a
-checkpoint, the state of the particles after the finished pieces, so that an orbit that was stopped goes on to the
-same bits. Memory is that of one piece; `memory` gives its size before anything runs.
+checkpoint, the state of the particles after the finished pieces. So an interrupted orbit continues with the same bits
+as an uninterrupted one. Only one piece is in memory at a time; `memory` returns its size before anything runs.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -47,7 +47,8 @@ def record(
     piece: int = PIECE,
     tick: Callable[[int, int], None] | None = None,
 ) -> "xr.Dataset":
-    """Writes an orbit into the store at `path`, `piece` numbers of a field at a time; called again, it continues there.
+    """Writes an orbit to the store at `path`, in pieces with `piece` numbers for each field; a second call continues
+    it.
 
     The result is read from the store on demand: `bounce` counts from the start, and `particle` is in the order of the
     arguments. `tick(done, pieces)` is called after each piece.
@@ -83,9 +84,10 @@ def record(
 
 
 def memory(map: PinballMap, particles: int, fields: Sequence[str] = ("theta", "phi"), piece: int = PIECE) -> int:
-    """The bytes that `record` takes at a time, at most: a piece of each field, two that are being written, and states.
+    """An upper bound of the bytes that `record` needs at a time.
 
-    Where no kernel records the orbit, it takes a piece of each row of the state and of each of its translations.
+    These are one piece of each field, two pieces that are being written, and the state. If no kernel records the orbit,
+    a piece of each row of the state and of each converted field is added.
 
     >>> memory(PinballMap("egg", lam=0.5, alpha=0.08), particles=1000) // 10**6
     44
@@ -105,7 +107,7 @@ COLUMNS = ("component", "theta", "s", "x", "y", "eta", "phi", "code")
 
 
 def table_written(columns: Mapping[str, NDArray[Any]], path: Path) -> None:
-    """Writes columns of one length as a table, in the format of the name: .csv, .npz or .parquet."""
+    """Writes columns of equal length as a table, in the format of the file name: .csv, .npz or .parquet."""
     if path.suffix not in (".csv", ".npz", ".parquet"):
         raise ValueError(f"--out {path}: accepted: a name that ends in .csv, .npz, .parquet or .zarr")
     if not path.parent.is_dir():
@@ -169,7 +171,7 @@ def _sweep(run: OrbitRun, bounces: int, piece: int) -> Sweep:
 
 
 def _label(given: NDArray[np.float64]) -> float | str:
-    """The number that all particles share, or a text with a digest of their different numbers."""
+    """The number, if all particles have the same one; else a text with a digest of the numbers."""
     shared = given.size > 0 and bool(np.all(given == given.flat[0]))
     return float(given.flat[0]) if shared else f"numbers with digest {sha256(given.tobytes()).hexdigest()[:16]}"
 
@@ -180,7 +182,7 @@ def _in_order(part: SweepPart) -> dict[str, Any]:
 
 @undisturbed()
 def _checkpoint(store: Stored, run: OrbitRun, done: int) -> None:
-    """Stores the state after `done` pieces in a file that appears at once."""
+    """Stores the state after `done` pieces, in a single file that is replaced as a whole."""
     saved = run.saved()
     if CHECKPOINT not in store.group:
         shape = saved.shape[0] + 1, saved.shape[1]
@@ -189,7 +191,7 @@ def _checkpoint(store: Stored, run: OrbitRun, done: int) -> None:
 
 
 def _resumed(store: Stored, run: OrbitRun, there: int) -> int:
-    """The number of pieces that need not be made again; the orbits are set to go on after them."""
+    """The number of pieces that need not be computed again; `run` is set to continue after them."""
     if there == 0 or CHECKPOINT not in store.group:
         return 0
     rows = np.asarray(store.group[CHECKPOINT][:])

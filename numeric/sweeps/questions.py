@@ -1,7 +1,7 @@
 """Functions that answer questions on a table: attractors, basins, exponents with errors, diagrams, parameter space.
 
-A table is an exact one, a scene, a map, or the name of one of the paper's or of the gallery; `lam`, a reflection `law`
-and the numbers of its shape are keywords. Numbers are exact or decimal, and a float means the decimal it shows.
+A table is an exact one, a scene, a map, or the name of a table of the paper or of the gallery; `lam`, a reflection
+`law` and the numbers of its shape are keywords. Numbers are exact or decimal, and a float means the decimal it shows.
 Results have `.plot()`, and convert to xarray and pandas. Paper: section 4 to 6 and the appendix.
 """
 
@@ -32,9 +32,9 @@ Interval = tuple[Any, Any]
 
 
 class Attractors(Sequence[Attractor]):
-    """The attractors that `orbits` random starts of a map reach, the most visited first; images under symmetries too.
+    """The attractors that `orbits` random starts of a map reach, the most visited first; their symmetry images follow.
 
-    Found by sampling: one whose basin is below about `3/orbits` of the table is likely to be missed.
+    They are found by sampling: an attractor whose basin is below about `3/orbits` of the table is likely to be missed.
     """
 
     def __init__(self, map: PinballMap, found: Sequence[Attractor], orbits: int) -> None:
@@ -86,8 +86,8 @@ def name_of(attractor: Attractor) -> str:
 class LyapunovExponents:
     """Both exponents per bounce of each attractor, with standard errors, as plain data: `document["groups"]`.
 
-    `nu_plus` and the other properties are those of the attractor if there is one only, else None, as nothing is
-    averaged over attractors. Paper: appendix.
+    If there is only one attractor, `nu_plus` and the other properties are its values; otherwise they are None, since
+    nothing is averaged over attractors. Paper: appendix.
     """
 
     document: dict[str, Any]
@@ -128,7 +128,7 @@ class LyapunovExponents:
     __hash__ = None  # type: ignore[assignment]
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the exponents with twice their errors, and how the errors fell; on given `axes` the exponents alone."""
+        """Draws the exponents with twice their errors, and how the errors fell; on given `axes` only the former."""
         return plotted("results.exponents", self.document, axes=axes)
 
     def __repr__(self) -> str:
@@ -275,9 +275,10 @@ def bifurcation_diagram(
     seed: int = 1,
     **shape: Any,
 ) -> GridResult:
-    """The places of random orbits after a long time, against the contraction or another parameter. Paper: section 6.6.
+    """The phase points of random orbits after a long time, against the contraction or another parameter.
 
-    One keyword is an interval, `lam=("0", "1")` or a letter of the table or law such as `b=("0", "1/5")` at one `lam`.
+    Paper: section 6.6. One keyword is an interval: `lam=("0", "1")`, or a parameter of the table or law, as
+    `b=("0", "1/5")` at one `lam`.
 
     >>> bifurcation_diagram("ellipse", a=2, lam=("0.3", "0.5"), values=3, orbits=2, points=4)
     GridResult(Attractors against the contraction, from 2 random particles each: s, phi, theta, component, nu_plus, \
@@ -304,9 +305,10 @@ def parameter_space(
     seed: int = 1,
     **shape: Any,
 ) -> GridResult:
-    """Counts of chaotic orbits, and periods, over a letter of the table or law and the contraction. Paper: section 6.5.
+    """Counts of chaotic orbits, and periods, over a parameter of the table or law and the contraction. Paper: section
+    6.5.
 
-    The letter is given an interval, as in `alpha=("0", "1/10")`.
+    The parameter is given as an interval, such as `alpha=("0", "1/10")`.
 
     >>> found = parameter_space("egg", alpha=("0.02", "0.09"), lam=("0.1", "0.3"), columns=2, rows=2, orbits=3)
     >>> found["chaotic"].tolist()
@@ -321,7 +323,7 @@ def parameter_space(
 
 
 def _map(table: Any, lam: Any, law: Law | str | None, shape: dict[str, Any]) -> PinballMap:
-    """The map of a table of any kind; a scene's own law, contraction and shape are replaced by what is given."""
+    """The map of any kind of `table`; `lam`, `law` and `shape`, where given, replace those of a scene."""
     scene = table if isinstance(table, str) else getattr(table, "scene", table)
     if not isinstance(scene, Scene):
         return PinballMap(scene, lam=lam, law=law, **shape)
@@ -353,7 +355,7 @@ def _interval(question: str, given: dict[str, Any]) -> tuple[str, tuple[float, f
 
 
 def _scene_over(table: Any, law: Law | str | None, given: dict[str, Any], varied: Sequence[str]) -> tuple[str, float]:
-    """The scene's text for a sweep, with the middle of each interval, and its contraction."""
+    """The text of the scene for a sweep, with the middle of each interval as its value; and its contraction."""
     middle = {name: (shape_value(name, given[name][0]) + shape_value(name, given[name][1])) / 2 for name in varied}
     numbers = {**given, **middle}
     map = _one_map(table, numbers.pop("lam"), law, numbers)

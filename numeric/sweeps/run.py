@@ -1,7 +1,7 @@
-"""Runs a sweep: the missing parts, by threads, processes or a Dask cluster, into memory or into a store.
+"""Runs the missing parts of a sweep, by threads, processes or a Dask cluster, into memory or into a store.
 
-All executors give results as they come. Threads are used for kernels, which let others run beside them; a task that is
-mostly Python holds the interpreter, so its sweep asks for processes.
+All executors give results as they come. Threads are used for kernels, which release the interpreter's lock. A task that
+is mostly Python holds this lock, so its sweep asks for processes.
 """
 
 import errno
@@ -32,11 +32,11 @@ LIVES = 3  # times that a part may lose its worker and be given to another
 
 
 class UnfinishedError(Exception):
-    """A sweep that could not be finished, in one sentence; finished parts are kept."""
+    """The error that a sweep could not be finished, with a one-sentence reason; finished parts are kept."""
 
 
 def on_threads(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
-    """The results of each part, computed by threads of this process: kernels let others run beside them."""
+    """The results of each part, computed by threads of this process; kernels release the interpreter's lock."""
     waiting = iter(indices)
     with ThreadPoolExecutor(workers) as pool:
         running: dict[Future[dict[str, Array]], Index] = {}
@@ -71,7 +71,7 @@ def in_memory(sweep: Sweep, workers: int) -> dict[str, Array]:
 
 
 def on_processes(sweep: Sweep, indices: Sequence[Index], workers: int) -> Results:
-    """The results of each part, computed by processes of this machine; `UnfinishedError` if one dies again."""
+    """The results of each part, computed by processes; `UnfinishedError` if a part's process dies each time."""
     tasks = ([sweep.part(index)] for index in indices)
     for part, found in in_processes(sweep.task, tasks, workers, [type(sweep.task).__module__], ahead=AHEAD - 1):
         if isinstance(found, Lost):
@@ -110,7 +110,7 @@ def on_cluster(sweep: Sweep, indices: Sequence[Index], address: str) -> Results:
 
 @contextmanager
 def _quiet(*names: str) -> Iterator[None]:
-    """Silences the named loggers in the block, since errors are reported once, by this package."""
+    """Silences the named loggers within the block, since this package reports each error once itself."""
     levels = {name: logging.getLogger(name).level for name in names}
     try:
         for name in names:
@@ -155,7 +155,7 @@ def _given(client: Any, sweep: Sweep, index: Index) -> Any:
 
 
 def _found(future: Any) -> dict[str, Array] | None:
-    """The result of a worker; None when the worker was lost on the way."""
+    """The result of a worker; None if the worker was lost."""
     from distributed import KilledWorker
 
     try:
@@ -201,10 +201,11 @@ def carried_out(
     workers: int | None = None,
     tick: Tick | None = None,
 ) -> Memory | Stored:
-    """The results, as arrays by name in `.arrays`; `.dataset()` labels them, which imports xarray, for a second.
+    """The results of a sweep, as arrays by name in `.arrays`; `.dataset()` labels them by xarray, whose import takes a
+    second.
 
-    With a `store`, parts that are there are kept; when it ends early, `UnfinishedError` or `KeyboardInterrupt` gives
-    their number. The bits do not depend on `scheduler`, `workers`, or how often it was stopped.
+    With a `store`, parts that it already has are kept. If the run ends early, `UnfinishedError` or `KeyboardInterrupt`
+    says how many parts are stored. The bits do not depend on `scheduler`, `workers`, or interruptions.
     """
     place: AbstractContextManager[Memory | Stored] = (
         nullcontext(Memory(sweep)) if store is None else opened(sweep, store)

@@ -1,8 +1,8 @@
 """Parameter space: chaos and periods over pairs of a shape and a contraction. Paper: section 6.5.
 
-From each pair random particles are started as in the paper's appendix, and those are counted whose exponent is
-positive beyond its error (`numeric.sweeps.sweep`). For the one with the smallest exponent up to `LONGEST` more bounces
-are computed, to find the period with which it comes back.
+At each pair random particles are started as in the paper's appendix, and those whose exponent is positive beyond its
+error (`numeric.sweeps.sweep`) are counted. For the particle with the smallest exponent up to `LONGEST` more bounces are
+computed, to find the period after which it returns.
 """
 
 from collections.abc import Sequence
@@ -100,7 +100,7 @@ def periods(map: PinballMap, starts: Starts) -> NDArray[np.int64]:
 
 
 def attracting(map: PinballMap, starts: Starts, period: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Are both multipliers of the cycle through each particle, of the given period, below 1? False for period 0.
+    """For each particle: are both multipliers of the cycle through it, of this period, below 1? False for period 0.
 
     Paper: section 2.1; this holds if `|trace| < 1 + det` and `|det| < 1`.
 
@@ -114,7 +114,7 @@ def attracting(map: PinballMap, starts: Starts, period: NDArray[np.int64]) -> ND
 
 
 def returns(map: PinballMap, starts: Starts | PhasePoints, period: NDArray[np.int64]) -> tuple[Array, Array]:
-    """Trace and determinant of the derivative over as many bounces as each particle's period; nan for period 0."""
+    """Trace and determinant of the derivative of `T**period` at each particle; nan for period 0."""
     trace, determinant = np.full((2, period.size), np.nan)
     fields = "component", "theta", "phi"
     for n in np.unique(period[period > 0]):
@@ -133,9 +133,9 @@ def returns(map: PinballMap, starts: Starts | PhasePoints, period: NDArray[np.in
 
 
 class Followed(NamedTuple):
-    """Each particle's period, 0 for no cycle; the indices `going` of those without a cycle, and their `Growth`.
+    """The period of each particle, 0 if it is on no cycle; the indices `going` of the latter, and their `Growth`.
 
-    `starts` holds the last phase points of all particles.
+    `starts` has the last phase points of all particles.
     """
 
     period: NDArray[np.int64]
@@ -147,8 +147,8 @@ class Followed(NamedTuple):
 def followed(map: PinballMap, starts: Starts, marks: Sequence[int], threads: int | None = None) -> Followed:
     """Follows particles over `marks[-1]` bounces; those on an attracting cycle after an earlier mark stop there.
 
-    Such a particle returns after up to `LONGEST` bounces, and their derivative contracts; the second condition excludes
-    particles that pass near a saddle, which return as well.
+    A particle is on an attracting cycle if it returns after up to `LONGEST` bounces whose derivative has both
+    multipliers below 1. The second condition excludes particles that return near a saddle.
 
     >>> ellipse = PinballMap("ellipse", a=2, lam="0.5")
     >>> starts = Starts(*(np.array(x) for x in ([0, 0], [1.5, 0.2], [0.0, 0.1], [0.0, 0.0], [0.0, 0.0])))

@@ -1,8 +1,8 @@
-"""Stores of results: a Zarr store that grows chunk by chunk and is whole at every moment, or plain memory.
+"""Stores of results: a Zarr store that grows part by part and is valid at any time, or plain memory.
 
-A part is done when the file of each of its fields is there and its checksum is right; a file appears at once or not
+A part is done when the file of each of its fields exists and has the right checksum; a file appears as a whole or not
 at all. So there is no journal, and incomplete parts of a killed sweep are computed again. A part has the same bits
-whoever computes it: a lock keeps a second process out, and without a lock two only waste time.
+whichever process computes it. A lock keeps a second process out; without a lock two processes would only waste time.
 """
 
 import glob
@@ -41,7 +41,7 @@ class Memory:
         self.arrays = {f.name: np.full(sweep.shape(f), missing_value(f.dtype), f.dtype) for f in sweep.fields}
 
     def missing(self) -> list[Index]:
-        """All parts: none is stored."""
+        """All parts, since none is stored."""
         return self.sweep.indices()
 
     def write(self, index: Index, arrays: dict[str, Array]) -> None:
@@ -62,7 +62,7 @@ class Memory:
 
 
 class Stored:
-    """Results in a Zarr store at `path`, which must exist; `opened` makes it, and makes sure of a single writer."""
+    """Results in an existing Zarr store at `path`; `opened` creates the store, for one process at a time."""
 
     @undisturbed()
     def __init__(self, sweep: Sweep, path: Path) -> None:
@@ -74,7 +74,7 @@ class Stored:
             self.arrays: dict[str, Any] = {field.name: self.group[field.name] for field in sweep.fields}
 
     def missing(self) -> list[Index]:
-        """The parts that are not there or damaged; a warning names damaged files."""
+        """The parts that are missing or damaged; a warning names damaged files."""
         damaged: list[Path] = []
         missing = []
         for index in self.sweep.indices():
@@ -87,7 +87,7 @@ class Stored:
 
     @undisturbed()
     def write(self, index: Index, arrays: dict[str, Array]) -> None:
-        """Writes the results of a part; `OSError` when the disk is full, and then the part is still missing."""
+        """Writes the results of a part; if the disk is full, raises `OSError`, and the part is still missing."""
         for field in self.sweep.fields:
             values = np.asarray(arrays[field.name], field.dtype)
             self.arrays[field.name][self.sweep.where(field, index)] = values
@@ -118,7 +118,7 @@ class Stored:
 
 @contextmanager
 def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
-    """The store of a sweep, new or to be resumed; `ValueError` if it is another's, or another process writes to it."""
+    """The store of a sweep, new or to be resumed; `ValueError` if another sweep made it or another process uses it."""
     if ADDRESS.match(path.as_posix()):
         raise ValueError(
             f"--store {path}: an object store has no files that appear at once; accepted: a directory on a disk, which "
@@ -137,7 +137,7 @@ def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[bool]:
-    """Keeps a second process out by a lock that ends with its process; yields whether the file system has locks."""
+    """Keeps other processes out by a lock that ends with its process; yields whether the file system has locks."""
     from filelock import FileLock, Timeout
 
     lock = FileLock(path.with_name(f".{path.name}.lock"), blocking=False)
@@ -156,7 +156,7 @@ def _alone(path: Path) -> Iterator[bool]:
 
 @undisturbed()
 def _made(sweep: Sweep, path: Path) -> None:
-    """Makes an empty store, which appears at once."""
+    """Creates an empty store, which becomes visible only when it is complete."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         own = f".{path.name}.{os.getpid()}"
@@ -199,7 +199,7 @@ def _laid_out(sweep: Sweep, place: Any) -> None:
 
 @undisturbed()
 def _mended(sweep: Sweep, path: Path) -> None:
-    """Writes the files of an empty store again where they are damaged: axes have no checksum."""
+    """Writes the files of an empty store again if they are damaged, also those of the axes, which have no checksum."""
     from zarr.storage import MemoryStore
 
     own: dict[str, Any] = {}
@@ -238,7 +238,7 @@ def _field(group: Any, sweep: Sweep, field: Field) -> None:
 
 
 def _same(sweep: Sweep, path: Path) -> None:
-    """Raises `ValueError`, which names what differs, unless the store is this sweep's."""
+    """Raises `ValueError`, which names the differences, unless the store was made for this sweep."""
     try:
         found = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
         found["sweep"]
@@ -277,7 +277,7 @@ def _named(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _differing(was: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
-    """The differing values as text, with both values where they are short."""
+    """The values that differ, as text; both values are shown where they are short."""
     names = [name for name in {**here, **was} if was.get(name) != here.get(name)]
     short = [
         f"{name} = {was.get(name, 'none')} and not {here.get(name, 'none')}"
@@ -315,7 +315,7 @@ def _listed(versions: Any) -> str:
 
 
 def _whole_files() -> Any:
-    """A Zarr store on disk in which a file appears at once or not at all, whatever version of Zarr it is."""
+    """A Zarr store on disk in which a file appears as a whole or not at all, in every version of Zarr."""
     from zarr.storage import LocalStore
 
     class WholeFiles(LocalStore):  # type: ignore[misc, unused-ignore]

@@ -2,12 +2,11 @@
 
 A scene is a line of text, which labels results and is sent to other machines.
 
-The sign of a finite-time Lyapunov
-exponent is decided by its error. A run is cut into blocks, and the scatter of the growth over them gives the mean a
-standard error. Two things besides can make a regular orbit look chaotic. On an elliptic or a neutral orbit vectors grow
-like the number of bounces, so `B` bounces show `log(B)/B`; a sign counts beyond twice that. And an orbit may be on its
-way through a chaotic transient: then late blocks fall, and the scatter shows it, unless the whole run was too short to
-see the end of it.
+The sign of a finite-time Lyapunov exponent is decided by its error. A run is cut into blocks, and the scatter of the
+growth over the blocks gives the standard error of the mean. Two other effects can make a regular orbit look chaotic.
+First, on an elliptic or a neutral orbit vectors grow like the number of bounces, so that `B` bounces give an exponent
+of `log(B)/B`; so an exponent counts as positive only above twice this value. Second, an orbit may be in a chaotic
+transient. Then the growth falls in late blocks, which the scatter shows, unless the run ends before the transient.
 """
 
 import itertools
@@ -34,7 +33,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A dimension and its coordinates; a task takes `part` of its values at a time, or all when it is 0."""
+    """A dimension of the grid and its coordinates. A task takes `part` of them at a time, or all if `part` is 0."""
 
     name: str
     values: Array
@@ -49,12 +48,12 @@ class Axis:
 
     @property
     def length(self) -> int:
-        """The number of its values that a task takes."""
+        """The axes of the sweep, by name."""
         return self.part or self.size
 
 
 class Field(NamedTuple):
-    """A quantity on some of the axes, among them all that are cut into parts."""
+    """A quantity on some of the axes; these include all axes that are cut into parts."""
 
     name: str
     dims: tuple[str, ...]
@@ -76,11 +75,11 @@ Task = Callable[[SweepPart], dict[str, Array]]
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A grid of independent tasks. `task` can be sent to another machine; it needs nothing but its part.
+    """A grid of independent tasks. `task` can be sent to another machine, where it needs only its part.
 
     The results also depend on `settings` and `scene`; `collisions` is the number of bounces of the whole sweep, and
-    `map` makes the map on which their speed is measured. A task that is mostly `python`, and no kernel, is done in
-    processes, since threads would wait for one another.
+    `map` makes the map on which their speed is measured. If `python` is true, a task is mostly Python and not a kernel,
+    and is done in processes, since threads would wait for one another.
     """
 
     name: str
@@ -166,7 +165,7 @@ def seed_of(seed: int, index: tuple[int, ...]) -> int:
 
 
 def versions() -> dict[str, str]:
-    """The versions of the packages on which the last bits may depend."""
+    """The versions of the packages that may affect the last bits of results."""
     found = {}
     for name in ("pinball-billiards", "numpy", "scipy", "llvmlite"):
         try:
@@ -187,7 +186,7 @@ KEPT = 16  # maps
 def text_of(scene: Scene) -> str:
     """The scene's text for a sweep: at `lam = 1`, since the contraction is an axis of the sweep.
 
-    With another law than the paper's it stays as it is: at `lam = 1` such a law may lead out of the table.
+    For a law other than the paper's `lam` is unchanged, since at `lam = 1` such a law may lead out of the table.
 
     >>> text_of(Scene("egg", alpha="2/25", lam="1/2"))
     'scene = { table = "egg", shape = { alpha = "2/25" }, lam = "1" }'
@@ -215,7 +214,7 @@ def spread(text: str, lams: Array, each: int, seed: int) -> tuple[PinballMap, St
 
 
 def at_value(text: str, parameter: str, value: float) -> str:
-    """The scene with another number for a parameter of its table or law: the decimal that `value` shows, in its range.
+    """The scene's text with another value of a parameter, as a decimal, limited to the range of the parameter.
 
     >>> at_value(text_of(Scene("egg", alpha="2/25")), "alpha", 0.05)
     'scene = { table = "egg", shape = { alpha = "1/20" }, lam = "1" }'
@@ -229,9 +228,9 @@ def at_value(text: str, parameter: str, value: float) -> str:
 def spread_over(
     text: str, parameter: str, values: Array, lam: float, each: int, seed: int
 ) -> Iterator[tuple[str, PinballMap, Starts]]:
-    """Particles of one scene at several values of a parameter: all contractions at once, or one shape after the other.
+    """Random starts of one scene at several values of a parameter, with the map and the scene's text at these values.
 
-    With each map comes the scene's text at that value.
+    Contractions come all at once in one map; shapes come one after the other.
     """
     if parameter == "lam":
         yield text, *spread(text, values, each, seed)
@@ -247,18 +246,18 @@ def against(parameter: str, fields: Iterable[Field]) -> tuple[Field, ...]:
 
 
 def parameter_axis(parameter: str, values: Array, part: int) -> Axis:
-    """The axis of the varied parameter: contractions, `part` of them at a time, or shapes, one at a time."""
+    """The axis of the varied parameter; a task takes `part` contractions at a time, or one shape."""
     about, part = ("contraction", part) if parameter == "lam" else ("parameter of the scene", 1)
     return Axis(parameter, np.asarray(values, dtype=np.float64), "1", about, part)
 
 
 def said(parameter: str) -> str:
-    """The words for a varied parameter."""
+    """The name of a varied parameter in words."""
     return "the contraction" if parameter == "lam" else parameter
 
 
 def fixed(parameter: str, lam: float) -> dict[str, Any]:
-    """The contraction, if another parameter is varied, as a label of the results; empty if `lam` is varied."""
+    """The contraction as a label of the results, if another parameter is varied; empty if `lam` is."""
     return {} if parameter == "lam" else {"lam": lam}
 
 
@@ -272,7 +271,7 @@ SIGMAS = 2.0  # standard errors by which an exponent is beyond the floor
 
 
 class OrbitExponents(NamedTuple):
-    """Exponents of orbits (means over blocks, with standard errors), phase points at their ends, and status codes."""
+    """Exponents of orbits, as means over blocks with standard errors; their last phase points, and status codes."""
 
     nu_plus: Array
     nu_minus: Array
@@ -284,12 +283,12 @@ class OrbitExponents(NamedTuple):
 
     @property
     def chaotic(self) -> NDArray[np.bool_]:
-        """Mask of orbits whose exponent is positive: beyond the floor by `SIGMAS` standard errors."""
+        """The mask of orbits whose exponent exceeds the floor by `SIGMAS` standard errors: these count as chaotic."""
         return np.asarray((self.code == 0) & (self.nu_plus - SIGMAS * self.nu_plus_error > self.floor))
 
     @property
     def regular(self) -> NDArray[np.bool_]:
-        """Mask of orbits with an exponent not above the floor. An orbit neither chaotic nor regular is undecided."""
+        """The mask of orbits with an exponent not above the floor. Those neither chaotic nor regular are undecided."""
         return np.asarray((self.code == 0) & (self.nu_plus <= self.floor))
 
     def ended(self, which: NDArray[np.int64]) -> Starts:
@@ -298,7 +297,7 @@ class OrbitExponents(NamedTuple):
 
 
 def floor_of(bounces: int) -> float:
-    """The exponent below which a run of so many bounces cannot tell exponential growth from shear.
+    """The exponent below which a run of `bounces` bounces cannot distinguish exponential growth from shear.
 
     >>> round(floor_of(1000), 4)
     0.0138
@@ -309,7 +308,7 @@ def floor_of(bounces: int) -> float:
 def measured(
     map: PinballMap, starts: Starts, bounces: int, transient: int, threads: int | None = None
 ) -> OrbitExponents:
-    """The exponents of particles over `bounces` bounces in `BLOCKS` blocks, after `transient` that do not count.
+    """The exponents of particles over `bounces` bounces in `BLOCKS` blocks, after `transient` further ones before them.
 
     >>> circle = PinballMap("circle", lam=1)
     >>> from numeric.pinball.sampling import phase_starts
@@ -323,7 +322,7 @@ def measured(
 
 
 def counted(growth: Growth, bounces: int, threads: int | None = None) -> OrbitExponents:
-    """The same as `measured` for particles whose vectors `Growth.settle` has turned; `ValueError` for few bounces."""
+    """`measured` for particles whose vectors `Growth.settle` has already turned; `ValueError` for too few bounces."""
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")

@@ -1,8 +1,8 @@
-"""Independent work in worker processes, over all cores: the claims of a report, its figures, a sweep in Python.
+"""Independent work in processes, on all cores: the claims of a report, its figures, or a sweep in Python.
 
-Threads of Python wait for one another, balls and mpmath have ambient state and SymPy has caches, so workers are
-processes, started afresh. Answers come as they are found. A process that dies is replaced, and the item it worked on
-is tried once more.
+Threads of Python wait for one another; moreover ball arithmetic and mpmath have global state, and SymPy has caches. So
+workers are processes, started afresh. Results are yielded as they come. A process that dies is replaced, and the item
+it worked on is tried once more.
 """
 
 import gc
@@ -49,7 +49,7 @@ def _paths() -> dict[str, str]:
 
 @contextmanager
 def _same_paths() -> Iterator[None]:
-    """Processes that are started within the block import from the folders of this one, and no others."""
+    """Makes processes that are started within the block import from the same folders as this one, and no others."""
     before = {name: os.environ.get(name) for name in _paths()}
     os.environ.update(_paths())
     try:
@@ -69,7 +69,7 @@ def cores() -> int:
 
 @dataclass(frozen=True)
 class Lost:
-    """The answer for an item whose process died each time that it was tried."""
+    """Takes the place of the answer for an item whose process died each time that it was tried."""
 
     status: int
 
@@ -82,7 +82,7 @@ class Lost:
 
 @dataclass
 class _Worker(Generic[Item]):
-    """A worker process, this end of its pipe, and the items that it was given and has not answered, in order."""
+    """A worker process, this end of its pipe, and in order the items that it was given and has not yet answered."""
 
     process: BaseProcess
     pipe: Connection
@@ -97,12 +97,13 @@ def in_processes(
     modules: Sequence[str] = (),
     ahead: int = 0,
 ) -> Generator[tuple[Item, Answer | Lost], None, None]:
-    """Pairs of an item and `work(item)`, as answers come; a task's items go to one process, in order.
+    """Yields pairs of an item and `work(item)`, as they are finished; one process does all items of a task, in order.
 
-    There are `jobs` processes, or one for each core. With `ahead` a process holds so many more items while there are
-    more tasks than processes: none waits while answers are written, and the last tasks are given out singly. `work`,
-    items and answers must be picklable; `modules` are those that every worker needs, imported once where the system can
-    fork. What `work` raises is raised here. However this ends, by Ctrl-C as well, the workers end with it.
+    There are `jobs` processes, or one for each core. With `ahead`, a process holds this many further items as long as
+    there are more tasks than processes, so that no process waits while answers are written; the last tasks are given
+    out singly. `work`, items and answers must be picklable. `modules` are those that every worker needs, imported once
+    where the system can fork. An exception of `work` is raised here. However the generator ends, even by Ctrl-C, the
+    workers end with it.
     """
     queue = deque(list(task) for task in tasks)
     context = _context(modules)
@@ -165,7 +166,7 @@ def _context(modules: Sequence[str]) -> BaseContext:
 
 @contextmanager
 def _beginning() -> Iterator[None]:
-    """Processes that are started within the block import what this one does; Ctrl-C waits until they are there."""
+    """Makes processes that are started within the block import as this one does, and delays Ctrl-C until they run."""
     with _same_paths():
         resource_tracker.ensure_running()  # whose start, left to a later moment, lets Ctrl-C through
         with undisturbed():
@@ -174,7 +175,7 @@ def _beginning() -> Iterator[None]:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Delays Ctrl-C until the end of the block, as while processes start or results are stored.
+    """Delays Ctrl-C until the end of the block, for example while processes start or results are stored.
 
     A half started process would end with a traceback. Processes inherit the mask, so that from their first instruction
     on Ctrl-C goes to the process that started them. A mask binds one thread, and libraries have threads of their own
@@ -207,7 +208,7 @@ def _started(context: BaseContext, work: Callable[[Item], Answer]) -> _Worker[It
 def _serve(pipe: "Connection", work: Callable[[Any], Any], rarely: tuple[int, int, int]) -> None:
     """The loop of a worker: it answers until the pipe closes, and leaves Ctrl-C to the process that started it.
 
-    Garbage is collected as `rarely` as in the process that started it, and not among imported objects.
+    Garbage is collected as `rarely` as in the process that started it; imported objects are exempt.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.set_threshold(*rarely)
@@ -228,7 +229,7 @@ def _serve(pipe: "Connection", work: Callable[[Any], Any], rarely: tuple[int, in
 
 
 def _received(pipe: "Connection", tasks: "SimpleQueue[Any]") -> None:
-    """Takes tasks from the pipe as they come: otherwise each end might wait for the other to take what it sends."""
+    """Reads tasks from the pipe as they come; otherwise both ends could wait for each other to read."""
     try:
         while True:
             tasks.put(pipe.recv())
@@ -239,7 +240,7 @@ def _received(pipe: "Connection", tasks: "SimpleQueue[Any]") -> None:
 def _mourned(
     worker: _Worker[Item], queue: deque[list[Item]], tried: dict[int, int]
 ) -> Generator[tuple[Item, Answer | Lost], None, None]:
-    """Returns the items of a dead worker to the queue; an item that killed `TRIES` processes is answered by `Lost`."""
+    """Puts the items of a dead worker back into the queue; yields `Lost` for an item that killed `TRIES` processes."""
     worker.process.join(GRACE)
     status = worker.process.exitcode or 0
     if not worker.ready:

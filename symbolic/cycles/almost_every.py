@@ -1,57 +1,60 @@
 """Every orbit of the cardioid is hyperbolic at every contraction below 1, with bounds that hold for almost every orbit.
 
-Paper: section 4.1. In the notation of `defocusing` and `splitting`, lengths along the wall are measured by `|K|*ds`, in
-which the whole boundary is `3*pi` long; a beam leaves with curvature `-y/D`, `dphi = (1 - y)*|K|*ds`; the cone is `1
-<= y <= 1 + lam`, and horizontal lines, `phi` constant, are curves along it, with `y = 1`. `P` is the strip `|phi| <=
-lam*pi/2`.
+Paper: section 4.1. The notation is that of `defocusing` and `splitting`. Lengths along the wall are measured by
+`|K|*ds`, in which the whole boundary is `3*pi` long. A beam leaves with curvature `-y/D`, so that
+`dphi = (1 - y)*|K|*ds`. The cone is `1 <= y <= 1 + lam`; horizontal lines, on which `phi` is constant, are curves along
+the cone, with `y = 1`. `P` is the strip `|phi| <= lam*pi/2`.
 
-*Pieces.* From every point of the wall the cusp is visible, at one exit angle: a curve `S` in phase space, a graph
-over the whole wall. A beam focused at the cusp, at a distance `t`, has `y = D0/t < 1`, since `t*(t - D0) =
-(4/3)*(c0*sin(delta))**2 > 0` for a chord that ends there. So `dphi > 0` along `S`, when `ds > 0`, and `dphi <= 0` on
-a curve along the cone: such a curve meets `S` at most once. Off `S` the map is smooth, and takes the curve to curves
-along the cone, at most two. So the image of a horizontal line after `n` bounces has at most `2**n` pieces, each
-monotone in `s`, at most `3*pi` long. With `r = (t*y - D0)/d1` the factor by which a bounce lengthens the curve at a
-point,
+*Pieces.* From every point of the wall the cusp is visible, at one exit angle. These angles form a curve `S` in phase
+space, a graph over the whole wall. A beam focused at the cusp, at a distance `t`, has `y = D0/t < 1`, since
+`t*(t - D0) = (4/3)*(c0*sin(delta))**2 > 0` for a chord that ends there. So `dphi > 0` along `S`, when `ds > 0`, and
+`dphi <= 0` on a curve along the cone: such a curve meets `S` at most once. Off `S` the map is smooth, and the image of
+such a curve is at most two curves along the cone. So the image of a horizontal line after `n` bounces has at most
+`2**n` pieces, each monotone in `s`, at most `3*pi` long. Let `r = (t*y - D0)/d1` be the factor by which a bounce
+lengthens the curve at a point. Then
 
     mean over the line of r_1*r_2*...*r_n  <=  2**n.
 
-By Markov's inequality the points of the line where the product exceeds `exp(n*(log(2) + e))` have at most the share
-`exp(-n*e)`; these shares sum up, so by Borel and Cantelli, and Fubini, *for almost every start* the upper limit of
-`log(r_1*...*r_n)/n` is at most `log(2)`. As `|K| >= 3/4` and slopes in the cone are bounded, this bounds the growth
-of every vector: almost every start has `nu_plus <= log(2)`, as an upper limit.
+By Markov's inequality the product exceeds `exp(n*(log(2) + e))` on at most the share `exp(-n*e)` of the line. These
+shares are summable, so by the Borel-Cantelli lemma and Fubini's theorem *for almost every start* the upper limit of
+`log(r_1*...*r_n)/n` is at most `log(2)`. As `|K| >= 3/4` and slopes in the cone are bounded, this bounds the growth of
+every vector: almost every start has `nu_plus <= log(2)`, as an upper limit.
 
 *Areas.* In `|K|*ds` and `dphi` a bounce multiplies areas by `lam*D0/d1 = lam*r*D0/(t*y - D0)`. As `C > 0` on every
 flight (`cusp`), with `x = c0/c1`
 
     D0/(t*y - D0)  <=  D0/(t - D0) = 2*x*(x + 2*C)/(x**2 + 3 + 2*x*C)  <=  x**(2/3).
 
-The right side telescopes. So on every orbit off the cusp, back in `ds` and `dphi`, where `|K| = 3/(4*c)`,
+The right side telescopes along an orbit. So on every orbit that misses the cusp, in `ds` and `dphi` again, where
+`|K| = 3/(4*c)`,
 
     |det D(T**n)| <= lam**n * r_1*...*r_n * (c_n/c_0)**(1/3),
 
 and for almost every start the upper limit of `log|det D(T**n)|/n` is at most `log(2*lam)`: it tends to minus infinity
 with `lam`, and is negative for `lam < 1/2`, where the area of `T**n(P)` is at most `4*pi**2*lam*(2*lam)**n`.
 
-*The other direction.* On an orbit that never meets the cusp the directions that no bounce takes into the cone are one
-(`splitting`), `E`. With `y = D0/(t - f)` it has `0 < f < d1`, since the next `y` is `1 + lam - lam*d1/f` and below 1.
-So `|K|*ds` of a vector of `E` is multiplied by `(D0/d1)*f/(t - f)`, less than `D0/(t - d1) <= 1`: the reciprocal of
-the gain on the chord run backwards, at most `1/g` on every flight but the first. Its `abs(dphi)` is less, as `0 < y <
-1`, while a pushed-forward horizontal vector has `y >= 1 + lam*(1 - 1/g)` from the second bounce on. So *every* orbit
-off the cusp is hyperbolic for `0 < lam < 1`, and uniformly so in `|K|*ds = (3/2)*d(theta)` and `dphi`: one direction
-is stretched by `g` at each bounce, the other shrinks by `g`, and they keep apart by an angle that depends on `lam`
-alone. In `ds` and `dphi` too the lower limit of the one rate is at least `log(g)`, by `defocusing`, and the upper
-limit of the other at most `-log(g)`, since `|K| >= 3/4`. Areas spanned by the two are the product of their lengths
-and the gap of their `y`, so the bound on areas bounds the second rate by `log(lam)`: at times when `c_n` keeps off 0,
-as it does at one of two successive bounces, and in between it shrinks as well.
+*The other direction.* On an orbit that never meets the cusp only one direction is never taken into the cone
+(`splitting`); call it `E`. With `y = D0/(t - f)` it has `0 < f < d1`, since the next `y` is `1 + lam - lam*d1/f` and
+below 1. So `|K|*ds` of a vector of `E` is multiplied by `(D0/d1)*f/(t - f)`, less than `D0/(t - d1) <= 1`: the
+reciprocal of the gain on the chord run backwards, at most `1/g` on every flight but the first. Its `abs(dphi)` is less,
+as `0 < y < 1`, while a pushed-forward horizontal vector has `y >= 1 + lam*(1 - 1/g)` from the second bounce on. So
+*every* orbit off the cusp is hyperbolic for `0 < lam < 1`, and uniformly so in `|K|*ds = (3/2)*d(theta)` and `dphi`:
+one direction is stretched by `g` at each bounce, the other shrinks by `g`, and they keep apart by an angle that depends
+on `lam` alone. In `ds` and `dphi` too the lower limit of the one rate is at least `log(g)`, by `defocusing`, and the
+upper limit of the other at most `-log(g)`, since `|K| >= 3/4`. The area spanned by vectors of both directions is the
+product of their lengths and of the difference of their `y`. So the bound on areas bounds the second rate by `log(lam)`,
+first at times at which `c_n` has a positive lower bound, which include one of any two successive bounces, and then at
+all times, since the vector shrinks in between.
 
 *No cycle.* A curve along the cone that is never cut would outgrow the wall; so two points of a horizontal line whose
-orbits are on the same side of `S` at every bounce are one point. An orbit that converges to a cycle is from some
-bounce on where the cycle is, which is off `S`; there are countably many sequences of sides that end periodically, so
-countably many such points on each line. So *almost every orbit converges to no cycle*; nor does any to the cusp
+orbits are on the same side of `S` at every bounce are one point. An orbit that converges to a cycle is from some bounce
+on where the cycle is, which is off `S`; there are countably many sequences of sides that end periodically, so countably
+many such points on each line. So *almost every orbit converges to no cycle*, and no orbit converges to the cusp
 (`defocusing`). The likely limit set [Milnor1985], the smallest closed set that holds the limit points of almost every
 orbit, is therefore not a finite union of cycles.
 
-That the limits exist, and finitely many natural measures: `docs/exponents.md`. Not shown: that there is one.
+For the existence of the limits and of finitely many natural measures see `docs/exponents.md`. It is not shown that
+there is only one natural measure.
 """
 
 from functools import cache
@@ -91,9 +94,10 @@ def growth_defects() -> list[Expr]:
 
 
 def cusp_defects() -> list[Expr]:
-    """The width of a beam with `y = D0/t` where it lands, and the excess of a chord to the cusp, minus 4/3; both are 0.
+    """The landing width of a beam with `y = D0/t`, and minus 4/3 the excess of a chord that ends at the cusp; both are
+    0.
 
-    The second is `t*(t - D0 - d1)` for `c1 = 0`, hence `d1 = 0`, in units of `(c0*sin(delta))**2`, so that `t > D0`.
+    The excess is `t*(t - D0 - d1)` for `c1 = 0`, hence `d1 = 0`, in units of `(c0*sin(delta))**2`; so `t > D0`.
 
     >>> cusp_defects()
     [0, 0]
@@ -140,7 +144,7 @@ def largest_sum() -> Expr:
 
 
 def area_bound(power: Rational = POWER) -> SignFinding:
-    """Is `D0/(t - D0) <= x**power` on every flight, `x = c0/c1`? With `x = z**q` that is a polynomial inequality.
+    """Is `D0/(t - D0) <= x**power` on every flight, with `x = c0/c1`? For `x = z**q` this is a polynomial inequality.
 
     >>> area_bound().outcome.name
     'PROVED'
@@ -154,7 +158,7 @@ def area_bound(power: Rational = POWER) -> SignFinding:
 
 @cache
 def two_rates() -> SignFinding:
-    """Are the identities for lengths, areas, the curve `S` and the direction `E` proved, and those of `splitting`?"""
+    """Is everything proved: the identities for lengths, areas, the curve `S` and the direction `E`, and `splitting`?"""
     steps = {
         "what a bounce makes of lengths and areas": growth_defects(),
         "a curve along the cone meets the curve of the cusp once": cusp_defects(),

@@ -1,6 +1,7 @@
 """The slap map `T0` of the cardioid, in two parametrisations that prove its expansion. Paper: section 4.2.
 
-By the landing point `q` the second iterate `T0**2` is algebraic and expands; in the half angle `T0` expands itself.
+As a function of the landing point `q`, the second iterate `T0**2` is algebraic and expands. In half angles `T0` itself
+expands.
 """
 
 from functools import cache
@@ -31,8 +32,8 @@ def slope_squared(q: Expr = q) -> Expr:
 def parametrised() -> SignFinding:
     """Is it proved that a launch with `cos(theta/2)**2 = LAUNCH_COS2` lands at `q`, with `T0'**2 = slope_squared(q)`?
 
-    The polar angles are `theta` of the launch and `Theta` of the landing, `u = exp(i*theta)` and `U = exp(i*Theta)`.
-    With `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at
+    Let `theta` and `Theta` be the polar angles of launch and landing, `u = exp(i*theta)` and `U = exp(i*Theta)`. With
+    `cos = cos(Theta/2)`, `r = sqrt(1 + 7*cos**2)` and `E = exp(i*Theta/2) = cos + i*q*r` the launch is at
     `u = -U*E*(cos - i*r)/(2*U + 1)`.
     """
     u, U = Symbol("u"), Symbol("U")
@@ -57,7 +58,7 @@ _C, _R = Symbol("cos"), Symbol("r")
 
 
 def _on_circle(expression: Expr) -> Expr:
-    """`expression` with `cos**2` and `r**2` as functions of `q`; it must hold even powers only."""
+    """`expression`, a polynomial with even powers of `cos` and `r` only, as a function of `q`."""
     terms = Poly(expand(expression), _C, _R).terms()
     return sum((c * COS2 ** Rational(i, 2) * (8 / (1 + 7 * q**2)) ** Rational(j, 2) for (i, j), c in terms), S.Zero)
 
@@ -69,8 +70,8 @@ def _zero(expression: Expr) -> Outcome:
 def forward_once() -> SignFinding:
     """Is it proved that exactly one launch from the upper half lands at each `q` of `UPPER`?
 
-    `cos(theta/2)**2` falls strictly from 1 to 0 on it, and the flight never has length 0 there: a
-    landing at the launching point would need `4*u**2*(u + 1) = 0`, the cusp.
+    On `UPPER`, `cos(theta/2)**2` falls strictly from 1 to 0, and no flight has length 0: a landing at the launching
+    point would need `4*u**2*(u + 1) = 0`, which holds at the cusp only.
 
     >>> forward_once().outcome.name
     'PROVED'
@@ -99,7 +100,7 @@ def _expanding_by(bound: Expr) -> Expr:
 
 
 def _critical() -> Expr:
-    """A polynomial in `q` and `y` that vanishes where the slope of `(T0**2)'` does along a branch."""
+    """A polynomial in `q` and `y` that vanishes where the derivative of `(T0**2)'` along a branch does."""
     log_slope = cancel(slope_squared().diff(q) / slope_squared())
     chained = log_slope + log_slope.subs(q, y) * LAUNCH_Q2.diff(q) / (2 * y)
     return together(chained).as_numer_denom()[0]
@@ -109,13 +110,14 @@ def _critical() -> Expr:
 def expansion_polynomial(bound: Expr) -> Expr:
     """A polynomial in the final `q`: if it has no root, `|(T0**2)'|` equals `bound` nowhere on the table.
 
-    The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; both signs are multiplied.
+    The launching point of the last flight is `y = +-sqrt(LAUNCH_Q2)`; the polynomial is the product over both signs.
     """
     return _norm(*_split(_expanding_by(bound))).as_expr()
 
 
 def expands_by(bound: Expr) -> SignFinding:
-    """Is `|(T0**2)'| > bound` everywhere? As it is infinite at the ends of each branch, it need not equal it anywhere.
+    """Is `|(T0**2)'| > bound` everywhere? As it is infinite at the ends of each branch, it suffices that it is never
+    equal.
 
     >>> expands_by(Rational(3, 2)).outcome.name
     'PROVED'
@@ -132,7 +134,8 @@ def expands_by(bound: Expr) -> SignFinding:
 def unbounded() -> SignFinding:
     """Is `|(T0**2)'|` infinite at the ends of both branches of `T0**2`?
 
-    On one, `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other from 0 to 1/3, as `q` runs from -1.
+    On one branch `y` runs from 0 to -1 as `q` runs from -1 to 1/3; on the other `y` runs from 0 to 1/3, and `q` from
+    -1.
 
     >>> unbounded().outcome.name
     'PROVED'
@@ -150,7 +153,7 @@ def unbounded() -> SignFinding:
 
 @cache
 def expansion_infimum() -> Expr:
-    """The least value of `|(T0**2)'|`, an algebraic number; reached where the first flight crosses the axis.
+    """The least value of `|(T0**2)'|`, an algebraic number, which is attained where the first flight crosses the axis.
 
     `infimum_attained` proves that it is the least.
 
@@ -165,11 +168,11 @@ def expansion_infimum() -> Expr:
 
 @cache
 def infimum_attained() -> SignFinding:
-    """Is `expansion_infimum` the least value of `|(T0**2)'|` on the table? In exact arithmetic, by counting.
+    """Is `expansion_infimum` the least value of `|(T0**2)'|` on the table? This is decided exactly, by counting roots.
 
-    On the branch that changes halves, `y < 0`, it is infinite at both ends and has one critical point: its minimum.
-    It takes the value `ABOVE` twice there, so the minimum is smaller; and nowhere on the other branch, where it is
-    infinite at both ends too, and so larger than `ABOVE`.
+    On the branch that changes halves, `y < 0`, `|(T0**2)'|` is infinite at both ends and has one critical point, its
+    minimum. There it takes the value `ABOVE` twice, so the minimum is smaller. On the other branch it is infinite at
+    both ends too and never takes this value, so it is larger than `ABOVE` everywhere.
 
     >>> infimum_attained().outcome.name
     'PROVED'
@@ -185,10 +188,10 @@ def infimum_attained() -> SignFinding:
 
 @cache
 def fixed_points() -> list[tuple[Expr, Expr]]:
-    """Bounds on the last landing point `q` of each fixed point of `T0**2`, one of each mirror pair.
+    """Bounds on the last landing point `q` of each fixed point of `T0**2`, for one of each mirror pair.
 
-    From `x > 0` to `y` and back: for `y < 0` the second flight is mirrored and lands at `q = -x`, else at `q = x`; so
-    `LAUNCH_Q2(y) = q**2` at a `q` of the sign of `y`. There is one pair, the vertical orbit.
+    An orbit goes from `x > 0` to `y` and back. For `y < 0` the second flight is mirrored and lands at `q = -x`, else at
+    `q = x`. So `LAUNCH_Q2(y) = q**2`, where `q` has the sign of `y`. There is one pair, the vertical orbit.
 
     >>> fixed_points()
     [(-1/5, -1/5)]
@@ -201,10 +204,11 @@ ABOVE = Rational(151, 100)  # between the least values of (T0**2)' on its two br
 
 
 def zeros(expression: Expr) -> list[tuple[tuple[Expr, Expr], int]]:
-    """Zeros over `UPPER` of a polynomial in `q` and `y`, `y**2 = LAUNCH_Q2`: bounds on `q` and the sign of `y`.
+    """Zeros over `UPPER` of a polynomial in `q` and `y`, where `y**2 = LAUNCH_Q2`: bounds on `q`, and the sign of `y`.
 
-    With `even + y*odd`, a zero of the norm is one at the `y` whose sign is that of `-even*odd`; a common zero of both
-    is one for both signs. Points with `y >= 1/3`, where no particle that leaves the upper half lands, are left out.
+    The polynomial is `even + y*odd`. A zero of its norm belongs to the `y` that has the sign of `-even*odd`; a common
+    zero of `even` and `odd` belongs to both signs. Points with `y >= 1/3`, where no particle that leaves the upper half
+    lands, are left out.
 
     >>> zeros(q + y)  # LAUNCH_Q2 is 1/25 at q = -1/5
     [((-1/5, -1/5), 1)]
@@ -238,7 +242,7 @@ def _isolated(polynomial: Poly, others: tuple[Poly, ...]) -> list[tuple[Expr, Ex
 
 
 def _split(expression: Expr) -> tuple[Poly, Poly]:
-    """`even` and `odd`, polynomials in `q`, so that `expression` is `even + y*odd` over a power of a denominator."""
+    """Polynomials `even` and `odd` in `q` such that `expression` is `even + y*odd` over a power of a denominator."""
     top, bottom = (Poly(part, q) for part in LAUNCH_Q2.as_numer_denom())
     terms = Poly(expression, y).terms()
     half = max(k for (k,), _ in terms) // 2
@@ -283,13 +287,14 @@ def derived() -> SignFinding:
 
 
 def lands_first() -> SignFinding:
-    """Is the landing at `q < 1/3` the only point ahead, of all where the normal of an upper launch meets the boundary?
+    """Is the landing at `q < 1/3` the only point ahead of an upper launch where its normal meets the boundary?
 
-    The flight equation is quadratic in `u`, so the launches to a landing are `u(q)` and, mirrored, that of `-q`; and
-    `u(q)` is continuous for `-1 < q < 1`, in the upper half below 1/3 and in the lower above. Along `-exp(3*I*theta/2)`
-    the flight from `u(q)` has a length that is 0 nowhere: it would end where it began, which only the cusp solves, and
-    no `q` between -1 and 1 lands there. It is positive at `q = 0`, so it is everywhere. That direction points inward in
-    the upper half, and outward in the lower one: a launch there meets the boundary at such a `q` behind it.
+    The flight equation is quadratic in `u`, so two launches have the landing `q`: `u(q)` and, mirrored, `u(-q)`. The
+    launch `u(q)` is continuous for `-1 < q < 1`; it lies in the upper half for `q < 1/3` and in the lower half for
+    `q > 1/3`. Take the length of its flight along `-exp(3*I*theta/2)`. It is 0 nowhere, as then the flight would end
+    where it began, which is possible only at the cusp, where no `q` between -1 and 1 lands. It is positive at `q = 0`,
+    and so everywhere. The direction points inward in the upper half and outward in the lower one. So for a launch in
+    the lower half the landing lies behind it.
 
     >>> lands_first().outcome.name
     'PROVED'
@@ -306,7 +311,7 @@ def lands_first() -> SignFinding:
 
 
 def flown(cosine: Expr) -> Expr:
-    """How far `z = 2` lies along the normal `-exp(3*I*theta/2)` from the launch with this `cos(theta/2)`.
+    """The distance to `z = 2` along the normal `-exp(3*I*theta/2)`, from the launch with `cos(theta/2) = cosine`.
 
     >>> flown(Rational(1, 2))  # from theta = 2*pi/3, at x = -1/4, where the normal is the x axis
     9/4
@@ -324,7 +329,7 @@ def expands() -> SignFinding:
 
 
 def quiet_near_the_cusp() -> SignFinding:
-    """Does the rate grow, below `CUSP`, from 0 at the cusp to less than `SHRINKS/2`?
+    """Does `RATE` grow, as `q` runs from the cusp to `CUSP`, from 0 to less than `SHRINKS/2`?
 
     >>> quiet_near_the_cusp().outcome.name
     'PROVED'
@@ -339,7 +344,7 @@ def _zero_at_cusp() -> Outcome:
 
 
 def gentle_elsewhere() -> SignFinding:
-    """Is `abs(d log(RATE)/db) < STEEP` from `CUSP` on?
+    """Is `abs(d log(RATE)/db) < STEEP` for all landings from `q = CUSP` on?
 
     >>> gentle_elsewhere().outcome.name
     'PROVED'
@@ -351,8 +356,8 @@ def gentle_elsewhere() -> SignFinding:
 def branch(above: bool) -> Kernel:
     """The generated function `(launch, rate)` of the landing half angle `b`, without cancellation at the cusp.
 
-    `launch` is the half angle of the launch: `atan(sqrt(LAUNCH_TAN2))`, for `b < pi/4`, or if `above` a right angle
-    less `atan(1/sqrt(LAUNCH_TAN2))`, for `b > -pi/2`; `rate` is its derivative.
+    `launch` is the half angle of the launch, and `rate` its derivative by `b`. `launch` is `atan(sqrt(LAUNCH_TAN2))`,
+    for `b < pi/4`, or if `above` is true `pi/2 - atan(1/sqrt(LAUNCH_TAN2))`, for `b > -pi/2`.
 
     >>> branch(False).results
     ('launch', 'rate')

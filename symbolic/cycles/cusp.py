@@ -1,17 +1,17 @@
 """The image of a short curve near the cusp of the cardioid under a bounce: at most two pieces, and their stretching.
 
-Paper: section 4.1. In the notation of `defocusing` and `almost_every`: half angles `a` and `b` at the ends of a flight,
-`c0 = cos(a)`, `c1 = cos(b)`, `x = c0/c1`, `C = cos(b - a)`; lengths along the wall are `u = 3*a`, of which it has
-`3*pi`; a curve along the cone has `dphi = (1 - y)*du` with `1 <= y <= 1 + lam`, and a bounce stretches it by `r(y) =
-(t*y - D0)/d1`.
+Paper: section 4.1. The notation is that of `defocusing` and `almost_every`. The ends of a flight have the half angles
+`a` and `b`; `c0 = cos(a)`, `c1 = cos(b)`, `x = c0/c1` and `C = cos(b - a)`. Lengths along the wall are measured by
+`u = 3*a`, in which the wall is `3*pi` long. A curve along the cone has `dphi = (1 - y)*du` with `1 <= y <= 1 + lam`,
+and a bounce stretches it by the factor `r(y) = (t*y - D0)/d1`.
 
 *Flights have `C > 0`.* No point of the table lies on the ray `theta = pi`. So along a flight the polar angle changes
 from `theta0` to `theta1` without a jump, by less than `pi` since the flight is straight, and `2*abs(b - a) < pi`.
 
 *The curve S* of the exits at the cusp is the line `phi = theta/2`, and the flight there is `2*c0**2` long. Along it
-`y = 2/3`, so `dphi > 0`, and a curve along the cone, with `dphi <= 0`, meets it once at most. On one side flights
-land next to the cusp, `c1` near 0; on the other they pass it, all by chords of length 2, with `C = 0`. In the strip
-`abs(phi) <= lam*pi/2` there is `c0 >= cos(lam*pi/2) >= 1 - lam` on S, since the sine is concave.
+`y = 2/3`, so `dphi > 0`, and a curve along the cone, with `dphi <= 0`, meets S at most once. From one side of S flights
+land next to the cusp, with `c1` near 0; from the other they pass the cusp, in the limit by chords of length 2 with
+`C = 0`. In the strip `abs(phi) <= lam*pi/2` there is `c0 >= cos(lam*pi/2) >= 1 - lam` on S, since the sine is concave.
 
 *Distance.* With `phi` for the exit angle, `t*sin(phi - a) = 2*c1**2*sin(2*delta)`, where `2*delta = 2*(b - a)`: a
 flight lands near the cusp only if it begins near S.
@@ -20,17 +20,17 @@ flight lands near the cusp only if it begins near S.
 
     least = (x**2 + 3 + 2*x*C)/(2*(1 + 2*x*C)),    most = (3/2)*(1 + lam)*(x**2 + 1 + 2*x*C)/(1 + 2*x*C).
 
-Where flights pass the cusp, at S, `least = (x**2 + 3)/2 = 1 + 1/(2*sin(a)**2)`, at least 3/2; where they land at it,
-`least > x/4`, without bound.
+At S, on the side where flights pass the cusp, `least = (x**2 + 3)/2 = 1 + 1/(2*sin(a)**2)`, which is at least 3/2.
+Where flights land near the cusp, `least > x/4` is unbounded.
 
-*How fast pieces leave S.* As `db = (r/3)*du` and `most <= (3/2)*(1 + lam)*(1 + x**2)`, `c1**2*db <= (1 + lam)*du`.
-Over an arc of the wall along which `b` changes by `v` the integral of `cos(b)**2` is least next to the cusp, and more
-than that of `sin**2*cos` from 0 to `v`, which is `sin(v)**3/3`. So along a piece that begins at S, after a length `u`,
+*How fast pieces leave S.* As `db = (r/3)*du` and `most <= (3/2)*(1 + lam)*(1 + x**2)`, `c1**2*db <= (1 + lam)*du`. Over
+an arc of the wall along which `b` changes by `v` the integral of `cos(b)**2` is least next to the cusp, and more than
+that of `sin**2*cos` from 0 to `v`, which is `sin(v)**3/3`. So along a piece that begins at S, after a length `u`,
 
     sin(v)**3 <= 3*(1 + lam)*u,
 
-where `v` is `pi/2 - abs(b)`, with `sin(v) = c1`, if it lands at the cusp; and if it passes, at least `pi/2 - abs(b -
-a)`, with `sin(v) >= C`, since `a` and `b` grow together along a curve and `b` grows faster.
+where `v` is `pi/2 - abs(b)`, with `sin(v) = c1`, if the piece lands at the cusp. If it passes the cusp, `v` is at least
+`pi/2 - abs(b - a)`, with `sin(v) >= C`, since `a` and `b` grow together along a curve and `b` grows faster.
 """
 
 from functools import cache
@@ -71,7 +71,7 @@ def expansion() -> Expr:
 
 
 def curve_defects() -> list[Expr]:
-    """Direction to the cusp, length of that flight, `dphi/du` and `y` along S, minus the module's formulas; all are 0.
+    """Direction to the cusp, length of the flight to it, `dphi/du` and `y` along S, minus their formulas; all are 0.
 
     The boundary is at `2*c0**2*exp(i*theta)`, the inward normal is `-exp(3*i*theta/2)`, and an exit at `phi` is the
     normal turned by `-phi`.
@@ -90,7 +90,7 @@ def curve_defects() -> list[Expr]:
 
 
 def aim_defect() -> Expr:
-    """`t*sin(phi - a) - 2*c1**2*sin(2*delta)`, with `t*sin(phi)` and `t*cos(phi)` along tangent and normal: zero.
+    """`t*sin(phi - a) - 2*c1**2*sin(2*delta)`, which is 0, from the components of a chord along tangent and normal.
 
     >>> aim_defect()
     0
@@ -120,7 +120,8 @@ def stretch_defects() -> list[Expr]:
 def slope_defects() -> list[Expr]:
     """The slope after a bounce minus `1 + lam - lam*y/r`, and `t*(t - D0)` minus a sum of squares; both are 0.
 
-    The second, over `sin**2`, is bounded away from 0 as `max(c0, c1)` is, so that `log(r)` has bounded derivatives.
+    Divided by `sin**2`, the second has a positive lower bound because `max(c0, c1)` has one; so `log(r)` has bounded
+    derivatives.
 
     >>> slope_defects()
     [0, 0]

@@ -1,9 +1,9 @@
-"""Cycles, exact: periodic orbits given by their boundary points, with monodromy matrices and multipliers.
+"""Exact cycles: periodic orbits given by their boundary points, with monodromy matrices and multipliers.
 
-Exit and incidence angles follow from the chords that meet at a point, so that only the points are given. Paper: end of
-section 2.1. Where the multipliers lie is decided by trace and determinant of the monodromy matrix: the characteristic
-polynomial is `mu**2 - trace*mu + det`, and its values at 1 and -1 and the size of `det` suffice (Jury's criterion), so
-that no root is extracted. The cycles that the paper names or implies are at the end.
+Only the points are given, since exit and incidence angles follow from the chords that meet at a point. Paper: end of
+section 2.1. Trace and determinant of the monodromy matrix show where the multipliers lie, without extracting roots: the
+characteristic polynomial is `mu**2 - trace*mu + det`, and by Jury's criterion its values at 1 and -1 and the size of
+`det` suffice. The cycles that the paper names or implies are at the end of this module.
 """
 
 from dataclasses import dataclass, replace
@@ -98,7 +98,7 @@ class Cycle:
 
     @cache  # noqa: B019  (a cycle is frozen)
     def sliding(self, i: int) -> tuple[Expr, Expr]:
-        """`(sin of the exit angle, minus sin of the incidence angle)` at bounce `i`."""
+        """The sine of the exit angle, and minus the sine of the incidence angle, at bounce `i`."""
         tangent = self.frames[i % len(self.bounces)].tangent
         leaving = self.chord(i).dot(tangent) / self.length(i)
         arriving = self.chord(i - 1).dot(tangent) / self.length(i - 1)
@@ -132,7 +132,7 @@ def frame(table: Table, index: int, value: Expr, box: Box) -> Frame:
 
 
 def shortened(expression: Expr) -> Expr:
-    """The expression, simplified; by cancellation alone if it is rational in letters and at most one square root.
+    """The expression, simplified; if it is rational in symbols and at most one square root, only by cancellation.
 
     >>> shortened((alpha**2 - 1) / (alpha - 1)), shortened((alpha**2 - 3) / (alpha - sqrt(3)))
     (alpha + 1, alpha + sqrt(3))
@@ -159,7 +159,7 @@ def is_double_normal(cycle: Cycle) -> bool:
 
 @cache
 def is_elastic(cycle: Cycle) -> bool:
-    """True when it is proved that the cycle obeys the elastic law `phi = -eta` at each bounce."""
+    """True if it is proved that the cycle obeys the elastic law `phi = -eta` at each bounce."""
     return all(vanishes(out - back) for out, back in (cycle.sliding(i) for i in range(len(cycle.bounces))))
 
 
@@ -352,9 +352,9 @@ def parallel_shape() -> Expr:
 
 @lru_cache(maxsize=64, typed=True)
 def egg_triangle(at_flat: bool = True) -> Cycle:
-    """The equilateral period-3 orbit of the elastic egg, at the flat points or at the vertices.
+    """The equilateral period-3 orbit of the elastic egg: at its flat points, or else at its vertices.
 
-    Paper: section 6.4 (`lambda = 1`). Counterclockwise; the mirror image runs clockwise.
+    It runs counterclockwise; its mirror image runs clockwise. Paper: section 6.4 (`lambda = 1`).
     """
     first = pi / 3 if at_flat else Integer(0)
     third = 2 * pi / 3

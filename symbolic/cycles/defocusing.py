@@ -1,15 +1,16 @@
 """Every orbit of the cardioid stretches exponentially, at every contraction below 1: a proof. Paper: section 4.1.
 
-A tangent vector is a beam: `q = cos(phi)*ds` wide, turning by `omega = K*ds + dphi` across, with curvature `u =
-omega/q`. A flight takes `u` to `u/(1 + t*u)`, a reflection at a focusing wall takes that to
+A tangent vector is an infinitesimal beam of width `q = cos(phi)*ds`, in which the direction changes by
+`omega = K*ds + dphi`; its curvature is `u = omega/q`. A flight takes `u` to `u' = u/(1 + t*u)`, and a reflection at a
+focusing wall takes `u'` to
 
     u1 = (cos(eta1)/cos(phi1))*(lam*u' - (1 + lam)/d1),    d1 = cos(eta1)/|K1|.
 
-*The cone.* Beams that leave with a focus not beyond `D0 = cos(phi0)/|K0|`, that is `-(1 + lam)/D0 <= u <= -1/D0`,
-arrive with `0 < u' <= 1/d1` when `t >= D0 + d1`, and so leave in the same cone: `cos(eta1)/(cos(phi1)*d1) = 1/D1`.
-Their width in units of `D`, which is `|K|*|ds|`, grows at each bounce by the gain `(t - D0)/d1 >= 1` at least. This
-is the defocusing of [Bunimovich1979] and [Wojtkowski1986]; it needs no elastic law, since `t >= D0 + d1` speaks of a
-chord alone.
+*The cone.* Beams that leave with a focus at a distance of at most `D0 = cos(phi0)/|K0|`, more precisely with
+`-(1 + lam)/D0 <= u <= -1/D0`, arrive with `0 < u' <= 1/d1` when `t >= D0 + d1`, and so leave in the same cone:
+`cos(eta1)/(cos(phi1)*d1) = 1/D1`. Their width in units of `D`, which is `|K|*|ds|`, grows at each bounce at least by
+the factor `(t - D0)/d1 >= 1`, the gain. This is the defocusing of [Bunimovich1979] and [Wojtkowski1986]; it does not
+need the elastic law, since `t >= D0 + d1` is a property of the chord alone.
 
 *The cardioid.* With `c = cos(theta/2) > 0` at either end, `2*delta = theta1 - theta0` and `C = cos(delta)`,
 
@@ -17,10 +18,10 @@ chord alone.
 
 The gain is at least `1 + tan(delta/2)**2/2` for `C >= 0` and `3/2` for `C < 0`. With `w = 1 + exp(i*theta)` the
 boundary is `w**2/2`, and a chord is `sin(delta)*exp(i*delta)*(w0 + w1)/w0` times the velocity where it leaves. As
-`w1/w0` is `(c1/c0)*exp(i*delta)`, it makes an angle between `|delta|` and `2*|delta|` with the tangent, in the sense
-of the motion. An exit within `lam*pi/2` of the normal makes at least `(1 - lam)*pi/2`, so `|delta| >= (1 - lam)*pi/4`
-on every flight but the first. And `C > -1/2` on every flight: `cos(phi0) + cos(eta1)` has the sign of `(c0 + c1)*(1 +
-2*C)`.
+`w1/w0` is `(c1/c0)*exp(i*delta)`, the chord makes an angle between `|delta|` and `2*|delta|` with the tangent in the
+direction of motion. An exit within `lam*pi/2` of the normal makes an angle of at least `(1 - lam)*pi/2` with the
+tangent, so `|delta| >= (1 - lam)*pi/4` on every flight but the first. And `C > -1/2` on every flight:
+`cos(phi0) + cos(eta1)` has the sign of `(c0 + c1)*(1 + 2*C)`.
 
 *So*, with `g = 1 + tan((1 - lam)*pi/8)**2/2`, for every `0 <= lam < 1`, every start off the cusp with `|phi| < pi/2`
 and every `n >= 2` for which the orbit has not met the cusp, the vector `(ds, dphi) = (1, 0)`, which lies in the cone,
@@ -28,27 +29,29 @@ is stretched to
 
     |D(T**n) (1, 0)| >= |ds_n| >= (1/4)*sin((1 - lam)*pi/4)**4 * g**(n - 2).
 
-For `|ds_n| >= |K|*|ds|*(t - D0)` with `|K|*|ds|` one bounce before, which is at least `3/4*g**(n - 2)`, and `t*(t -
-D0)` is at least `(4/3)*sin(delta)**4`, `t <= 4`. So the lower limit of `log|D(T**n) (1, 0)|/n` is at least `log(g)`
-on every orbit off the cusp, whether or not it has exponents; the bound tends to 0 as `lam` tends to 1.
+The reason is that `|ds_n| >= |K|*|ds|*(t - D0)`, where `|K|*|ds|` is that of the bounce before, which is at least
+`3/4*g**(n - 2)`. Moreover `t*(t - D0)` is at least `(4/3)*sin(delta)**4`, and `t <= 4`. So the lower limit of
+`log|D(T**n) (1, 0)|/n` is at least `log(g)` on every orbit off the cusp, whether or not it has exponents; the bound
+tends to 0 as `lam` tends to 1.
 
-*Away from the cusp*: `max(c0, c1)**2 >= sin(delta)**2/3`, so of two successive bounces one keeps away from the cusp
-by a distance that depends on `lam < 1` alone: no orbit converges to the cusp.
+*Away from the cusp*: `max(c0, c1)**2 >= sin(delta)**2/3`, so of any two successive bounces one has a distance from the
+cusp above a bound that depends only on `lam < 1`: no orbit converges to the cusp.
 
 *At `lam = 1`* the gain exceeds 1 on every chord, so by Birkhoff's theorem its mean logarithm is positive for almost
 every start; `log(c)` and `log(cos(phi))` have finite means (`symbolic.motion.collision`), so by Oseledets' theorem the
 exponents exist for almost every start, and `nu_plus = -nu_minus > 0`. No bound for all starts follows.
 
-*Near the cusp again and again.* For `lam < 1` let a curve have all its tangents in the cone. It runs monotonically in
-`s`, so it measures at most `3*pi` in `|K|*ds`, which is the whole boundary. That length grows by `g` at each bounce
-but the first at which no point of the curve meets the cusp; so after finitely many bounces some point does, and its
-neighbours on one side land arbitrarily near the cusp. Horizontal segments are such curves and lie in every open set,
-and what lands on that side is such a curve again. So the starts that come as near the cusp as wanted, as late as
-wanted, are open and dense among those whose orbit misses the cusp; their intersection is dense (Baire), and no
-compact set off the cusp attracts an open set of starts.
+*Near the cusp again and again.* For `lam < 1` let a curve have all its tangents in the cone. It is monotone in `s`, so
+its length in `|K|*ds` is at most `3*pi`, that of the whole boundary. As long as no point of the curve meets the cusp,
+this length grows by the factor `g` at each bounce but the first. So after finitely many bounces some point meets the
+cusp, and its neighbours on one side land arbitrarily near the cusp. Every open set contains horizontal segments, which
+are such curves, and the image of the neighbours on this side is such a curve again. So the starts that come as near the
+cusp as wanted, as late as wanted, are open and dense among those whose orbit misses the cusp; their intersection is
+dense (Baire), and no compact set off the cusp attracts an open set of starts.
 
-That almost every start does so, and not only a dense set of them, follows from `cusp`, and so do finitely many
-natural measures and exponents of almost every start. Not shown for `0 < lam < 1`: that there is one such measure.
+From `cusp` it follows that almost every start does so, and not only a dense set; also that there are finitely many
+natural measures, and that almost every start has exponents. For `0 < lam < 1` it is not shown that there is only one
+natural measure.
 """
 
 from functools import cache
@@ -105,8 +108,9 @@ def beam_defects() -> list[Expr]:
 def cone_defects() -> list[Expr]:
     """Four expressions that are 0, so that the cone is mapped into itself and widths grow by the gain.
 
-    Beams with `u' = 1/d1` and `u' = 0` leave with `u*D1` equal to -1 and `-(1 + lam)`. The slowest beam, `u = -1/D0`,
-    grows in width over `D` by `(t - D0)/d1`; it is `(ds, dphi) = (1, 0)`, and then `ds` is `|K0|*(t - D0)/cos(eta1)`.
+    Beams with `u' = 1/d1` and `u' = 0` leave with `u*D1` equal to -1 and `-(1 + lam)`. The beam that grows least is
+    `u = -1/D0`, the vector `(ds, dphi) = (1, 0)`: its width in units of `D` grows by the factor `(t - D0)/d1`, and `ds`
+    becomes `|K0|*(t - D0)/cos(eta1)`.
 
     >>> cone_defects()
     [0, 0, 0, 0]
@@ -173,8 +177,8 @@ def direction_defects() -> list[Expr]:
 def apart_defects() -> list[Expr]:
     """Three expressions that are 0, so that the two ends of a chord are not both near the cusp.
 
-    In turn: `sin(delta)**2` in `c0`, `c1` and `C`; the sum of `t*cos(phi0)` and `t*cos(eta1)` over `2*sin(delta)**2`, a
-    product with `1 + 2*C`, so that `C > -1/2`; and `3*c1**2 - sin(delta)**2`, not negative for `c1 >= c0`.
+    In order: `sin(delta)**2` in `c0`, `c1` and `C`; the sum of `t*cos(phi0)` and `t*cos(eta1)` over `2*sin(delta)**2`,
+    a product with `1 + 2*C`, so that `C > -1/2`; and `3*c1**2 - sin(delta)**2`, not negative for `c1 >= c0`.
 
     >>> bool(all_vanish({"": apart_defects()}))
     True
@@ -208,7 +212,7 @@ def turning_defect() -> Expr:
 
 
 def excess() -> Expr:
-    """`t*(t - D0 - d1)/sin(delta)**2` on a chord (letters: module docstring), in `x = c0/c1` and `C`, for `c1 = 1`.
+    """`t*(t - D0 - d1)/sin(delta)**2` on a chord, in `x = c0/c1` and `C`, for `c1 = 1`; see the module for the symbols.
 
     >>> excess().factor()
     4*(-2*C*x + x**2 + 1)/3
@@ -227,10 +231,11 @@ def gain() -> Expr:
 
 
 def square_parts() -> list[tuple[Interval, tuple[Expr, ...]]]:
-    """The excess, and the gain minus two bounds, as sums: for each a range of `C` and terms that are nonnegative there.
+    """The excess, and the gain minus two bounds, as sums: for each, a range of `C` and terms that are nonnegative
+    there.
 
-    In turn: the excess; the gain beyond `1 + tan(delta/2)**2/2`; the gain beyond `3/2`; the two last multiplied by
-    `1 + 2*x*C`, which has the sign of `cos(eta1)`, and by positive constants and powers of `1 + C`.
+    They are the excess, the gain minus `1 + tan(delta/2)**2/2`, and the gain minus `3/2`. The last two are multiplied
+    by `1 + 2*x*C`, which has the sign of `cos(eta1)`, and by positive constants and powers of `1 + C`.
     """
     return [
         (Interval(-1, 1), ((x - 1) ** 2, 2 * x * (1 - C))),
@@ -255,9 +260,10 @@ def square_defects() -> list[Expr]:
 
 
 def signs() -> SignFinding:
-    """Are the inequalities of the proof true: no term of a sum is negative, and the first bound of the gain is smaller?
+    """Are the inequalities of the proof true?
 
-    The first is smaller than 3/2 because `delta/2` is `(1 - lam)*pi/8 <= pi/8` there, and `tan(pi/8) < 1`.
+    They say that no term of the sums of `square_parts` is negative, and that the first bound of the gain is below 3/2;
+    there `delta/2` is `(1 - lam)*pi/8 <= pi/8`, and `tan(pi/8) < 1`.
 
     >>> signs().outcome.name
     'PROVED'
@@ -282,7 +288,7 @@ def expands() -> SignFinding:
 
 
 def away() -> Expr:
-    """A lower bound of `max(c0, c1)` on every flight but the first, so that one of its ends is away from the cusp.
+    """A lower bound of `max(c0, c1)` on every flight but the first: one end of the flight is away from the cusp.
 
     >>> away().subs(lam, 0)
     sqrt(6)/6

@@ -1,7 +1,7 @@
 """Functions that derive a result from a table: curvature, lengths, derivative, double normals, thresholds, code.
 
-A table argument is one of `symbolic.tables`, a scene, or the name of one of the paper's. Results are exact, in
-the letters of the table, and `lam` for the contraction.
+A table argument is one of `symbolic.tables`, a scene, or the name of one of the paper's tables. Results are exact, in
+the symbolic parameters of the table, and `lam` for the contraction.
 """
 
 from collections.abc import Callable
@@ -36,14 +36,14 @@ ARITHMETICS = {  # module and function of each number system, imported at its fi
 
 
 def table_of(given: Tabled) -> Table:
-    """The exact table of a scene (with its numbers), a map, or a name of the paper's; a table is returned unchanged."""
+    """The exact table of a scene with its numbers, a map, or a name of the paper; a table is returned unchanged."""
     held = given if isinstance(given, str) else getattr(given, "table", given)  # a scene and a map have a table
     table, _ = given_table(held, POINTS, {})
     return named(table) if isinstance(table, str) else table
 
 
 def _each(given: Tabled | Component, derive: Callable[[Component], Expr]) -> Any:
-    """`derive` of a component, or of a table's only one; a dict by name for a table of several components."""
+    """`derive` of a component, or of the only one of a table; for several components a dict of results by name."""
     if isinstance(given, Component):
         return derive(given)
     parts = table_of(given).components
@@ -227,7 +227,7 @@ def _alike(one: Cycle, other: Cycle) -> bool:
 
 
 def multipliers(cycle: Cycle) -> tuple[Expr, Expr]:
-    """`(mu_plus, mu_minus)`, the eigenvalues of the monodromy matrix, in `lam` and the letters of the table.
+    """`(mu_plus, mu_minus)`, the eigenvalues of the monodromy matrix, in `lam` and the parameters of the table.
 
     >>> from symbolic.cycles.cycle import minor_axis
     >>> from symbolic.tables.table import a, lam
@@ -240,9 +240,9 @@ def multipliers(cycle: Cycle) -> tuple[Expr, Expr]:
 def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
     """The contractions at which a cycle of period 2 along a double normal doubles its period and becomes a focus.
 
-    `flip`: a multiplier is -1; the cycle is stable below. `focus`: the multipliers are complex above. None where no
-    contraction in [0, 1] has this property for any shape in the range; a formula with its condition where it has it for
-    some shapes only. `ValueError` for other cycles.
+    At `flip` a multiplier is -1; the cycle is stable below. Above `focus` the multipliers are complex. A value is None
+    if no such contraction exists in [0, 1] for any shape in the range; if it exists for some shapes only, it is a
+    formula with its condition. `ValueError` for other cycles.
 
     >>> from symbolic.cycles.cycle import cuspless_horizontal
     >>> thresholds(cuspless_horizontal())
@@ -258,7 +258,7 @@ def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
 
 
 def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]) -> Expr | None:
-    """`(1 - r)/(1 + r)`, `r = sqrt(square)`, on the condition `one >= 0` and `other >= 0`; None if that never holds."""
+    """`(1 - r)/(1 + r)`, `r = sqrt(square)`, on the condition `one >= 0` and `other >= 0`; None if it never holds."""
     inside = {letter: Interval.open(range.start, range.end) for letter, range in box.items()}
     if any(nonnegative(-gap, inside) for gap in (one, other)):
         return None
@@ -277,7 +277,7 @@ def _kernel(letters: tuple[Symbol, ...], names: tuple[str, ...], entries: tuple[
 def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int = 50) -> Any:
     """The code of an expression or a matrix, for arrays, for mpmath numbers, for balls, or as text.
 
-    The function takes the free letters in alphabetical order, `theta` first. `arithmetic` is `"numpy"`, `"mpmath"` or
+    The function takes the free symbols in alphabetical order, `theta` first. `arithmetic` is `"numpy"`, `"mpmath"` or
     `"arb"` (with `digits`), or `"text"`, which returns the source in the closed vocabulary of
     `symbolic.expressions.text`; a rational is written `q(1, 3)` there and never rounded.
 

@@ -1,21 +1,20 @@
 """The elastic map near a cycle to third order, from chord lengths, and how its rotation varies with the distance.
 
-With elastic collisions the length `H(x, y)` of the chord between boundary parameters generates the map:
-`p = -dH/dx` leaves, `p' = dH/dy` lands, and `(x, p) -> (y, p')` preserves area. Around an elliptic point the
-map is a rotation whose angle changes with the square of the distance; when that coefficient, the twist, is not
-zero and the multiplier is no root of unity up to the fourth, invariant curves surround the point [Moser1962]
-[SiegelMoser1971].
-Everything here is truncated power series over whatever numbers are put in, exact or balls.
+With elastic collisions the length `H(x, y)` of the chord between boundary parameters generates the map
+`(x, p) -> (y, p')`, where `p = -dH/dx` at departure and `p' = dH/dy` at landing; it preserves area. Around an elliptic
+point the map is a rotation whose angle changes with the square of the distance. When the coefficient of this change,
+the twist, is not zero, and the multiplier is no root of unity of order up to four, invariant curves surround the point
+[Moser1962] [SiegelMoser1971]. All computations are with truncated power series over the given numbers, exact or balls.
 
 The module also has the normal form of the flip of the cuspless cardioid's horizontal orbit when its wall is bent.
 Paper: section 5.1, "presumably it could be rendered stable if the billiard table were modified". Near `y = 0` let the
-wall be `x = -1/4 + a*y^2 + b*y^4` and the arc `x = 2 - A*y^2 - B*y^4`. By the mirror symmetry the return map is odd: `x
--> M x + C(x)` with `C` cubic, so on the eigendirection of -1, with right and left eigenvectors `q` and `p`,
+wall be `x = -1/4 + a*y^2 + b*y^4` and the arc `x = 2 - A*y^2 - B*y^4`. By the mirror symmetry the return map is odd:
+`x -> M x + C(x)` with `C` cubic, so on the eigendirection of -1, with right and left eigenvectors `q` and `p`,
 
     xi -> -xi + c*xi^3,    c = p C(q)/(p q),
 
-and the period-4 orbit that is born at the flip is stable for `c > 0`, unstable for `c < 0` [Kuznetsov2004].
-An odd quantity is a pair: its coefficients of degree 1 and 3 in the size of the orbit.
+and the period-4 orbit that is born at the flip is stable for `c > 0`, unstable for `c < 0` [Kuznetsov2004]. An odd
+quantity is represented by a pair: its coefficients of degree 1 and 3 in the size of the orbit.
 """
 
 from collections.abc import Callable, Sequence
@@ -70,8 +69,9 @@ def chord(
 ) -> Series:
     """Terms of degree 2 to 4 of a chord's length; the ends are given by Taylor coefficients of `x` and of `y`.
 
-    At a cycle the first order cancels against the neighbouring chord, so it is left out. `root` is the square root of
-    the numbers used; `weights` multiply the squares of the coordinates, where these have different units.
+    At a cycle the terms of first order cancel against those of the neighbouring chord, so they are left out. `root` is
+    the square root of the numbers used; `weights` multiply the squares of the coordinates, where these have different
+    units.
     """
     square: Series = {}
     for from_here, to_there, weight in zip(start, end, weights, strict=True):
@@ -117,8 +117,8 @@ def composed(maps: Sequence[Map]) -> Map:
 def twist_of_odd(map: Map) -> Any:
     """The twist of an area-preserving map with `F(-v) = -F(v)` and `A = D`, up to a positive factor and the sign of B.
 
-    `F = M(v + J grad S)` to third order, and `M` turns along the ellipses `-C*x^2 + B*p^2`; the mean of the quartic
-    `S` along them is the twist. Without even terms the third root of unity is no obstacle.
+    `F = M(v + J grad S)` to third order, and `M` turns along the ellipses `-C*x^2 + B*p^2`; the mean of the quartic `S`
+    along them is the twist. As there are no even terms, a multiplier that is a third root of unity is allowed.
     """
     (x, p), S = map, dict[tuple[int, int], Any]()
     A, B, C, D = x[1, 0], x[0, 1], p[1, 0], p[0, 1]

@@ -1,20 +1,21 @@
-"""Cycles whose bounces are turned into one another: regular polygons in a table with rotational symmetry.
+"""Cycles whose bounces are rotated into one another: regular polygons in a table with rotational symmetry.
 
-Where a turn by `2*pi*p/q` maps the table to itself, a cycle may turn by that angle at each bounce.
-Its chords make the angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the
-radius by `delta`, `tan(delta) = rho'/rho`; so it leaves at `gamma - delta`, lands at
-`gamma + delta` (either sign), and the law `gamma - delta = lam*(gamma + delta)` holds when
+Where a turn by `2*pi*p/q` maps the table to itself, a cycle may turn by that angle at each bounce. Its chords make the
+angle `gamma = pi/2 - pi*p/q` with the radius, and the normal is tilted from the radius by `delta`,
+`tan(delta) = rho'/rho`; so the particle leaves at `gamma - delta` and lands at `gamma + delta` (up to a common sign),
+and the law `gamma - delta = lam*(gamma + delta)` holds when
 
     rho'/rho = tan(gamma*(1 - lam)/(1 + lam)).
 
-The cycles fold where the tilt is largest. Paper: section 6.4, which has the fold from plots.
+The cycles fold where the tilt is largest. Paper: section 6.4, where the fold is read off plots.
 
-Some facts on the egg are polynomials in `C = cos(K*theta)`. Paper: section 6. On tables with straight sides cycles are
-simpler. With `turn` the angle from the normal of one side to that of the next, the exit angle changes by an affine map,
-so that one exponent is `log(lam)` and the word of a cycle, its sequence of sides, gives its angles. Where the particle
-lands is stretched by `cos(phi0)/cos(eta1)`, at least one on average round a cycle: none attracts, and none is neutral
-but that along the common normal of parallel sides. On the square [DelMagnoLopesDiasDuarteGaivaoPinheiro2012] find a
-parabolic attractor beside a chaotic one, on the equilateral triangle [ArroyoMarkarianSanders2012] strange attractors.
+The module also has polynomials in `C = cos(K*theta)` for facts about the egg (paper: section 6), and cycles on tables
+with straight sides. There the exit angle changes by an affine map, which depends on `turn`, the angle from the normal
+of one side to that of the next. So one exponent is `log(lam)`, and the sequence of sides of a cycle determines its
+angles. Distances along the sides are stretched by `cos(phi0)/cos(eta1)`, whose product round a cycle is at least one.
+So no cycle attracts, and only cycles along the common normal of parallel sides are neutral. A parabolic attractor
+beside a chaotic one was found on the square [DelMagnoLopesDiasDuarteGaivaoPinheiro2012], and strange attractors on the
+equilateral triangle [ArroyoMarkarianSanders2012].
 """
 
 from collections.abc import Sequence
@@ -88,7 +89,7 @@ def required_tilt(p: int = 1, q: int = 3) -> Expr:
 
 
 def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
-    """`lambda_c(alpha)`: polygons exist for `lam >= lambda_c` and none below, in closed form.
+    """`lambda_c(alpha)` in closed form: polygons exist for `lam >= lambda_c` and not below.
 
     >>> saddle_node().subs(alpha, 0)
     1
@@ -98,11 +99,12 @@ def saddle_node(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
 
 
 def near_flat(K: int | Expr = 3, p: int = 1, q: int = 3) -> Expr:
-    """The polar angle of one bounce of the polygon, for `lambda_c <= lam <= 1`: the flat point `pi/K` at `lam = 1`.
+    """The polar angle of one bounce of the polygon, for `lambda_c <= lam <= 1`; it is the flat point `pi/K` at
+    `lam = 1`.
 
-    The polygon needs the slope `rho'/rho = T = tan(required_tilt(p, q))`: with `tan(psi) = T/K` that is
-    `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))`. The polygon turns counterclockwise as `lam` falls, and so does
-    the particle; its mirror image turns and runs clockwise.
+    The polygon needs the slope `rho'/rho = T = tan(required_tilt(p, q))`, which means
+    `sin(K*theta + psi) = -T/(alpha*sqrt(K**2 + T**2))` with `tan(psi) = T/K`. As `lam` falls, the polygon turns
+    counterclockwise, which is also the sense in which the particle runs; for the mirror image both are clockwise.
 
     >>> near_flat().subs(lam, 1)
     pi/3
@@ -119,10 +121,12 @@ def turn_trace_and_determinant(K0: Expr, t: Expr, exit_angle: Expr, incidence: E
 
 
 def polygon_identities() -> dict[str, Expr]:
-    """Expressions that vanish identically for every polygon in a polar curve `rho(theta)`, by what they prove.
+    """Expressions that vanish identically for every polygon in a polar curve `rho(theta)`; each key says what it
+    proves.
 
-    With `tan(delta) = rho'/rho`, and the turn `pi - 2*gamma` from bounce to bounce. The last one says on which side
-    of the fold a bounce lies: `1 - trace + det` is the product of the multipliers' distances from 1.
+    Here `tan(delta) = rho'/rho`, and each bounce turns by `pi - 2*gamma`. The last expression shows on which side of
+    the fold a bounce lies: `1 - trace + det` is the product `(1 - mu_1)*(1 - mu_2)` of the multipliers' distances from
+    1.
 
     >>> from symbolic.expressions.signs import vanishes
     >>> [vanishes(difference) for difference in polygon_identities().values()]
@@ -189,10 +193,11 @@ def contraction_slope(p: int = 1, q: int = 3) -> Expr:
 
 
 def characteristic_on_branch(x: Expr, at: Expr, K: int = 3, p: int = 1, q: int = 3) -> Expr:
-    """`at**2 - trace*at + det` of one bounce of a polygon of the egg, times `cos(eta)`, where `cos(K*theta) = -cos(x)`.
+    """The characteristic polynomial of one bounce of a polygon of the egg at `at`, `at**2 - trace*at + det`, times
+    `cos(eta)`.
 
-    The branch starts at a flat point at `x = 0` (elastic) and folds at `cos(x) = alpha`; on it
-    `lam = (gamma - delta)/(gamma + delta)` with `tan(delta) = K*alpha*sin(x)/rho`.
+    The bounce has `cos(K*theta) = -cos(x)`. The branch starts at a flat point, `x = 0`, where `lam = 1`, and folds at
+    `cos(x) = alpha`; on it `lam = (gamma - delta)/(gamma + delta)` with `tan(delta) = K*alpha*sin(x)/rho`.
     """
     C = -cos(x)
     rho = 1 + alpha * C
@@ -237,7 +242,7 @@ def squared_speed_polynomial(K: int = 3) -> Expr:
 
 
 def curvature_slope_polynomial(K: int = 3) -> Expr:
-    """A polynomial with the sign of `d(-kappa)/dC`: `-kappa = N/Q**(3/2)` grows with C where `2*Q*N' - 3*Q'*N > 0`."""
+    """A polynomial with the sign of `d(-kappa)/dC`: `-kappa = N/Q**(3/2)` grows with `C` where `2*Q*N' > 3*Q'*N`."""
     N, Q = turning_polynomial(K), squared_speed_polynomial(K)
     return expand(2 * Q * N.diff(COSINE) - 3 * Q.diff(COSINE) * N)
 
@@ -250,10 +255,11 @@ def _centre_of_curvature() -> tuple[Expr, Expr, Expr]:
 
 
 def centre_beyond_boundary() -> Expr:
-    """`N*(|e| - rho)` for the centre of curvature `e` and the boundary's `rho` in its direction; `-T0'` has its sign.
+    """`N*(|e| - rho)`, which has the sign of `-T0'`, for the centre of curvature `e` and the radius `rho` in its
+    direction.
 
-    `N`, of the sign of `-kappa`, keeps it finite where the curvature vanishes. It is not defined where `e` is the
-    centre of the table (see `centre_far_inside`).
+    The factor `N`, which has the sign of `-kappa`, keeps the value finite where the curvature vanishes. The value is
+    not defined where `e` is the centre of the table (see `centre_far_inside`).
 
     >>> from sympy import Rational
     >>> flat = centre_beyond_boundary().subs(COSINE, -1)
@@ -265,7 +271,7 @@ def centre_beyond_boundary() -> Expr:
 
 
 def centre_far_inside() -> Expr:
-    """A polynomial that is positive only where `|e| < 1 - alpha`, inside the table whatever the direction."""
+    """A polynomial that is positive only where `|e| < 1 - alpha`, so that `e` is inside the table in any direction."""
     N, modulus, _ = _centre_of_curvature()
     return expand((1 - alpha) ** 2 * N**2 - modulus)
 
@@ -284,7 +290,7 @@ def slap_critical_cosines(shape: Expr) -> list[Expr]:
 
 
 def slap_critical_points(shape: Expr) -> int:
-    """The number of `theta` with `T0' = 0`, for the slap map `T0` of the egg with `alpha = shape`: six for each cosine.
+    """The number of `theta` with `T0' = 0`, for the slap map `T0` of the egg with `alpha = shape`: six per cosine.
 
     >>> from sympy import Rational
     >>> slap_critical_points(Rational(2, 25)), slap_critical_points(Rational(1, 20))

@@ -1,9 +1,9 @@
 """The normal form of the elastic egg's triangle at the flat points, exact in alpha: stability beyond linear terms.
 
-Turned back by a third of a turn, one flight of the triangle is a map of the plane to itself that preserves area, with
-the multipliers `mu = A + T` and `A - T`, `T**2 = A**2 - 1`. Its normal form is computed in the rational functions of
-alpha, extended by `T`: nothing is approximated, and conserved area makes half of every coefficient vanish, which is a
-check. Paper: section 6.4 ("elliptic for any alpha").
+Followed by a rotation back through a third of a turn, one flight of the triangle is an area-preserving map of the plane
+to itself, with the multipliers `mu = A + T` and `A - T`, where `T**2 = A**2 - 1`. Its normal form is computed over the
+rational functions of alpha, extended by `T`, without approximation. As area is preserved, half of every coefficient
+must vanish, which is a check. Paper: section 6.4 ("elliptic for any alpha").
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ SHAPE = Symbol("alpha")
 
 @dataclass(frozen=True)
 class QuadraticNumber:
-    """`a + b*T` with `T**2 = square`; `T` is imaginary where the triangle is elliptic."""
+    """The number `a + b*T` with `T**2 = square`; `T` is imaginary where the triangle is elliptic."""
 
     a: Any
     b: Any
@@ -127,7 +127,7 @@ def resonances(numbers: Any, a: Any) -> Resonances:
 def chord_between_flats(numbers: Any, a: Any) -> Series:
     """The length, over `sqrt(3)`, of the chord between points `sqrt(3)*x` radians from two neighbouring flat points.
 
-    Seen from the middle of the chord the flat points lie 60 degrees to either side, `sin = sqrt(3)*along` and
+    Seen from the middle of the chord, the flat points lie at 60 degrees on either side, and `sin = sqrt(3)*along` and
     `cos = across`, with `along` and `across` rational series.
     """
     radius = [(numbers(1) if k == 0 else numbers(0)) - a * c for k, c in enumerate(_cosines(numbers, 3))]
@@ -167,9 +167,10 @@ def mirrored(f: Series) -> Series:
 
 
 def straightened(map: Map, mu: QuadraticNumber) -> Map:
-    """The map in coordinates in which all quadratic terms vanish that can be removed.
+    """The map in coordinates in which all quadratic terms that can be removed vanish.
 
-    A term `z**i*w**j` stays where `mu**i*conj(mu)**j = mu`: of the quadratic ones only `w**2`, when `mu**3 = 1`.
+    A term `z**i*w**j` cannot be removed if `mu**i*conj(mu)**j = mu`; among quadratic terms this is `w**2` if
+    `mu**3 = 1`.
     """
     h: Series = {}
     for (i, j), c in map[0].items():

@@ -1,52 +1,53 @@
 """Every return to the arc of the cuspless cardioid stretches, for `1/10 <= lam < 1`: a proof from inequalities.
 
 Paper: section 5. In the notation of `defocusing` and `splitting` a beam leaves the arc with curvature `-y/D` and
-`dphi = (1 - y)*|K|*ds`, and the cone is `1 <= y <= 1 + lam`. A bounce on the wall may narrow beams; the form
+`dphi = (1 - y)*|K|*ds`, and the cone is `1 <= y <= 1 + lam`. A bounce on the wall may narrow beams, but the form
 
     L = (y - B)*|K|*ds = (1 - B)*|K|*ds - dphi,    B = 11/20,
 
-grows at every return all the same, since beams that have been narrowed leave with a larger `y`. It is positive in the
-cone, and there `(1 - B)*|K|*ds <= L <= (1 + lam - B)*|K|*ds`. With `A = 1 + lam - B`, a return multiplies it by
+grows at every return, since beams that have been narrowed leave with a larger `y`. In the cone `L` is positive, with
+`(1 - B)*|K|*ds <= L <= (1 + lam - B)*|K|*ds`. Let `A = 1 + lam - B`. A return multiplies `L` by
 
     (A*(t*y - D0)/d1 - lam*y)/(y - B)                            along the arc,
     (A*(r*(t*y - D0) + lam*y*t1)/d - lam**2*y)/(y - B)           by way of the wall,    r = cos(phi)/cos(eta),
 
-with the angles of incidence `eta` and exit `phi` there, `t` before it and `t1` after it, and `d = cos(eta)/|K|` at
-the end. Either is a quotient of linear functions of `y` without a pole in the cone, so least at an end of it.
+where `eta` and `phi` are the incidence and exit angles at the wall, `t` and `t1` the flights before and after it, and
+`d = cos(eta)/|K|` at the final landing. Either factor is a quotient of linear functions of `y` without a pole in the
+cone, so it is least at an end of the cone.
 
-*Along the arc*, with `x = c0/c1` and `C = cos(delta)`, it exceeds 1 at `y = 1` by `A/(1 - B)` times what the gain has
-beyond 1, and at `y = 1 + lam` by `q/(2*A*(1 + 2*x*C))`, where
+*Along the arc*, with `x = c0/c1` and `C = cos(delta)`, the factor exceeds 1 at `y = 1` by `A/(1 - B)` times the gain
+minus 1, and at `y = 1 + lam` by `q/(2*A*(1 + 2*x*C))`, where
 
     q = A*(x**2 + 1 - 2*x*C) + 3*A*lam*(x**2 + 1 + 2*x*C) - 2*lam*(1 + lam)*(1 + 2*x*C).
 
 Since `delta >= (1 - lam)*pi/4`, `C**2 <= (1 + sin(lam*pi/2))/2 <= 1/2 + 4*lam/5`; and `q - 2*A*e*(1 + 2*x*C)` is a
-quadratic polynomial in `x`, positive for each such `C`, and `x >= 0` where `C < 0`, if `along_arc` holds with `e =
-EXCESS`.
+quadratic polynomial in `x`, positive for each such `C`, and `x >= 0` where `C < 0`, if `along_arc` holds with
+`e = EXCESS`.
 
-*By way of the wall*, with `Q = (t - D)*cos(eta)` and `X` the distance from the wall at either end, it exceeds 1 at `y
-= 1` and at `y = 1 + lam` if and only if
+*By way of the wall*, let `Q = (t - D)*cos(eta)`, and let `X` be the distance from the wall, with index 0 at the start
+and 1 at the end. The factor exceeds 1 at `y = 1` and at `y = 1 + lam` if and only if
 
     A*(r**2*Q0 + lam*X1) > (1 - B + lam**2)*(X1 - Q1),
     A*(r**2*(Q0 + lam*X0) + lam*(1 + lam)*X1) > (A + lam**2*(1 + lam))*(X1 - Q1).
 
-The second end enters by `X1 - Q1 <= (2/3 - 2/(3*(2*c1 + 1)**2))*X1` alone (`splitting.share_defects`), and so what it
-asks for grows with `c1` as long as it asks for anything: `c1 = 1`, where `X1 = 9/4` and `X1 - Q1 <= 4/3`, is the
-worst. What is left is `margins`, functions of `theta0/2`, of the exit angle at the arc and of `lam`, which have to be
-positive for `abs(phi0) <= lam*pi/2`, `abs(eta) < pi/2` (`verification.proofs.global_dynamics.returns`, in balls, for
-`lam <= 3/5`).
+The end of the return enters only by `X1 - Q1 <= (2/3 - 2/(3*(2*c1 + 1)**2))*X1` (`splitting.share_defects`). So, where
+the terms of this end have to be compensated at all, they become worse as `c1` grows, and the worst case is `c1 = 1`,
+where `X1 = 9/4` and `X1 - Q1 <= 4/3`. It remains to show that `margins`, functions of `theta0/2`, of the exit angle at
+the arc and of `lam`, are positive for `abs(phi0) <= lam*pi/2` and `abs(eta) < pi/2`
+(`verification.proofs.global_dynamics.returns`, in balls, for `lam <= 3/5`).
 
-*So*, for `1/10 <= lam <= 3/5`, each return to the arc, in at most two bounces, multiplies `L` by a number above 1
-that depends on `lam` alone; for `16/27 < lam < 1` widths grow (`splitting.least_rate`). Curvature is bounded on the
-arc: *every orbit that misses the joins stretches at an exponential rate, for every `1/10 <= lam < 1`*. So no cycle
-off the joins attracts.
+*So*, for `1/10 <= lam <= 3/5`, each return to the arc, in at most two bounces, multiplies `L` by a number above 1 that
+depends on `lam` alone; for `16/27 < lam < 1` widths grow (`splitting.least_rate`). As curvature is bounded on the arc,
+*every orbit that misses the joins stretches at an exponential rate, for every `1/10 <= lam < 1`*. So no cycle off the
+joins attracts.
 
-*Near the joins again and again.* A curve along the cone that never meets a join would grow beyond all bounds, and
-lies on one component at each bounce; so on every horizontal segment of the arc some point lands on a join after
-finitely many bounces, and its neighbours near it. What they land on holds such curves again. So the starts that come
+*Near the joins again and again.* A curve along the cone that never meets a join would grow beyond all bounds, although
+its images lie on one component each. So on every horizontal segment of the arc some point lands on a join after
+finitely many bounces, and its neighbours land near this join, on curves along the cone again. So the starts that come
 as near to a join as wanted, as late as wanted, are open and dense among those that miss the joins, and their
 intersection is dense (Baire).
 
-Not shown: that the limits exist; one dense orbit; anything at a join itself.
+It is not shown that the limits exist, or that there is a dense orbit; orbits that meet a join are not treated.
 """
 
 from functools import cache
@@ -93,17 +94,17 @@ def return_defects() -> list[Expr]:
 
 
 def along_arc_form() -> Expr:
-    """The form `L` of the module docstring after a return along the arc, if it was `y - B` before."""
+    """The value of `L` (see the module) after a return along the arc, if it was `y - B` before."""
     return A * (t * y - D0) / d - lam * y
 
 
 def by_wall_form() -> Expr:
-    """The form `L` of the module docstring after a return by way of the wall, if it was `y - B` before."""
+    """The value of `L` (see the module) after a return by way of the wall, if it was `y - B` before."""
     return A * (cos_phi1 / cos_eta1 * (t * y - D0) + lam * y * t1) / d - lam**2 * y
 
 
 def end_defects() -> list[Expr]:
-    """Growth of `L`, minus 1, at either end of the cone for either return, minus the module's formulas; all are 0.
+    """The growth of `L` minus 1, at both ends of the cone for both returns, minus the module's formulas; all are 0.
 
     >>> end_defects()
     [0, 0, 0, 0]
@@ -135,9 +136,10 @@ def quadratic() -> Expr:
 
 
 def along_arc() -> SignFinding:
-    """Is `q - 2*A*EXCESS*(1 + 2*x*C) = a*x**2 - 2*b*C*x + e` positive for `C**2 <= 1/2 + 4*lam/5`, `x >= 0` if `C < 0`?
+    """Is `q - 2*A*EXCESS*(1 + 2*x*C) = a*x**2 - 2*b*C*x + e` positive?
 
-    It is if `a`, `b` and `e` are positive and `a*e > b**2*(1/2 + 4*lam/5)`.
+    This is to hold for `C**2 <= 1/2 + 4*lam/5`, and for `x >= 0` if `C < 0`. It does if `a`, `b` and `e` are positive
+    and `a*e > b**2*(1/2 + 4*lam/5)`.
 
     >>> along_arc().outcome.name
     'PROVED'
@@ -149,7 +151,9 @@ def along_arc() -> SignFinding:
 
 
 def margins() -> tuple[Expr, Expr]:
-    """Two functions of `half`, `leaves` and `lam`, times `cos(eta)**2`, that must be positive for returns by the wall.
+    """Two functions of `half`, `leaves` and `lam` that must be positive for returns by way of the wall.
+
+    They are the conditions of the module, multiplied by `cos(eta)**2`.
 
     >>> [margin.subs({half: 0, leaves: 0, lam: Rational(1, 10)}) for margin in margins()]
     [7/480, 77/4800]

@@ -1,50 +1,50 @@
 """A dominated splitting for the cardioid and the cuspless cardioid, at every contraction below 1.
 
 Paper: sections 4.1 and 5, where it is only suggested by Lyapunov exponents. A beam that leaves the arc with curvature
-`u` (see `defocusing`) has `y = -u*D`, `D = cos(phi)/|K|`; the cone is `1 <= y <= 1 + lam`. It meets the next arc with
-curvature `1/(f + t1)`, and leaves with
+`u` (see `defocusing`) has `y = -u*D`, `D = cos(phi)/|K|`; the cone is `1 <= y <= 1 + lam`. It arrives at the next
+bounce on the arc with curvature `1/(f + t1)`, and leaves with
 
     y1 = 1 + lam - lam*d1/(f + t1),    d1 = cos(eta1)/|K1|,
 
 where `f = -D0/y` and `t1 = t` for a chord from arc to arc, and `f = (cos(phi)/(lam*cos(eta)))*(t - D0/y)` when the
-particle has bounced off the wall in between (chord `t` to the wall, landing at `eta`, leaving at `phi`, chord `t1`
-on).
+particle has bounced off the wall in between (by a chord `t` to the wall, a landing at `eta`, an exit at `phi`, and a
+chord `t1` to the arc).
 
 *Chords of the arc.* `t - D0 >= gain*d1`, with a gain above 1 (`defocusing`), and `2*t >= 3*D0`, since
 
     t*(2*t - 3*D0) = 8*sin(delta)**2*c1**2.
 
-*Chords between arc and wall.* With `tau` three halves of the polar angle, `c = cos(tau/3)` and `eta` the angle at
-the wall,
+*Chords between arc and wall.* Let `tau` be three halves of the polar angle, `c = cos(tau/3)`, and `eta` the angle at
+the wall. Then
 
     (t - D)*cos(eta) = (2*c - 1)**2*(4*c**2 + 4*c + 3)/12 + (2*c/3)*(1 - cos(tau + 2*eta)) >= 0:
 
-the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The angle of a particle at
-the arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so `tau < (1 +
-lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
+the circle of diameter `1/|K|` that touches the arc from inside does not cross the wall. The angle of a particle at the
+arc is `tau + eta`, less than `pi/2`; one of the two angles is an exit angle, at most `lam*pi/2`, so
+`tau < (1 + lam)*pi/2` and `t - D >= clearance(lam) > 0` for `lam < 1`.
 
-*So* `1 < y1 < 1 + lam`, strictly and uniformly: in the projective (Hilbert) metric of the cone the image has a
-diameter of at most `diameters(lam)`, hence every return to the arc, at most two bounces, contracts by
+*So* `1 < y1 < 1 + lam`, strictly and uniformly: in the projective (Hilbert) metric of the cone the image has a diameter
+of at most `diameters(lam)`. Hence every return to the arc, which takes at most two bounces, contracts this metric by
 `tanh(diameter/4) < 1` (Birkhoff). Directions of the cone pushed forward along a backward orbit converge to `F`,
-directions outside it pulled back along a forward orbit to `E`, and the rate of the one is that of `|DT^n e|/|DT^n
-f|`: the dominated splitting. The two keep apart: a direction that is outside the cone at the next arc has `0 < y <
-1/gain` or, before the wall, `0 < y < D/t`, and `F` has `y > 1`, all bounded away from 1. On the cuspless cardioid
-curvature is bounded, and `C` and `nu` are the same for all orbits; on the cardioid they are when vectors are measured
-by `|K|*ds` and `dphi`, so on every compact set off the cusp. At `lam = 0` the cone is the horizontal direction `F`,
-`E` is the kernel, and `F` is not in it because `t > D0`.
+directions outside it pulled back along a forward orbit to `E`, and the ratio `|DT^n e|/|DT^n f|` for vectors `e` of `E`
+and `f` of `F` falls at the same rate: this is the dominated splitting. The angle between the two is bounded below: a
+direction that is outside the cone at the next arc has `0 < y < 1/gain` or, before the wall, `0 < y < D/t`, and `F` has
+`y > 1`, all bounded away from 1. On the cuspless cardioid curvature is bounded, and the constants `C` and `nu` of the
+splitting are the same for all orbits. On the cardioid this holds if vectors are measured by `|K|*ds` and `dphi`, and so
+on every compact set off the cusp. At `lam = 0` the cone is the horizontal direction `F`, `E` is the kernel, and `F` is
+not in it because `t > D0`.
 
 *Widths.* By way of the wall the width of a beam of the cone, in units of `D`, grows at least by
 
     1 + ((cos(phi)/cos(eta))**2*Q0 + Q1 - (1 - lam)*X1)/(cos(phi)*d1),    Q = (t - D)*cos(eta) at either end,
 
-with `X1 = t1*cos(phi)` how far from the wall the particle lands. `Q1 >= 11/27*X1`, since the first term of `Q` is
-`X/3 + 2*X/(3*(2*c + 1)**2)` and `c <= 1`; and `t1 >= d1`. So it grows at least by `lam + 11/27`: for `lam > 16/27`
-every orbit of the cuspless cardioid stretches at a rate of at least `least_rate()` for each bounce, and no cycle
-attracts.
+where `X1 = t1*cos(phi)` is the distance from the wall at which the particle lands. `Q1 >= 11/27*X1`, since the first
+term of `Q` is `X/3 + 2*X/(3*(2*c + 1)**2)` and `c <= 1`; and `t1 >= d1`. So the width grows at least by the factor
+`lam + 11/27`. For `lam > 16/27` every orbit of the cuspless cardioid stretches at a rate of at least `least_rate()` for
+each bounce, and no cycle attracts.
 
-Left out are orbits through a join, where the derivative does not exist, and the elastic case: at `lam = 1`
-near-grazing orbits follow the parabolic matrix of `grazing`, whose powers grow like `n`, so that no `C*nu^n` bounds
-anything.
+Left out are orbits through a join, where the derivative does not exist, and the elastic case: at `lam = 1` near-grazing
+orbits follow the parabolic matrix of `grazing`, whose powers grow like `n`, so that no `C*nu^n` bounds anything.
 """
 
 from functools import cache
@@ -125,7 +125,8 @@ def clear() -> Expr:
 
 
 def clear_defects() -> list[Expr]:
-    """The slope of `clear` minus a product that is positive for `c > 1/2`, and `clear` at the join, `c = 1/2`; both 0.
+    """The slope of `clear` minus a product that is positive for `c > 1/2`; and `clear` at the join, `c = 1/2`. Both are
+    0.
 
     >>> clear_defects()
     [0, 0]
@@ -179,7 +180,8 @@ def passage_defects() -> list[Expr]:
 
 
 def width_defects() -> list[Expr]:
-    """Growth of width by way of the wall, from the derivative matrices, minus its formula, at any `y` and at 1; both 0.
+    """Growth of width by way of the wall minus its formula, from the derivative matrices, at any `y` and at 1; both are
+    0.
 
     >>> width_defects()
     [0, 0]
@@ -196,7 +198,9 @@ def width_defects() -> list[Expr]:
 
 
 def share_defects() -> list[Expr]:
-    """A point's distance `X = x + 1/4` from the wall, and its circle's, minus the module's formulas; both are 0.
+    """Distances from the wall minus the module's formulas: of a point of the arc, and of its circle; both are 0.
+
+    The first is `X = x + 1/4`.
 
     >>> share_defects()
     [0, 0]
@@ -229,7 +233,7 @@ def least_rate(contraction: Expr = lam) -> Expr:
 
 
 def spread_defect() -> Expr:
-    """The exponential of the projective diameter of the cone's image, minus the product of two ratios; it is 0.
+    """The exponential of the projective diameter of the cone's image, minus its formula as a product; it is 0.
 
     >>> spread_defect()
     0
@@ -243,9 +247,10 @@ def spread_defect() -> Expr:
 def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
     """Bounds for the projective diameter of the cone's image: along a chord of the arc, and by way of the wall.
 
-    `far/near` is at most `1 + 2*lam/(1 + lam)` by `t - D0 >= D0/2` for the arc, and
-    `1 + 4*lam/(3*(1 + lam)*clearance)` by the wall, where `D0 <= 4/3`. In the second factor `1 - d/far` is at most 1,
-    `d/near` at most `1/gain` for the arc, and `1 - d/near >= clearance/DIAMETER` by the wall.
+    The exponential of the diameter is the product of `far/near` and `(1 - d/far)/(1 - d/near)` (see `spread_defect`).
+    `far/near` is at most `1 + 2*lam/(1 + lam)` for the arc, since `t - D0 >= D0/2`, and at most
+    `1 + 4*lam/(3*(1 + lam)*clearance)` by the wall, since `D0 <= 4/3`. Moreover `1 - d/far` is at most 1, `d/near` is
+    at most `1/gain` for the arc, and `1 - d/near >= clearance/DIAMETER` by the wall.
 
     >>> [bound.n(3) for bound in diameters(Rational(1, 2))]
     [4.45, 5.18]
@@ -257,7 +262,7 @@ def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
 
 
 def rate(contraction: Expr = lam, wall: bool = True) -> Expr:
-    """Bound of the factor by which a return to the arc shrinks the cone: `tanh` of a quarter of the larger diameter.
+    """A bound of the factor by which a return to the arc shrinks the cone: `tanh` of a quarter of the larger diameter.
 
     >>> rate(Rational(1, 2)).n(3), rate(Rational(1, 2), wall=False).n(3)
     (0.860, 0.805)

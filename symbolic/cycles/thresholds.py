@@ -1,15 +1,15 @@
-"""Every cycle of period 2, in one number: `P = (1 + t*K0)*(1 + t*K1)`.
+"""The stability of a cycle of period 2 depends on one number: `P = (1 + t*K0)*(1 + t*K1)`.
 
-A cycle of period 2 runs along a chord that is normal to the boundary at both ends (its exit angle
-`phi` satisfies `phi = -lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord
-retraced is normal too). Its monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`,
-whatever the table. All the thresholds of the paper's period-2 orbits follow from `P`:
+A cycle of period 2 runs along a chord that is normal to the boundary at both ends (the exit angle satisfies
+`phi = -lam*phi` up to sign, so it vanishes for `lam < 1`; at `lam = 1` a chord that is run back and forth is normal
+too). Its monodromy has determinant `lam**2` and trace `(1+lam)**2*P - 2*lam`, whatever the table. All the thresholds of
+the paper's period-2 orbits follow from `P`:
 
     |mu| < 1    exactly when  -((1-lam)/(1+lam))**2 < P < 1,
     mu complex  exactly when  0 < P < 4*lam/(1+lam)**2     (then |mu| = lam).
 
 The paper's thresholds in closed form are derived from the stability numbers of its period-2 cycles. Each is written so
-that no digit cancels and nothing is 0/0 in the paper's range. Paper: eqs. for lambda_+-(a) (section 3.3), lambda_c
+that no digits cancel and no 0/0 occurs in the paper's range. Paper: eqs. for lambda_+-(a) (section 3.3), lambda_c
 (5.1), alpha-tilde and alpha-hat (6.3).
 
 The determinant of a cycle's monodromy matrix shows where Neimark-Sacker bifurcations are impossible. Around a cycle the
@@ -17,14 +17,14 @@ cosines of exit angles do not telescope against those of incidence: with `phi = 
 
     det M = prod lam*cos(lam*eta)/cos(eta) = prod f(lam*eta)/f(eta),    f(x) = x*cos(x),
 
-which is `lam**p` only when every bounce is along the normal, and larger otherwise. Since `f` grows up to the root
-of `x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for
-every `lam < 1`: no Neimark-Sacker bifurcation. Beyond it factors exceed 1, and so may the product.
+which is `lam**p` only when every bounce is along the normal, and larger otherwise. Since `f` grows up to the root of
+`x*tan(x) = 1`, some 0.8603 or 49.3 degrees, a cycle whose incidence angles stay below it contracts areas for every
+`lam < 1`: no Neimark-Sacker bifurcation. For larger angles a factor exceeds 1, and the product may exceed 1 too.
 
-A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta`
-(`symbolic.cycles.polygons`), with `gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts exactly when `gamma*tan(gamma)
-< 1`: the triangle (30 degrees) and the square (45) do, the pentagon (54) and all beyond do not, and are born
-expanding.
+A polygon that turns by `2*pi*p/q` leaves at `gamma - delta` and lands at `gamma + delta` (`symbolic.cycles.polygons`),
+with `gamma = pi/2 - pi*p/q`; near `lam = 1` it contracts areas exactly when `gamma*tan(gamma) < 1`. This holds for the
+triangle (30 degrees) and the square (45), but not for the pentagon (54) and polygons of more sides, whose cycles expand
+areas near `lam = 1`.
 """
 
 from functools import lru_cache
@@ -40,7 +40,7 @@ from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
 
 @lru_cache(maxsize=256)
 def stability_number(cycle: Cycle) -> Expr:
-    """`P = (1 + t*K0)*(1 + t*K1)` of a cycle of period 2, free of units.
+    """`P = (1 + t*K0)*(1 + t*K1)` of a cycle of period 2; it does not depend on the unit of length.
 
     >>> from symbolic.cycles.cycle import cuspless_horizontal, egg_diameter
     >>> stability_number(cuspless_horizontal())
@@ -108,9 +108,9 @@ def focus_contraction(P: Expr) -> Expr | None:
 
 
 def stable_while_nonnegative(P: Expr, box: Box) -> SignFinding:
-    """Are both multipliers inside the unit circle because `0 <= P < 1` and `lam < 1` on the box?
+    """Is `0 <= P < 1` and `lam < 1` on the box, so that both multipliers are inside the unit circle?
 
-    `1 - trace + det = (1+lam)**2*(1 - P)` and `1 + trace + det = (1+lam)**2*P + (1-lam)**2`.
+    This is so because `1 - trace + det = (1+lam)**2*(1 - P)` and `1 + trace + det = (1+lam)**2*P + (1-lam)**2`.
 
     >>> from sympy import Interval
     >>> stable_while_nonnegative(S.Zero, {lam: Interval.Ropen(0, 1)}).outcome.name
@@ -122,9 +122,8 @@ def stable_while_nonnegative(P: Expr, box: Box) -> SignFinding:
 def lambda_minus() -> Expr:
     """The contraction above which the ellipse's minor axis is a focus: `((w-1)/(w+1))**2`, `w = sqrt(a**2-1)`.
 
-    With `P = ((a**2-2)/a**2)**2` of the minor axis, `1 - P = (2*w/a**2)**2`, and
-    `(1-sqrt(1-P))/(1+sqrt(1-P))` is the square shown. Regular at `a = sqrt(2)`, where the paper's
-    form is 0/0. `lambda_plus` is its inverse.
+    With `P = ((a**2-2)/a**2)**2` of the minor axis, `1 - P = (2*w/a**2)**2`, and `(1-sqrt(1-P))/(1+sqrt(1-P))` is the
+    square shown. This form is regular at `a = sqrt(2)`, where the paper's form is 0/0. `lambda_plus` is the reciprocal.
 
     >>> lambda_minus().subs(a, sqrt(2))
     0
@@ -134,7 +133,7 @@ def lambda_minus() -> Expr:
 
 
 def lambda_plus() -> Expr:
-    """The other root of the paper's `P_2`, 1 over `lambda_minus`: `((w+1)/(w-1))**2`, `w = sqrt(a**2-1)`."""
+    """The other root of the paper's `P_2`, the reciprocal of `lambda_minus`: `((w+1)/(w-1))**2`, `w = sqrt(a**2-1)`."""
     return 1 / lambda_minus()
 
 
@@ -234,7 +233,7 @@ def flux(x: Expr) -> Expr:
 
 
 def flux_slope(x: Expr) -> Expr:
-    """`f'(x) = cos(x) - x*sin(x)`: positive where contraction is certain, zero where `x*tan(x) = 1`."""
+    """`f'(x) = cos(x) - x*sin(x)`: positive where areas are sure to contract, zero where `x*tan(x) = 1`."""
     return cos(x) - x * sin(x)
 
 

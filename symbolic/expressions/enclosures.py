@@ -44,11 +44,11 @@ Bounds = tuple[int, int]
 
 
 class UnboundedError(Exception):
-    """An operation has no finite enclosure: a pole, a root of a number that may be negative, or an unknown function."""
+    """An operation has no finite bounds: a pole, a root of a possibly negative number, or an unknown function."""
 
 
 def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: int = WORK) -> SignFinding:
-    """Is `expression` > 0 for all `x` with `low <= x <= high`? At most `work` operations; a refutation has a point.
+    """Is `expression` > 0 for all `x` with `low <= x <= high`? It takes at most `work` operations; `at` refutes it.
 
     >>> x = Symbol("x")
     >>> sign_on(2 + cos(cos(x)) / (3 + sin(x)), x, S(-4), S(4)).outcome.name
@@ -142,7 +142,7 @@ Step = tuple[Callable[..., Bounds], tuple[int, ...]]
 
 
 class Enclosures:
-    """A function from bounds of variables to the bounds of several expressions in them.
+    """A function that takes bounds of variables, and returns bounds of several expressions in these variables.
 
     Bounds are pairs of integers, in units of `2**-BITS`; `work` is the number of operations in one call.
 
@@ -249,7 +249,7 @@ def _inverse(a: Bounds) -> Bounds:
 
 
 def _power(a: Bounds, p: int, q: int) -> Bounds:
-    """`a**(p/q)`: a whole power of a square root or, for other roots, of the exponential of a logarithm."""
+    """Bounds of `a**(p/q)`: by a power of a square root for `q = 2`, else by the exponential of a logarithm."""
     if q == 2:
         if a[0] < 0:
             raise UnboundedError("a root of what may be negative")
@@ -274,7 +274,7 @@ def _abs(a: Bounds) -> Bounds:
 
 
 def _turn(a: Bounds, quarters: int) -> Bounds:
-    """Bounds of `cos(x - quarters*pi/2)`: Taylor's sum at the middle of `a`, and two derivatives for its width."""
+    """Bounds of `cos(x - quarters*pi/2)` for `x` in `a`: from the middle of `a` by Taylor's formula to second order."""
     middle, radius = (a[0] + a[1]) // 2, (a[1] - a[0]) // 2 + 1
     if radius > 2 * ONE:
         return -ONE, ONE
@@ -294,7 +294,7 @@ TERMS = 40  # of Taylor's series, each rounded once; the next, of (0.8)**81/81!,
 
 
 def _series(x: int, first: int) -> int:
-    """Taylor's sum of the cosine (`first` = 0) or sine (1) of `|x| < 0.8`, wrong by less than TERMS."""
+    """The Taylor sum of the cosine (`first` = 0) or sine (`first` = 1) of `|x| < 0.8`, with an error below `TERMS`."""
     square = x * x >> BITS
     total = term = x if first else ONE
     for k in range(first + 2, 2 * TERMS, 2):
@@ -346,7 +346,7 @@ def _log(a: Bounds) -> Bounds:
 
 
 def _atan(a: Bounds) -> Bounds:
-    """Bounds of `atan(x)`, from the ends of `a`: three halvings give `atan(x) = 8*atan(y)`, a Taylor sum `atan(y)`."""
+    """Bounds of `atan(x)`, from the ends of `a`: three halvings of the angle give `8*atan(y)` with a Taylor sum."""
 
     def at(x: int) -> int:
         for _ in range(3):
@@ -374,7 +374,7 @@ def _hyperbolic(a: Bounds, sign: int) -> Bounds:
 
 
 def _tanh(a: Bounds) -> Bounds:
-    """Bounds of `tanh(x) = 1 - 2/(exp(2*x) + 1)`, from the ends of `a`, for `-x` where `x < 0`."""
+    """Bounds of `tanh(x) = 1 - 2/(exp(2*x) + 1)`, from the ends of `a`; for `x < 0` from those of `-x`."""
 
     def at(x: int) -> Bounds:
         small = _exp((-2 * abs(x), -2 * abs(x)))

@@ -39,12 +39,12 @@ Element = tuple[Any, Any]  # the pair (p, q) for `p + q*r`
 
 
 def is_zero_in_ring(expression: Expr) -> bool | None:
-    """Is a rational function of letters, sines, cosines and square roots 0? None where that is not decided.
+    """Is a rational function of symbols, sines, cosines and square roots 0? None if this is not decided.
 
-    With `g` the common divisor of the multiples of a letter `x` in the angles, sine and cosine of `g*x` are generators.
-    They and the letters satisfy no relation but `s**2 + c**2 = 1`, so that without roots both answers are proved. Each
-    root, and `I`, is one more generator with a known square; roots may satisfy further relations, so that a result that
-    is not 0 decides nothing.
+    Let `g` be the common divisor of the multiples of a symbol `x` in the angles. Then sine and cosine of `g*x` are
+    generators of a ring, as are the symbols. Their only relation is `s**2 + c**2 = 1`, so that without roots both
+    answers are proved. Each root, and `I`, is a further generator with a known square. As roots may satisfy further
+    relations, a result that is not 0 then decides nothing.
 
     >>> x, y = symbols("x y")
     >>> is_zero_in_ring(sin(x + 2 * y) ** 2 + cos(2 * y + x) ** 2 - 1), is_zero_in_ring(tan(x) - sin(x))
@@ -139,9 +139,9 @@ def is_zero_in_ring(expression: Expr) -> bool | None:
 
 
 def over_one_root(expression: Expr) -> Expr | None:
-    """A rational function of letters and one square root `r` as `p + q*r`, in lowest terms; None for other expressions.
+    """A rational function of symbols and one square root `r` as `p + q*r`, in lowest terms; None for other expressions.
 
-    The field of rational functions is extended by `r`, whose square is known; `1/(p + q*r)` is the conjugate over
+    The field of rational functions is extended by `r`, whose square is known; `1/(p + q*r)` is the conjugate divided by
     the norm.
 
     >>> from sympy import sqrt
@@ -221,7 +221,7 @@ def _is_root(expression: Expr) -> bool:
 
 
 def _standard_root(power: Expr) -> Expr:
-    """A half-integer power with its base reduced and freed of rational factors."""
+    """A half-integer power, with powers of sines in its base reduced and its rational factor taken out."""
     content, base = _without_squared_sines(power.base).as_content_primitive()
     return content**power.exp * base**power.exp
 

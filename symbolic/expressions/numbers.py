@@ -1,9 +1,9 @@
 """Protocols of number systems: each defines the words of the closed vocabulary for one kind of number.
 
-Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.program`) use the same words: `+ - *
-/`, `q(p, n)` for a rational, `pi`, and elementary functions. A `NumberSystem[N]` gives them a meaning for numbers of
-type `N`: floats, arrays, LLVM vectors, mpmath numbers, balls, jets. Checked by mypy, never at run time; imports
-nothing.
+Generated text (`symbolic.expressions.text`) and programs (`numeric.lowering.program`) use the same words: `+ - * /`,
+`q(p, n)` for a rational, `pi`, and elementary functions. A `NumberSystem[N]` defines them for numbers of type `N`:
+floats, arrays, LLVM vectors, mpmath numbers, balls, jets. The protocols are checked by mypy, never at run time, and
+this module imports nothing of the package.
 """
 
 from typing import Any, Protocol, Self, TypeVar
@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 class Number(Protocol):
-    """The operations on numbers that generated text uses besides calls of functions."""
+    """The operations on numbers that generated text uses; calls of functions are those of `NumberSystem`."""
 
     def __add__(self, other: Self, /) -> Self: ...
     def __sub__(self, other: Self, /) -> Self: ...

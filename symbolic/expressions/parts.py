@@ -1,7 +1,7 @@
-"""Splits a generated function: what depends on some of its arguments alone, and the rest.
+"""Splits a generated function into parts: those that depend on only some of its arguments, and the remainder.
 
-The parts contain the function's own assignments, unchanged and in order, so that numbers of every kind get the same
-bits as from the whole function.
+The parts contain the function's own assignments, unchanged and in the same order, so that with any kind of numbers the
+results have the same bits as those of the whole function.
 """
 
 import ast
@@ -13,9 +13,11 @@ from symbolic.expressions.text import VOCABULARY, Kernel
 
 @cache
 def parted(kernel: Kernel, *groups: tuple[str, ...]) -> tuple[Kernel, ...]:
-    """A kernel cut into several: for each group of arguments what depends on it alone, and last a kernel for the rest.
+    """A kernel cut into several: for each group of arguments, a kernel of what depends on this group only, and a last
+    one.
 
-    The last kernel takes all arguments, then the results of the others. What two groups share is computed by the first.
+    The last kernel takes all arguments and then the results of the other kernels, and returns the results of the whole.
+    A value that two groups have in common is computed by the kernel of the first one.
 
     >>> from sympy import cos, sin, symbols
     >>> from symbolic.expressions.text import kernel

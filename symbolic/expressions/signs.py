@@ -5,7 +5,7 @@
 Signs are decided in exact arithmetic. In one variable Sturm's theorem counts the roots. In several, map the open box to
 the positive orthant by `x = (low + high*u)/(1 + u)`; if no coefficient in `u` is negative the polynomial is positive in
 the box (the Bernstein criterion), else the box is halved. Faces that belong to the box are proved in the same way, with
-one variable fewer, so that open and closed ends are told apart.
+one variable fewer, so that open and closed ends are distinguished.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -85,7 +85,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class SignFinding:
-    """An outcome with its reason in one sentence; a refutation holds its witness in `at`, values of the parameters."""
+    """An outcome with its reason in one sentence; a refutation has the values of the parameters in `at`."""
 
     outcome: Outcome
     reason: str
@@ -96,7 +96,7 @@ class SignFinding:
 
 
 def conjunction(*findings: SignFinding) -> SignFinding:
-    """The finding that all of these hold: refuted when one is refuted, proved when every one is proved."""
+    """The finding that all `findings` hold: refuted if one is refuted, proved if all are proved."""
     for wanted in (Outcome.REFUTED, Outcome.UNKNOWN):
         for finding in findings:
             if finding.outcome is wanted:
@@ -105,7 +105,7 @@ def conjunction(*findings: SignFinding) -> SignFinding:
 
 
 def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> SignFinding:
-    """Do all expressions of every named step vanish? The reason names the steps, or those not reduced to 0.
+    """Do all expressions of every named step vanish? The reason names the steps, or those that are not reduced to 0.
 
     >>> x = Symbol("x")
     >>> all_vanish({"a square": [(x + 1) ** 2 - x**2 - 2 * x - 1]}).reason, all_vanish({"a guess": [x]}).reason
@@ -118,7 +118,7 @@ def all_vanish(steps: Mapping[str, Iterable[Expr]]) -> SignFinding:
 
 
 def positive(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
-    """Is the rational function `expression` > 0 everywhere in `box`? (Its poles must lie outside.)
+    """Is the rational function `expression` > 0 everywhere in `box`? (Its poles must lie outside `box`.)
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> positive(1 - x * y, {x: Interval.Ropen(0, 1), y: Interval(0, 1)}).outcome.name
@@ -149,7 +149,7 @@ def positive(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
 
 
 def nonnegative(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
-    """Is `expression >= 0` in `box`? Proved in the interior, and so by continuity on the closure.
+    """Is `expression >= 0` in `box`? It is proved in the interior, and follows on the closure by continuity.
 
     >>> x = Symbol("x")
     >>> nonnegative(x * (1 - x) ** 2, {x: Interval(0, 2)}).outcome.name
@@ -173,7 +173,7 @@ def nonnegative(expression: Expr, box: Box, depth: int = 12) -> SignFinding:
 
 
 def placed(finding: SignFinding, box: Box) -> SignFinding:
-    """The refutation, with any values of those parameters of the box that its witness does not contain added to it.
+    """A refutation whose witness is completed by values of all parameters of the box; other findings are unchanged.
 
     >>> x, y = Symbol("x"), Symbol("y")
     >>> positive(x, {x: Interval(-1, 1), y: Interval(3, 4)}).at
@@ -216,7 +216,7 @@ def _positive(p: Expr, box: dict[Symbol, Interval], depth: int) -> SignFinding |
 
 
 def _face(p: Expr, x: Symbol, end: Expr, box: dict[Symbol, Interval], depth: int) -> SignFinding | None:
-    """The finding on one face of the box; a witness there has the value `end` of `x`."""
+    """The finding for the face `x = end` of the box; a refutation's witness is completed by this value of `x`."""
     face = _positive(expand(p.subs(x, end)), box, depth)
     return face if face is None or face else replace(face, at=(*face.at, (x, end)))
 
@@ -237,7 +237,7 @@ def _samples(interval: Interval) -> list[Expr]:
 
 
 def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> SignFinding | None:
-    """A refutation of `p > 0` by a point of the box with `p <= 0`; if `strictly`, of `p >= 0`. Few points are tried."""
+    """A refutation of `p > 0`, or of `p >= 0` if `strictly`, by one of a few tried points of the box; else None."""
     points: list[dict[Symbol, Expr]] = [{}]
     for x, interval in box.items():
         points = [{**point, x: value} for point in points for value in _samples(interval)]
@@ -252,7 +252,7 @@ def _witness(p: Expr, box: dict[Symbol, Interval], strictly: bool = False) -> Si
 
 
 def _evaluator(p: Expr, used: tuple[Symbol, ...]) -> Callable[[dict[Symbol, Expr]], Expr]:
-    """A function that gives `p` at a point: from its terms if they and the point are rational, else by substitution."""
+    """A function that evaluates `p` at a point: from its terms in rational arithmetic, or else by substitution."""
 
     def substituted(point: dict[Symbol, Expr]) -> Expr:
         return p.subs(point)
@@ -272,7 +272,7 @@ def _evaluator(p: Expr, used: tuple[Symbol, ...]) -> Callable[[dict[Symbol, Expr
 
 
 def _sturm(p: Expr, x: Symbol, interval: Interval) -> SignFinding | None:
-    """Is the polynomial positive, by Sturm's theorem? None where that does not apply: irrational ends, coefficients."""
+    """Is the polynomial positive, by Sturm's theorem? None if this fails, as for irrational ends or coefficients."""
     poly = Poly(p, x).sqf_part()
     try:
         roots = poly.count_roots(interval.start, interval.end)

@@ -102,12 +102,12 @@ class WordPrinter:
         self.count = 0
 
     def rename(self, symbol: Symbol) -> str:
-        """The next free temporary name, kept for `symbol`."""
+        """Gives `symbol` the next free temporary name, and returns the name."""
         self.names[symbol] = self._fresh()
         return self.names[symbol]
 
     def assignment(self, e: Expr) -> tuple[list[tuple[str, str]], list[str]]:
-        """The assignments that must come first, as (name, text), and the terms of `e`, each with its sign."""
+        """The assignments that must come first, as pairs of name and text; and the terms of `e`, each with its sign."""
         self.before = []
         terms = [self._term(term, i > 0) for i, term in enumerate(_terms(e))]
         return self.before, terms
@@ -124,7 +124,7 @@ class WordPrinter:
         return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
 
     def _print(self, e: Expr) -> tuple[str, bool]:
-        """The text, and whether a product must put it in parentheses: it is a sum, or begins with a sign."""
+        """The text of `e`; and whether it needs parentheses as a factor, because it is a sum or begins with a sign."""
         if isinstance(e, Symbol):
             return self.names.get(e, e.name), False
         if isinstance(e, Integer):
@@ -217,7 +217,7 @@ def _closed(text: str) -> bool:
 
 
 def _terms(e: Expr) -> list[Expr]:
-    """The terms of a sum in SymPy's printing order, but with a positive one first if there is one."""
+    """The terms of a sum in SymPy's printing order, but a positive term comes first if there is one."""
     if not isinstance(e, Add):
         return [e]
     terms = list(e.as_ordered_terms())
@@ -231,7 +231,7 @@ WIDTH = 99
 
 @dataclass(frozen=True)
 class Kernel:
-    """A generated function: its name, arguments and results in order, the words of the vocabulary it uses, its text."""
+    """A generated function: its name, arguments, results, the words of the vocabulary that it uses, and its text."""
 
     name: str
     arguments: tuple[str, ...]
@@ -335,7 +335,7 @@ def module_text(kernels: Iterable[Kernel], source: str) -> str:
 
 
 def _shared(steps: dict[Symbol, Expr], taken: set[str]) -> dict[Symbol, Expr]:
-    """`steps` with common subexpressions as further steps, under provisional names: `_lines` gives the final ones."""
+    """`steps`, with common subexpressions as further steps under provisional names, which `_lines` will replace."""
     spare = (s for s in numbered_symbols("c") if s.name not in taken)
     found, reduced = cse(list(steps.values()), symbols=spare, order="canonical", list=True)
     meaning = dict(found)
@@ -351,7 +351,7 @@ def _shared(steps: dict[Symbol, Expr], taken: set[str]) -> dict[Symbol, Expr]:
 
 
 def _lines(steps: dict[Symbol, Expr], results: list[Symbol], names: set[str]) -> tuple[list[str], set[str]]:
-    """Lines of assignments, each after those it needs, with temporaries numbered in order; and the words they use."""
+    """The lines of assignments, in an order in which they can be executed; and the words of the vocabulary they use."""
     printer, lines = WordPrinter(names), list[str]()
     done: set[Symbol] = set()
 

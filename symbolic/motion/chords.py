@@ -1,17 +1,17 @@
 """The collision rule as one equation per bounce, in boundary parameters alone.
 
-With `q` a bounce, `V` the velocity of the boundary there and `N` that velocity turned left (inwards),
-the chord `d` to another boundary point makes with the inward normal the angle
+With `q` a bounce, `V` the velocity of the boundary there and `N` that velocity turned left (inwards), the chord `d` to
+another boundary point makes with the inward normal the angle
 
     A(q, d) = atan(d.V / d.N),    positive towards the tangent, as the paper's exit angle.
 
-The chord to the next bounce gives the exit angle, `phi = A`, and the chord back to the previous one
-the incidence angle, `eta = A`. The law `phi = -lam*eta` is `A(next) + lam*A(previous) = 0`: one
-equation in three neighbouring parameters. A cycle of any length is a cyclic chain of this one. Any other
-law is `A(next) - phi(A(previous)) = 0`, with its slopes in the derivatives (`law_kernel`).
+The chord to the next bounce gives the exit angle, `phi = A`, and the chord back to the previous one the incidence
+angle, `eta = A`. The law `phi = -lam*eta` is `A(next) + lam*A(previous) = 0`: one equation in three neighbouring
+parameters. A cycle of length `n` is a solution of `n` such equations, one for each bounce. For any other law the
+equation is `A(next) - phi(A(previous)) = 0`, and its derivatives contain the law's slopes (`law_kernel`).
 
-`A` is the direction of `N` minus the direction of `d`, so each derivative is that of two arguments:
-`dA = bend(V) - bend(d)`, `bend(w) = (w x dw)/(w.w)`.
+`A` is the direction of `N` minus the direction of `d`, so each derivative is a difference, `dA = bend(V) - bend(d)`,
+where `bend(w) = (w x dw)/(w.w)` is the derivative of the direction of `w`.
 
 Convexity is proved here too, for all shapes in a range. A closed simple boundary is convex where it never turns right.
 On a trigonometric boundary the turning `x'y'' - y'x''` is a polynomial in `tan(x/2)`, with `x` the common multiple of
@@ -38,14 +38,14 @@ theta1 = Symbol("theta1", real=True)  # the other end of a chord
 
 @dataclass(frozen=True)
 class Staged:
-    """Expressions by name, in terms of intermediate values; each of these is defined by earlier ones."""
+    """Expressions by name, in terms of intermediate values, each of which is defined by earlier ones."""
 
     arguments: tuple[Symbol, ...]
     definitions: dict[Symbol, Expr]
     values: dict[str, Expr]
 
     def whole(self, name: str) -> Expr:
-        """The expression called `name` with every intermediate value put in.
+        """The expression called `name`, with all intermediate values substituted.
 
         >>> from symbolic.tables import circle
         >>> chord_angle(circle, order=0).whole("angle").subs({theta0: 0, theta1: 3})
@@ -82,7 +82,7 @@ def _coordinates(shapes: tuple[Symbol, ...]) -> tuple[Expr, ...]:
 
 @cache
 def _derived(shapes: tuple[Symbol, ...], order: int) -> dict[str, Expr]:
-    """The values of `chord_angle` by name, for any two components, in symbols for their points."""
+    """The values of `chord_angle` by name, for any two components, in symbols for the coordinates of their points."""
     x0, y0, _, _, dx, dy = _coordinates(shapes)
     vx, vy = diff(x0, theta0), diff(y0, theta0)
     turned = {p: _bend(vx, vy, p) - _bend(dx, dy, p) for p in (theta0, theta1, *shapes)}
@@ -115,11 +115,11 @@ def partials(shapes: tuple[Symbol, ...], order: int) -> dict[str, tuple[Symbol, 
 def law_kernel(law: Law, order: int = 1, whole: Component | None = None) -> Kernel:
     """The exit angle as a generated function of `(eta, lam, theta, *own)`, with derivatives up to `order`.
 
-    For a law that contains arc length, `whole` is the closed curve: the arguments are then `(eta, lam, theta, s,
-    *own)`, and derivatives by `theta` are those along the curve, where `ds/dtheta` is the speed.
+    For a law that contains arc length, `whole` is the closed curve: the arguments are then
+    `(eta, lam, theta, s, *own)`, and derivatives by `theta` are those along the curve, where `ds/dtheta` is the speed.
 
-    The values are `phi`, then `phi_eta` and its like, and for order 2 `phi_eta_eta` and all other pairs with `eta` or
-    `theta`.
+    The values are `phi`, then its first derivatives such as `phi_eta`, and for order 2 the second derivatives by `eta`
+    or `theta` and any argument, such as `phi_eta_eta`.
 
     >>> law_kernel(Law("-lam*eta - b*sin(2*eta)")).results
     ('phi', 'phi_eta', 'phi_theta', 'phi_lam', 'phi_b')
@@ -168,8 +168,9 @@ def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) ->
 def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
     """`chord_angle` along each side of a polygon, as a generated function of the parameters at its corners.
 
-    The results are the values of `chord_angle` for all sides to the next corner, then to the one before. What depends
-    on one corner is computed once. The table has one component and no free shape parameter.
+    The results are the values of `chord_angle` from all corners to the next one, then from all corners to the one
+    before. A value that depends on one corner only is computed once. The table has one component and no free shape
+    parameter.
 
     >>> from symbolic.tables import circle
     >>> polygon_kernel(circle, 3, 0).results
@@ -194,11 +195,12 @@ def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
 def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
     """The angles of `polygon_kernel` to order 0 on one polar curve, with the gaps between corners as arguments too.
 
-    A function of the parameters at the corners and of the gaps to the next one, the last gap back to the first. With
-    `q` the radius here by that there, the chord leaves at `atan(sin(gap)/(q - cos(gap)))` from the ray to the origin
-    and the normal at `atan(rho'/rho)`. A common turn of all corners cancels, so that in balls a gap has its own width
-    and not that of its two ends. The first results are the angles, which hold where the last ones, `q - cos(gap)`, are
-    positive. `ValueError` for other tables.
+    The arguments are the parameters at the corners, and the gaps from each corner to the next one, at last from the
+    last to the first. Let `q` be the ratio of the radii at both ends of a chord. The chord makes the angle
+    `atan(sin(gap)/(q - cos(gap)))` with the ray to the origin, and the normal makes the angle `atan(rho'/rho)`. As gaps
+    are arguments of their own, their width in ball arithmetic does not grow with the uncertainty of both corners. The
+    first results are the angles, which are valid where the last results, `q - cos(gap)`, are positive. `ValueError` for
+    other tables.
 
     >>> from symbolic.tables import circle
     >>> polar_polygon_kernel(circle, 3).results[5:7]
@@ -225,7 +227,7 @@ def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
 
 
 class _Stage:
-    """Formulas for undetermined coordinates of a chord, with derivatives of coordinates replaced by named values."""
+    """Formulas in undetermined coordinates of a chord, where named values replace the derivatives of coordinates."""
 
     def __init__(self, shapes: tuple[Symbol, ...], meaning: dict[Expr, Expr]) -> None:
         self.shapes, self.meaning = shapes, meaning
@@ -278,8 +280,8 @@ def _named(*parameters: Symbol) -> str:
 def convexity(table: Table, box: Box | None = None, strictly: bool = False) -> SignFinding:
     """Is the table convex for every shape in `box` (by default its own range, ends included)?
 
-    `strictly` asks for negative curvature everywhere. A piecewise table is judged component by
-    component, each on its whole period, which is enough but not needed.
+    `strictly` asks for negative curvature everywhere. For a piecewise table each component is examined on its whole
+    period, which is sufficient but not necessary.
 
     >>> from symbolic.tables import egg
     >>> convexity(egg(3)).outcome.name, convexity(egg(3), strictly=True).outcome.name

@@ -1,17 +1,17 @@
 """The collision map, and its derivative by implicit differentiation. Paper: section 2.1.
 
-A particle leaves `q0 = (X0, Y0)(s0)` with exit angle `phi0`, counted from the inward normal towards
-the tangent; with `psi` the direction of the tangent its own direction is `psi0 + pi/2 - phi0`. It
-lands at `q1 = (X1, Y1)(s1)`, where the flight equation says that `q1 - q0` is parallel to that
-direction, with incidence angle `eta1 = psi1 - direction - pi/2`. The law is `phi1 = -eta1 + f(eta1)`.
+A particle leaves `q0 = (X0, Y0)(s0)` with exit angle `phi0`, counted from the inward normal towards the tangent; if
+`psi` is the direction of the tangent, the particle's direction is `psi0 + pi/2 - phi0`. It lands at
+`q1 = (X1, Y1)(s1)`, where the flight equation says that `q1 - q0` is parallel to that direction, with incidence angle
+`eta1 = psi1 - direction - pi/2`. The law is `phi1 = -eta1 + f(eta1)`.
 
 The module also derives how much area a bounce contracts: at a point, on average, and near the elastic case. Paper:
 sections 1 and 4.1.
 
-A flight keeps the area `ds d(sin(phi))`; the reflection turns `sin(eta)` into `sin(lam*eta)`. So in these coordinates
-a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends on the incidence angle alone. For any
-law `phi(eta)` it is `g = -phi'(eta)*cos(phi)/cos(eta)`, minus the derivative of `sin(phi)` by `sin(eta)`, and the same
-for a law that depends on the place as well.
+A flight preserves the area `ds d(sin(phi))`; the reflection changes `sin(eta)` into `-sin(lam*eta)`. So in these
+coordinates a bounce multiplies areas by `g(eta) = lam*cos(lam*eta)/cos(eta)`, which depends on the incidence angle
+alone. For any law `phi(eta)`, even one that depends on the place as well, the factor is minus the derivative of
+`sin(phi)` by `sin(eta)`, that is `g = -phi'(eta)*cos(phi)/cos(eta)`.
 
 - Not pointwise: `g` grows with `|eta|` from `lam` without bound, so for `0 < lam < 1` areas shrink where `|eta|` is
   below the root of `g = 1` and grow beyond it. As `lam` tends to 1 that root tends to the one of `eta*tan(eta) = 1`.
@@ -25,13 +25,12 @@ for a law that depends on the place as well.
   expands areas for `lam` just below 1. Over the whole of phase space that average is exactly 1: to first order
   in `1 - lam`, expansion and contraction cancel there.
 
-Last, a function of the phase point that never decreases, and the limit sets that it forces.
+The module ends with a function of the phase point that never decreases, and the limit sets that follow from it.
 
-In an ellipse `x**2/a**2 + y**2 = 1` let `J = g(q)*cos(phi)`, with `g(q) = |(x/a**2, y)|`. Along a
-flight the landing has `g(q1)*cos(eta1) = g(q0)*cos(phi0)` (Joachimsthal), and the reflection turns
-`cos(eta1)` into `cos(lam*eta1)`, which is not smaller, and larger unless `eta1 = 0`. So `J` grows
-at every bounce that is not along the normal; a limit point has `phi = 0` forever. Paper: section
-3.2, where this is stated from numerics.
+In an ellipse `x**2/a**2 + y**2 = 1` let `J = g(q)*cos(phi)`, with `g(q) = |(x/a**2, y)|`. Along a flight the landing
+has `g(q1)*cos(eta1) = g(q0)*cos(phi0)` (Joachimsthal), and the reflection turns `cos(eta1)` into `cos(lam*eta1)`, which
+is not smaller, and larger unless `eta1 = 0`. So `J` grows at every bounce that is not along the normal; a limit point
+has `phi = 0` forever. Paper: section 3.2, where this is stated from numerics.
 """
 
 from functools import cache
@@ -83,9 +82,9 @@ def exit_slope(f: Expr = UNIFORM) -> Expr:
 def implicit_derivative() -> Matrix:
     """`d(s1, -eta1)/d(s0, phi0)` for any two components, by differentiating the flight equation.
 
-    Rows: landing arc length and minus the incidence angle. The Frenet equations `X' = cos psi`,
-    `Y' = sin psi`, `psi' = -kappa` are all that is used of the boundary. None of them changes when the plane is
-    turned, so that the flight may run along the first axis.
+    Rows: landing arc length and minus the incidence angle. The Frenet equations `X' = cos psi`, `Y' = sin psi`,
+    `psi' = -kappa` are all that is used of the boundary. A rotation of the plane does not change them, so that the
+    flight may be assumed to run along the first axis.
     """
     landing = Symbol("landing", real=True)
     ends = [symbols(f"X{index} Y{index} psi{index}", real=True) for index in (0, 1)]
@@ -143,7 +142,7 @@ def derivative_matrix(
 
 @cache
 def determinant(slope: Expr = lam, drift: Expr = S.Zero) -> Expr:
-    """`det DT` in the coordinates `(s, phi)`: `lam * cos_phi0 / cos_eta1`, with the slope of any law for `lam`.
+    """`det DT` in the coordinates `(s, phi)`: `lam * cos_phi0 / cos_eta1`, where `lam` is the slope of the law.
 
     It exceeds 1 at grazing landings, however small `lam` is: contraction holds on average only. The drift of a law that
     depends on the place adds a multiple of the first row to the second, which does not change the determinant.
@@ -159,8 +158,8 @@ def slap_derivative(
 ) -> Expr:
     """`T0'(s)`, the derivative of the slap map (`lambda = 0`, exit along the normal). Paper: section 2.2.
 
-    Where a law forgets the incidence altogether, `phi = c(s)`, the map is one-dimensional too: `drift` is `c'`, and
-    `cos_phi0` the cosine of `c`.
+    If a law does not depend on the incidence angle at all, `phi = c(s)`, the map is one-dimensional too. Then `drift`
+    is `c'`, and `cos_phi0` is the cosine of `c`.
 
     >>> slap_derivative(K0=-1, t=2, cos_eta1=1)
     1
@@ -172,7 +171,7 @@ def slap_derivative(
 
 
 def birkhoff_matrix(matrix: Matrix, cos_phi0: Expr, cos_phi1: Expr) -> Matrix:
-    """A derivative matrix moved from `(s, phi)` to the Birkhoff coordinates `(s, sin phi)`.
+    """A derivative matrix converted from `(s, phi)` to the Birkhoff coordinates `(s, sin phi)`.
 
     >>> birkhoff_matrix(derivative_matrix(lam=1), cos_phi0, cos_eta1).det().simplify()
     1
@@ -253,8 +252,9 @@ def log_cosine_mean() -> Expr:
 def growth_defects() -> list[Expr]:
     """Three expressions that are 0, so that the growth rates of the Gram-Schmidt method add up to that of areas.
 
-    In turn: the square of the product of both normalising factors of a matrix, minus that of its determinant; its first
-    factor squared, minus the squared length of its first column; and the determinant of a product, minus the product.
+    In order: the square of the product of both normalising factors of a matrix, minus that of its determinant; its
+    first factor squared, minus the squared length of its first column; and the determinant of a product, minus the
+    product.
 
     >>> growth_defects()
     [0, 0, 0]
@@ -272,7 +272,7 @@ def growth_defects() -> list[Expr]:
 
 
 def image_share(phi: Expr = -lam * eta) -> Expr:
-    """The share of phase space that the image of `T` may fill: the mean of `g` over it, for a decreasing law.
+    """An upper bound of the share of phase space that the image of `T` fills: the mean of `g`, for a decreasing law.
 
     >>> image_share()
     sin(pi*lam/2)
@@ -292,7 +292,8 @@ def gradient(x: Expr, y: Expr) -> Matrix:
 
 
 def joachimsthal_defect() -> Expr:
-    """The scalar product of `gradient(q0) + gradient(q1)` and `q1 - q0` on the ellipse: 0, so a flight conserves `J`.
+    """The scalar product of `gradient(q0) + gradient(q1)` and `q1 - q0` on the ellipse; it is 0, so a flight conserves
+    `J`.
 
     >>> from symbolic.expressions.signs import vanishes
     >>> vanishes(joachimsthal_defect())

@@ -1,18 +1,17 @@
-"""The flight equation with its known root divided out, exactly.
+"""The flight equation, divided exactly by its known root.
 
-Let the boundary be `z(theta) = sum_k C_k cos(k*theta) + S_k sin(k*theta)` with vectors `C_k`, `S_k`,
-and let a particle fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two
-parameters, `B = m - theta0` and `E = -i*v`, which is `exp(i*m)` for a chord of the circle,
+Let the boundary be `z(theta) = sum_k C_k cos(k*theta) + S_k sin(k*theta)` with vectors `C_k`, `S_k`, and let a particle
+fly along the unit vector `v` from `theta0` to `theta1`. With `m` the mean of the two parameters, `B = m - theta0` and
+`E = -i*v`, which is `exp(i*m)` for a chord of the circle,
 
     Im(conj(v)*(z1 - z0)) = 2*sin(B) * sum_k U_{k-1}(cos B) * Im(conj(M_k) * exp(i*k*m)),
 
-where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)`
-with `exp(i*m) = E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`,
-`n` the highest harmonic: 1 for circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg.
-Paper: the flights of section 2.
+where `M_k = C_k.E + i*S_k.E`. The factor `sin(B)` is the known root. The rest, in `T = tan(delta)` with
+`exp(i*m) = E*exp(i*delta)`, is `cos(delta)**(2*n-1)` times a real polynomial of degree `2*n - 1`, `n` the highest
+harmonic: 1 for circle and ellipse, 2 for the cardioid, `K + 1` for the K-egg. Paper: the flights of section 2.
 
-The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text
-that SymPy proves is the text that the numeric kernels run. Complex numbers are pairs.
+The functions on `Harmonics` use `+`, `-` and `*` only and work on any kind of number, so the text that SymPy proves is
+the text that the numeric kernels run. Complex numbers are pairs.
 
 The module ends with the pinball map of the unit circle. Paper: section 3.1.
 """
@@ -54,7 +53,7 @@ def harmonics(component: Component) -> dict[int, tuple[Complex, Complex]] | None
 
 
 def _tidy(value: Expr) -> Expr:
-    """A coefficient, simplified; expanding is enough for a complex number with rational parts."""
+    """A coefficient, simplified; for a complex number with rational parts it is only expanded."""
     fraction = not value.has(Pow) and all(part.is_Rational or part is I for part in value.atoms())
     return expand(value) if fraction else simplify(value)
 
@@ -120,8 +119,8 @@ def support(h: Harmonics, k: int, E: Complex) -> Complex:
 def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Complex]:
     """`C_k` and `S_k` in the frame of the flight, where `E = 1`, without the parts that do not change its chord.
 
-    `exp(i*k*m)*conj(M_k)` is a number times `E**(k + 1)` and one times `E**(k - 1)`. With `|E| = 1` used here, a
-    circle's part of a table adds no rounding to the chord polynomial: its products `E*conj(E)` are one.
+    `exp(i*k*m)*conj(M_k)` is the sum of multiples of `E**(k + 1)` and `E**(k - 1)`. Here `|E| = 1` is used, so that the
+    products `E*conj(E)` are exactly one, and the circular part of a table adds no rounding to the chord polynomial.
     """
     half = Fraction(1, 2)
     up = powers(E, k + 1)
@@ -132,7 +131,7 @@ def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Com
 
 
 def oscillates(expression: Expr) -> bool:
-    """Does an expression contain a wave of more than `HIGH` periods in a turn? Then it is not tested for a conic.
+    """Does an expression contain a wave of more than `HIGH` periods in a turn? Then `about_focus` need not be tried.
 
     >>> oscillates(1 + cos(65 * theta)), oscillates(cos(theta) ** 3)
     (True, False)
@@ -155,7 +154,7 @@ def about_focus(rho: Expr) -> Focal | None:
     """The ellipse with a focus in the origin and the radius `rho(theta)`; None for other curves, and for a circle.
 
     With `left = p*p - size*size` the half axes are `p/left` and `1/sqrt(left)`, and the centre is at `-size/left` along
-    the long one. None as well where the direction of that axis depends on a parameter.
+    the long axis. The result is None, too, if the direction of this axis depends on a parameter.
 
     >>> about_focus(1 / (5 + 3 * cos(theta))).harmonics
     {0: ((-3/16, 0), (0, 0)), 1: ((5/16, 0), (0, 1/4))}
@@ -186,11 +185,12 @@ def about_focus(rho: Expr) -> Focal | None:
 
 
 def about_far_focus(component: Component, box: Box) -> Component:
-    """The component, if an arc of a conic about its focus in the origin, rewritten without loss of digits at a far tip.
+    """The component, where an arc of a conic about a focus in the origin is rewritten to keep its digits at a far tip.
 
-    There `1/rho = p + size*cos(theta - w)` is a small difference. With `c` the cosine of half of `theta - w` it is
-    `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse; all is written in cosine and sine of
-    `theta/2`. The component is returned unchanged where `size` has no proved sign on the box or is not above `p/2`.
+    At a far tip `1/rho = p + size*cos(theta - w)` is a small difference. In terms of the cosine `c` of half of
+    `theta - w` it is `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse. The new form uses cosine
+    and sine of `theta/2` only. The component is returned unchanged where `size` has no proved sign on the box or is not
+    above `p/2`.
 
     >>> rho = 1 / (5 + 4 * cos(theta))
     >>> about_far_focus(Component("arc", (rho * cos(theta), rho * sin(theta)), S.Zero, pi), {}).point[1]
@@ -214,9 +214,10 @@ def about_far_focus(component: Component, box: Box) -> Component:
 def focal_arc(component: Component, box: Box) -> list[Expr] | None:
     """The 17 numbers of an arc of an ellipse that is given by its radius about a focus in the origin; None for others.
 
-    The point is `(p - e)*A + q*B`: `(p, q)` are cosine and sine of the eccentric anomaly, `e` is the eccentricity.
-    Given are focus; `A`; `B`; first corner; `A x B`; `1 - e`; cosine and sine of the arc's middle; sine and cosine of
-    half its angle; direction of `A`; `sqrt((1 + e)/(1 - e))`, the ratio of the tangents of half of both angles.
+    The point is `(p - e)*A + q*B`: `(p, q)` are cosine and sine of the eccentric anomaly, `e` is the eccentricity. The
+    numbers are the focus; `A`; `B`; the first corner; `A x B`; `1 - e`; cosine and sine of the arc's middle; sine and
+    cosine of half its angle; the direction of `A`; and `sqrt((1 + e)/(1 - e))`, the ratio of the tangents of half the
+    polar angle and half the eccentric anomaly.
 
     >>> rho = 1 / (5 + 3 * cos(theta))
     >>> focal_arc(Component("arc", (rho * cos(theta), rho * sin(theta)), -pi / 2, pi / 2), {})[2:6]

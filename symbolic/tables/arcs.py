@@ -1,7 +1,7 @@
-"""Arcs of a boundary, enclosed between integers: their points, their tangents, and whether two of them are apart.
+"""Arcs of a boundary, enclosed between integers: their points, their tangents, and whether two arcs are disjoint.
 
-An arc is given by bounds of its end points and of its velocity. These bound its points in any direction; where the
-velocity keeps to one side, the end points alone do. All numbers are integers, in units of `2**-BITS`.
+An arc is given by bounds of its end points and of its velocity. These give bounds of its points in any direction; where
+the velocity keeps to one side, the end points alone suffice. All numbers are integers, in units of `2**-BITS`.
 """
 
 from bisect import bisect_right
@@ -48,7 +48,7 @@ def products(of: Callable[[Vector, Vector], int], v: Box, w: Box) -> Bounds:
 
 
 def _along(v: Vector, box: Box) -> Bounds:
-    """Bounds of the scalar product of `v` with the vectors of a box."""
+    """Bounds of the scalar product of `v` with all vectors of a box."""
     (a, b), (c, d) = box
     x, y = v
     low, high = (x * a, x * b) if x >= 0 else (x * b, x * a)
@@ -61,14 +61,17 @@ def _negative(box: Box) -> Box:
 
 
 def _centre(box: Box) -> Vector:
-    """A vector of at most `FINE` bits in the direction of the middle of a box."""
+    """The middle of a box as a vector of at most `FINE` bits; only its direction matters."""
     x, y = sum(box[0]), sum(box[1])
     shift = max(0, max(abs(x), abs(y)).bit_length() - FINE)
     return x >> shift, y >> shift
 
 
 def in_half_plane(*boxes: Box) -> bool:
-    """Do all vectors of the boxes lie in one open half plane? Then one corner has the others to its left or along."""
+    """Do all vectors of the boxes lie in one open half plane?
+
+    They do if, for some vertex of a box, all other vertices lie to its left or in the same direction.
+    """
     if any(a <= 0 <= b and c <= 0 <= d for (a, b), (c, d) in boxes):
         return False
     vectors = {v for box in boxes for v in product(*box)}
@@ -166,7 +169,7 @@ def _circle(angle: int) -> tuple[Vector, int]:
 
 
 class Formulas:
-    """Bounds of a component's points and their derivatives, scaled on each axis; their cost is taken from `budget`."""
+    """Bounds of a component's points and derivatives, scaled on each axis; the cost is subtracted from `budget`."""
 
     def __init__(
         self, component: Component, factors: tuple[Expr, Expr], letters: tuple[Symbol, ...], budget: list[int]
@@ -188,7 +191,7 @@ class Formulas:
         return self.expressions[order]
 
     def __call__(self, order: int, over: Bounds, letters: tuple[Bounds, ...]) -> Box:
-        """Bounds of the derivatives of this order over an interval of `theta`, for letters within bounds."""
+        """Bounds of the derivatives of this order, for `theta` and the parameters `letters` in these intervals."""
         if self._sum:
             if order not in self._sums:
                 self._sums[order] = FourierSum(self._sum, order)
@@ -202,7 +205,7 @@ class Formulas:
         return x, y
 
     def order(self, at: Expr, letters: tuple[Bounds, ...]) -> int:
-        """The number of derivatives, from the first on, that vanish at a point for all values of the letters."""
+        """The number of derivatives, from the first on, that vanish at a point for all parameters within `letters`."""
         (here,) = Enclosures([at], *self.letters)(*letters)
         for order in range(1, FLATTEST + 2):
             (a, b), (c, d) = self(order, here, letters)
@@ -215,9 +218,9 @@ class Formulas:
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a component, between neighbours of its ends and marked points, for values of the letters within bounds.
+    """A part of a component between two neighbouring ends or marked points, for parameters within the bounds `letters`.
 
-    `stops` counts the derivatives that vanish at the start and at the end; at a cusp the curve turns back.
+    `stops` has the numbers of derivatives that vanish at the start and at the end; at a cusp the curve turns back.
     """
 
     formulas: Formulas
@@ -228,11 +231,11 @@ class Piece:
     parameters: tuple[Bounds, ...] = ()
 
     def at(self, letters: tuple[Bounds, ...]) -> "Piece":
-        """The piece for these values of the letters."""
+        """The same piece for other bounds of the parameters."""
         return replace(self, letters=letters, parameters=Enclosures(self.ends, *self.formulas.letters)(*letters))
 
     def parameter(self, share: int, depth: int) -> Bounds:
-        """Bounds of `theta` at the fraction `share / 2**depth` of the piece."""
+        """Bounds of `theta` at the fraction `share / 2**depth` of the piece's range."""
         low, high = ((((1 << depth) - share) * a + share * b) for a, b in zip(*self.parameters, strict=True))
         return low >> depth, -(-high >> depth)
 
@@ -240,7 +243,7 @@ class Piece:
         return self.formulas(order, over, self.letters)
 
     def leaves(self, end: int) -> tuple[Expr, ...]:
-        """The exact vector along which the piece leaves its start (`end` 0), or its end (1) when run backwards."""
+        """The exact direction in which the piece leaves its start (`end` 0), or, run backwards, its end (`end` 1)."""
         order = self.stops[end] + 1
         sign = -1 if end and order % 2 else 1
         return tuple(sign * each.subs(theta, self.ends[end]) for each in self.formulas.derivative(order))
@@ -289,7 +292,8 @@ class Arc:
     def directions(self) -> Box:
         """A box of vectors such that every velocity on the arc is a nonnegative multiple of one of them.
 
-        If derivatives vanish at an end, velocities are means of the next derivative, times powers of the distance.
+        If derivatives vanish at an end, the velocity is a mean of the first nonvanishing one, times a power of the
+        distance.
         """
         before, after = self.piece.stops[0] * self.first, self.piece.stops[1] * self.last
         if not (before or after):
@@ -334,7 +338,7 @@ class Arc:
 
 
 def separated(a: Arc, b: Arc) -> bool:
-    """Does a line separate two arcs, one parallel to an axis or to one of the arcs?"""
+    """Are two arcs separated by a line that is parallel to an axis or to one of the arcs?"""
     if disjoint(a.box, b.box):
         return True
     for x, y in (a.direction, b.direction):
@@ -345,17 +349,21 @@ def separated(a: Arc, b: Arc) -> bool:
 
 
 def turn(a: Arc, b: Arc) -> list[Vector] | None:
-    """The directions between those of two neighbouring arcs: one at a cusp, else none; None if they may meet again."""
+    """The directions that the curve turns through between two neighbouring arcs; None if they may meet again.
+
+    The list is empty unless there is a cusp in between, at which it has one direction.
+    """
     if a.piece.cusp and a.last and b.first:
         return _turn_back(a, b)
     return [] if in_half_plane(a.directions, b.directions) else None
 
 
 def _turn_back(a: Arc, b: Arc) -> list[Vector] | None:
-    """`turn` at a cusp: the direction of the side to which it turns back, if one arc is proved left of the other.
+    """The result of `turn` at a cusp: the side to which the curve turns back, if one arc is proved to be left of the
+    other.
 
-    Both arcs leave the cusp along the common tangent. As functions of the distance along it their slopes differ in
-    sign, or else their second derivatives differ everywhere.
+    Both arcs leave the cusp along the common tangent. Consider their heights over this tangent as functions of the
+    distance along it. Then either their slopes differ in sign, or their second derivatives differ everywhere.
     """
     along, (m, n) = b.piece.leaving(0), (a.piece.stops[1], b.piece.stops[0])
     if products(dot, along, b.directions)[0] <= 0 or products(dot, along, a.directions)[1] >= 0:
@@ -378,7 +386,7 @@ def _sign(value: int) -> int:
 
 
 def _second_derivative(along: Box, arc: Arc) -> tuple[Fraction, Fraction]:
-    """Bounds, up to a factor, of the second derivative of an arc's height over the line `along`, by distance on it."""
+    """Bounds of the second derivative of an arc's height over the line `along`, up to a factor."""
     turning = products(cross, arc.velocity, arc.piece.derivative(2, arc.over))
     found = [Fraction(x, y**3) for x, y in product(turning, products(dot, along, arc.velocity))]
     return min(found), max(found)

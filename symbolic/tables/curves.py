@@ -41,14 +41,14 @@ LONG = 200  # operations, names and numbers: what is longer is not multiplied ou
 
 
 class _TooLongError(Exception):
-    """More products of coefficients than can be made in about a second."""
+    """The error that a sum needs more products of coefficients than can be made in about a second."""
 
 
 @lru_cache(maxsize=256)
 def waves(expression: Expr) -> Waves | None:
     """Coefficients of `exp(i*k*theta)` in a trigonometric polynomial with rational numbers, by `k`; None for others.
 
-    None as well where more than `PRODUCTS` products would be needed.
+    The result is None, too, if more than `PRODUCTS` products of coefficients would be needed.
 
     >>> waves(2 * cos(theta) ** 2)
     {-2: (Fraction(1, 2), Fraction(0, 1)), 0: (Fraction(1, 1), Fraction(0, 1)), 2: (Fraction(1, 2), Fraction(0, 1))}
@@ -63,7 +63,7 @@ def waves(expression: Expr) -> Waves | None:
 
 
 def trigonometric(expression: Expr) -> Expr:
-    """A trigonometric polynomial as a sum of sines and cosines of multiples of `theta`; others are expanded only.
+    """A trigonometric polynomial as a sum of sines and cosines of multiples of `theta`; others are only expanded.
 
     >>> trigonometric(sin(theta) ** 2 + 3 * cos(theta) ** 2)
     cos(2*theta) + 2
@@ -77,7 +77,7 @@ def trigonometric(expression: Expr) -> Expr:
 
 @lru_cache(maxsize=256)
 def _summed(expression: Expr) -> Expr | None:
-    """`trigonometric` for a real polynomial whose coefficients may contain letters; None for other expressions."""
+    """`trigonometric` for a real polynomial whose coefficients may contain symbols; None for other expressions."""
     letters = sorted(expression.free_symbols - {theta}, key=str)
     own = ring(letters or [Dummy("x")], QQ)[0]
     try:
@@ -179,7 +179,7 @@ def highest(found: Waves) -> int:
 
 
 def is_periodic(expression: Expr) -> bool:
-    """Does `theta` stand only within sines and cosines of whole multiples, so that a whole turn changes nothing?
+    """Does `theta` occur only in sines and cosines of its whole multiples, so that the period is `2*pi`?
 
     >>> is_periodic(cos(cos(3 * theta)) / (2 + sin(theta))), is_periodic(theta), is_periodic(cos(theta / 2))
     (True, False, False)
@@ -203,7 +203,7 @@ PLACES = Rational(1, 3), Rational(13, 11)  # values of theta that `varies` compa
 def varies(value: Expr) -> bool:
     """True if `value` is proved to differ at two values of `theta`, so that it is not constant; nothing is expanded.
 
-    False proves nothing: letters are given the value 1/20, where `value` may be undefined.
+    False proves nothing: other symbols are given the value 1/20, where `value` may be undefined.
 
     >>> varies(cos(theta)), varies(cos(theta) ** 2 + sin(theta) ** 2)
     (True, False)
@@ -218,7 +218,7 @@ def varies(value: Expr) -> bool:
 
 
 def alone(expression: Expr, x: Symbol = theta) -> bool:
-    """Has the expression no letter but `x`?"""
+    """Does the expression contain no symbol but `x`?"""
     return bool(S(expression).free_symbols <= {x})
 
 
@@ -226,7 +226,7 @@ def alone(expression: Expr, x: Symbol = theta) -> bool:
 def curves(table: Table) -> tuple[tuple[Component, ...], ...]:
     """The closed curves of a boundary, each as its components in order: the outer one first, then the holes.
 
-    A curve is complete where it comes back to its first point; `ValueError` for a chain that does not come back.
+    A curve ends where it returns to its first point; `ValueError` for a chain that does not return.
 
     >>> from symbolic.tables import cuspless
     >>> [[component.name for component in curve] for curve in curves(cuspless)]

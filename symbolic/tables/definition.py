@@ -1,7 +1,7 @@
 """Scenes as plain data: the boundary by a name, by formulas or by points, and every number exact.
 
-Formulas and numbers are text here; `symbolic.tables.formula` parses them and executes nothing. A scene with one of the
-paper's tables and plain numbers is read without SymPy.
+Formulas and numbers are text here; `symbolic.tables.formula` parses them and executes nothing. A scene that has one of
+the paper's tables and plain numbers is read without SymPy.
 """
 
 import json
@@ -57,7 +57,8 @@ def like(name: str, known: Iterable[str]) -> str:
 def exact(label: str, given: Any) -> "Fraction | Expr":
     """An exact real number from text, an integer, a fraction or an expression; a `Fraction` where SymPy is not needed.
 
-    A decimal means the decimal it shows. A float is refused: it is not what it shows. Errors begin with `label`.
+    A decimal means the decimal it shows. A float is refused, since it is not exactly the decimal that it shows. Errors
+    begin with `label`.
 
     >>> exact("alpha", "0.08"), exact("a", "sqrt(2)")
     (Fraction(2, 25), sqrt(2))
@@ -123,7 +124,7 @@ def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr
 
 
 def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The entries of a scene for a table of the paper, and the values of its shape parameters (none yet)."""
+    """The entries of a scene for a table of the paper, and its shape parameters' values, which are still empty."""
     if name not in PAPER:
         raise ValueError(f"no table is called {name!r}; the paper's are {', '.join(PAPER)}")
     if isinstance(K, bool) or not isinstance(K, int) or K < 2:
@@ -172,7 +173,7 @@ def _fit_entries(table: "Table") -> dict[str, Any]:
 
 
 def _fitted(said: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries of `_fit_entries`, read from a document that gives the boundary by points."""
+    """The entries of a fitted table, as in `_fit_entries`, from a document that gives the boundary by points."""
     rows = said["points"]
     if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == 2 for row in rows):
         raise ValueError("scene: points must be a list of pairs of numbers, as in points = [['1', '0'], ['0', '0.5']]")

@@ -7,8 +7,8 @@
     atom    = number | name | function "(" sum ")" | "(" sum ")"
 
 Nothing typed is ever executed, and a decimal is the decimal it shows: `0.08` is 2/25. The size of a formula is bounded
-(`flaw`), so that everything done with it stays cheap: SymPy's numerical tests take twice as long for each level of an
-irrational constant, and its roots factor the number under them; a short formula can otherwise ask for a day of work.
+(`flaw`), since otherwise a short formula could take a day: SymPy's numerical tests take twice as long for each level of
+an irrational constant, and its roots factor the number under the root.
 """
 
 import re
@@ -53,7 +53,7 @@ NAMES: Mapping[str, Symbol] = MappingProxyType({theta.name: theta})
 
 
 def _tan(x: Expr) -> Expr:
-    """`tan(x)` in the vocabulary: SymPy turns `tan(x + pi/2)` into a cotangent."""
+    """`tan(x)` in the vocabulary; SymPy's own `tan` would turn `tan(x + pi/2)` into a cotangent."""
     value = tan(x)
     return value if value.func is tan or value.is_number else sin(x) / cos(x)
 
@@ -120,7 +120,7 @@ class _Reader:
         return value
 
     def _split(self, text: str) -> list[_Token]:
-        """The tokens, last one first, so that the next one is popped off the end."""
+        """The tokens in reverse order, so that the next one is popped off the end."""
         found, place = [], 0
         while place < len(text):
             match = TOKEN.match(text, place)

@@ -1,11 +1,11 @@
 """Tables by name, each defined once: those of the paper, polygons, stadium, mushroom, tables with holes.
 
-The means to define one's own are here too: `polar`, `parametric`, `piecewise`. A definition is the boundary as the
-paper writes it; curvature, arc length, stability matrices, thresholds and the code of the numeric maps are all
-derived from it.
+The functions that define a table of one's own are here too: `polar`, `parametric`, `piecewise`. A definition is the
+boundary as the paper writes it; curvature, arc length, stability matrices, thresholds and the code of the numeric maps
+are all derived from it.
 
-Every table of straight sides and arcs is exact, closed and counterclockwise by construction; a hole runs clockwise,
-so that the inside of the table lies to the left of every component.
+Every table of straight sides and arcs is exact, closed and counterclockwise by construction; a hole runs clockwise, so
+that the inside of the table lies to the left of every component.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -40,8 +40,9 @@ def polar(
 ) -> Table:
     """The table bounded by `rho(theta)`, `-pi <= theta < pi`, in polar coordinates.
 
-    Text is parsed by `symbolic.tables.formula`, which executes nothing. Each letter of the formula is a keyword with
-    its range, `LOW:HIGH`. The boundary is proved simple for all values in it; `Table.at` gives the letter a value.
+    Text is parsed by `symbolic.tables.formula`, which executes nothing. Each parameter of the formula is a keyword (one
+    of `letters`) with its range, `LOW:HIGH`. The boundary is proved simple for all values in the range; `Table.at`
+    gives the parameter a value.
 
     >>> polar("1 + b*cos(2*theta)", b="0:1/5").shapes[0].range
     Interval(0, 1/5)
@@ -68,7 +69,7 @@ def parametric(
     undefined: Iterable[Mark] = (),
     **letters: str,
 ) -> Table:
-    """The table bounded by the closed curve `(x(theta), y(theta))`, `-pi <= theta < pi`; letters as in `polar`.
+    """The table bounded by the closed curve `(x(theta), y(theta))`, `-pi <= theta < pi`; `letters` as in `polar`.
 
     >>> parametric(3 * cos(theta), 2 * sin(theta)).components[0].at(pi / 2)
     (0, 2)
@@ -80,7 +81,7 @@ def parametric(
 
 
 def support(h: Expr | str, name: str = "support", **letters: str) -> Table:
-    """The table that the lines `x*cos(theta) + y*sin(theta) = h(theta)` touch; letters as in `polar`.
+    """The table that the lines `x*cos(theta) + y*sin(theta) = h(theta)` touch; `letters` as in `polar`.
 
     It is convex where `h + h'' >= 0`; elsewhere the curve turns back, and is refused.
 
@@ -95,13 +96,13 @@ def support(h: Expr | str, name: str = "support", **letters: str) -> Table:
 
 
 def supported(h: Expr) -> tuple[Expr, Expr]:
-    """The point where the line with the support function `h` touches: `h*N + h'*T`, `N` normal, `T` tangent."""
+    """The point where a line of the support function `h` touches: `h*N + h'*T`, with unit normal `N` and tangent."""
     slope = h.diff(theta)
     return h * cos(theta) - slope * sin(theta), h * sin(theta) + slope * cos(theta)
 
 
 def _ranges(name: str, letters: Mapping[str, str]) -> list[Shape]:
-    """Shape parameters with their ranges, from letters with texts `LOW:HIGH`."""
+    """The shape parameters with their ranges, from keywords whose values are texts `LOW:HIGH`."""
     found = []
     for letter, text in letters.items():
         low, colon, high = str(text).partition(":")
@@ -115,7 +116,7 @@ def _ranges(name: str, letters: Mapping[str, str]) -> list[Shape]:
 
 
 def _over_ranges(table: Table) -> Table:
-    """`table`, if it is proved to be a table for all values of its letters in their ranges; otherwise `ValueError`."""
+    """`table`, if it is proved to be a table for all parameters in their ranges; otherwise raises `ValueError`."""
     if not radius_over(table):
         prove_table(table)
     return table
@@ -373,7 +374,7 @@ def diamond() -> Table:
 
 
 def round_arc(name: str, centre: tuple[Number, Number], radius: Number, start: Number, end: Number) -> Component:
-    """A focusing arc of a circle, run through counterclockwise.
+    """A focusing arc of a circle, counterclockwise.
 
     >>> round_arc("cap", (0, 1), 2, 0, pi).at(S.Zero)
     (2, 1)
@@ -384,7 +385,7 @@ def round_arc(name: str, centre: tuple[Number, Number], radius: Number, start: N
 
 
 def disc(name: str, centre: tuple[Number, Number], radius: Number) -> Component:
-    """A circular hole: a whole circle, run through clockwise.
+    """A circular hole: a whole circle, clockwise.
 
     >>> disc("pillar", (1, 0), "1/4").at(pi / 2)
     (1, -1/4)
@@ -403,7 +404,7 @@ def _sides(corners: Sequence[tuple[Number, Number]]) -> list[Component]:
 
 
 def _within(label: str, given: Length) -> tuple[Expr, Expr, Expr]:
-    """A length, or its symbol if it is free, and both ends of its range, which are the number itself if it is one."""
+    """A length and both ends of its range; if it is a number and not a free parameter, all three are this number."""
     if isinstance(given, Shape):
         return given.symbol, given.range.start, given.range.end
     value = exact_number(label, given)
@@ -419,7 +420,7 @@ def positive(label: str, given: Length) -> Expr:
 
 
 def free(*lengths: Length) -> list[Shape]:
-    """The free ones among these lengths, as shape parameters."""
+    """Those of the lengths that are free, as shape parameters."""
     return [length for length in lengths if isinstance(length, Shape)]
 
 

@@ -1,14 +1,15 @@
 """The geometry of a component, derived from its parametrisation. Paper: section 2 and appendix.
 
-Signs: the boundary runs counterclockwise, the normal points inwards, and the curvature of a
-focusing component is negative (the paper's convention; textbooks use the opposite sign).
+Signs: the boundary runs counterclockwise, the normal points inwards, and the curvature of a focusing component is
+negative (the paper's convention; textbooks use the opposite sign).
 
-Arc length: a closed form where the speed allows one, else the exact integral. Where `speed**2 = p + q*cos(n*theta)`
-it is an incomplete elliptic integral of the second kind; at parameter 1 (the cardioid) it degenerates to a sine.
+Arc length has a closed form where the speed allows one, and is the exact integral elsewhere. If
+`speed**2 = p + q*cos(n*theta)`, it is an incomplete elliptic integral of the second kind; at parameter 1 (the cardioid)
+it degenerates to a sine.
 
 Symmetries: rotations and reflections about the origin that are proved to map the boundary to itself form a cyclic or a
-dihedral group. One that takes `theta` to `theta + shift` keeps exit angles, one that takes it to `-theta + shift`
-negates them, and both take orbits of the pinball map to orbits.
+dihedral group. A rotation takes `theta` to `theta + shift` and keeps exit angles. A reflection takes `theta` to
+`-theta + shift` and negates them. Both take orbits of the pinball map to orbits.
 """
 
 from dataclasses import dataclass
@@ -160,7 +161,7 @@ def _elliptic(p: Expr, q: Expr, n: int) -> Expr:
 def positions(table: Table) -> tuple[Expr, ...]:
     """The paper's arc length `s(theta)` on each component, counted counterclockwise from the table's `origin`.
 
-    It is not reduced modulo `perimeter(table)`, which the paper does where it draws `s` symmetrically about 0.
+    It is not reduced modulo `perimeter(table)`; the paper reduces it where it draws `s` symmetrically about 0.
 
     >>> from symbolic.tables import cuspless
     >>> positions(cuspless)
@@ -239,9 +240,9 @@ class Symmetry:
 def group(table: Table) -> tuple[Symmetry, ...]:
     """The proved symmetries of a table, the identity first.
 
-    Complete for the paper's tables except the circle, for which only the symmetries of the square are listed: a
-    symmetry keeps the curvature, so it permutes the vertices of an ellipse (`a > 1`) or an egg
-    (`alpha > 0`), the cusp, or the wall.
+    The list is complete for the paper's tables, because a symmetry preserves curvature: it permutes the vertices of an
+    ellipse (`a > 1`) or an egg (`alpha > 0`), and it fixes the cusp or the wall. The circle is the exception; for it
+    only the symmetries of the square are listed.
 
     >>> from symbolic.tables import cardioid, cuspless, egg, ellipse
     >>> [len(group(table)) for table in (ellipse.at(a=2), cardioid, cuspless, egg(3).at(alpha="0.08"))]
@@ -300,7 +301,7 @@ def _turned(c: Expr, half_turns: Expr, sign: int) -> bool:
 
 
 def _of_many(table: Table) -> tuple[list[Symmetry], list[Symmetry]]:
-    """The rotations (identity, perhaps half turn) and the reflections in coordinate axes that keep the boundary."""
+    """Symmetries of a boundary of several components: identity, half turn, and reflections in coordinate axes."""
     parts = table.components
     same = Symmetry("identity", 1, S.Zero, tuple(range(len(parts))), (S.Zero,) * len(parts))
     places = [
@@ -382,10 +383,11 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
 
 
 def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
-    """`(p, T, value)`: a polynomial `p` in `T = tan(x/2)` with the sign of a trigonometric one, and that at `x = pi`.
+    """A polynomial `p` in `T = tan(x/2)` with the sign of a trigonometric polynomial; `T`; and the latter's value at
+    `x = pi`.
 
-    None where the expression is no such polynomial, or has harmonics above HIGHEST. Here `x = g*theta`, where `g` is
-    the common divisor of the frequencies.
+    Here `x = g*theta`, where `g` is the common divisor of the frequencies. None if the expression is not a
+    trigonometric polynomial, or has harmonics above `HIGHEST`.
 
     >>> p, T, value = in_half_tangent(2 + cos(3 * theta))
     >>> p.subs(T, 0), value

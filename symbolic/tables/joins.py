@@ -1,8 +1,8 @@
-"""How the components of a boundary join: which one begins where another ends, and what agrees there, exactly.
+"""How the components of a boundary join: which one begins where another ends, and which derivatives agree there.
 
-At a join the one-sided derivatives of the two components are compared, as fractions where both are polynomials with
-rational numbers. Free shape parameters stay symbols: derivatives agree only if they do so identically in them, and a
-join that the ranges of the parameters do not decide is called a corner.
+At a join the one-sided derivatives of the two components are compared exactly, as fractions if both are polynomials
+with rational numbers. Free shape parameters stay symbols: derivatives agree only if they do so for all values of these.
+A join whose kind depends on the parameters, within their ranges, is called a corner.
 """
 
 from collections.abc import Sequence
@@ -106,7 +106,8 @@ class _Ends:
     def order(self) -> int:
         """Order up to which derivatives must agree for two components to be one curve; 0 if there is no such order.
 
-        3 for polynomials of degree three, 2 for arcs of ellipses whose parameter is the angle at the centre.
+        The order is 3 for polynomials of degree three, and 2 for arcs of ellipses whose parameter is the angle at the
+        centre.
         """
         if self.rational is not None:
             return ORDERS if max(map(len, self.rational)) <= ORDERS + 1 else 0
@@ -163,7 +164,8 @@ def _contact(before: _Ends, after: _Ends, along: Any) -> JoinKind:
 def _direction(ends: _Ends, last: bool) -> tuple[Vector | None, int, bool]:
     """The first nonzero derivative at an end, the sign that makes it the tangent, and whether it is the velocity.
 
-    Where the velocity vanishes, a curve arrives along minus its second derivative, and leaves along plus that.
+    Where the velocity vanishes, a curve arrives along minus its second derivative, and leaves along plus its second
+    derivative.
     """
     for n in range(1, ORDERS + 1):
         vector = ends.derivatives(last, n)[-1]
@@ -173,7 +175,7 @@ def _direction(ends: _Ends, last: bool) -> tuple[Vector | None, int, bool]:
 
 
 def _continued(before: Component, after: Component) -> bool:
-    """Does the second component have the formula of the first, and go on at the parameter where the first ends?"""
+    """Does the second component have the formula of the first, and start at the parameter where the first ends?"""
     turns = (before.end - after.start) / (2 * pi)
     return before.point == after.point and (turns == 0 or (turns.is_Integer and all(map(is_periodic, before.point))))
 
@@ -195,7 +197,7 @@ def _is_zero(value: Any) -> bool:
 
 
 def _is_positive(value: Any, box: Box) -> bool:
-    """Is a number positive, or an expression proved to be positive for all values of its letters in `box`?"""
+    """Is a number positive, or is an expression proved to be positive for all parameters in `box`?"""
     if isinstance(value, Fraction):
         return value > 0
     value = expand(value)

@@ -3,8 +3,8 @@
 The paper allows `phi = -eta + f(eta)` with any `f` in C^2, and studies `phi = -lam*eta`. Here a law is any formula in
 `eta`, `lam`, the boundary parameter `theta` or the arc length `s` of the point of reflection, and parameters of the
 user's own. It must map the open half circle into itself, `|phi| < pi/2` for `|eta| < pi/2`. This is proved in integer
-arithmetic over all angles and over the ranges of all other letters; next to an end where `|phi|` tends to `pi/2`, by
-the first derivative that does not vanish there.
+arithmetic over all angles and over the ranges of all other variables; near an end where `|phi|` tends to `pi/2`, by the
+first derivative that does not vanish at this end.
 
 Arc length is the paper's, counted from the table's origin. Where it is a closed formula in `theta` on every component,
 `Law.on` substitutes it; on a closed curve without such a formula `s` stays, and is integrated where a number is needed.
@@ -99,7 +99,7 @@ class Law:
 
     @property
     def slope(self) -> "Expr":
-        """`-d phi/d eta`, the factor of small differences of angle in a reflection: `lam` for the paper's law."""
+        """`-d phi/d eta`, the factor of small differences of angle in a reflection; it is `lam` for the paper's law."""
         from symbolic.tables.table import eta
 
         return -self.phi.diff(eta)
@@ -206,7 +206,7 @@ class Law:
         return conjunction(*found)
 
     def check(self, lam: Range = (0, 1), theta: Range | None = None, s: Range | None = None, **own: Range) -> None:
-        """Raises `ValueError` if `proof` finds an angle at which the law leads out of the table, or no proof."""
+        """Raises `ValueError` if `proof` finds an angle at which the law leads out of the table, or finds no proof."""
         if self.uniform:
             return
         finding = self.proof(lam, theta, s, **own)
@@ -260,9 +260,10 @@ def _exit_angle(formula: str, numbers: tuple[tuple[str, str], ...], along: "Expr
 
 @cache
 def _without_pole(phi: "Expr") -> "Expr":
-    """`atan(u*tan(eta))` as `eta - atan((1 - u)*sin(eta)*cos(eta)/(cos(eta)**2 + u*sin(eta)**2))`, wherever `u >= 0`.
+    """Rewrites `atan(u*tan(eta))`, if `u >= 0`, in a form that has no pole at a right angle.
 
-    Both are one function for `|eta| < pi/2`, and the second runs on smoothly through a right angle.
+    The form is `eta - atan((1 - u)*sin(eta)*cos(eta)/(cos(eta)**2 + u*sin(eta)**2))`. Both are equal for
+    `|eta| < pi/2`, and the new form is smooth at `pi/2`.
     """
     from sympy import Wild, atan, cos, sin, tan
 
@@ -343,7 +344,7 @@ def _reach(law: Law, table: "Table") -> Range:
 
 
 def _cases(phi: "Expr", ranges: Ranges) -> Iterator[Case]:
-    """Cases that cover the ranges: `x` (`eta = x*pi/2`), the exit angle, ranges of variables and values of symbols.
+    """Cases that cover the ranges: `x`, with `eta = x*pi/2`; the exit angle; the ranges of variables; fixed values.
 
     A symbol in which the exit angle is affine is set to the ends of its range; any other becomes a variable on [0, 1].
     """
@@ -416,7 +417,7 @@ def _positive(g: "Expr", x: "Symbol", others: Mapping["Symbol", Range], begin: i
 
 
 def _derivative(value: "Expr", x: "Symbol") -> "Expr":
-    """`d value/dx`; as one reduced fraction if it has no arc tangent left, since terms that cancel have wide bounds."""
+    """`d value/dx`, as one reduced fraction if it contains no arc tangent: terms that cancel would have wide bounds."""
     from sympy import Function, atan, cancel, cos, sin
 
     found = value.diff(x)
@@ -442,7 +443,7 @@ def _bounded(value: "Expr", box: Mapping["Symbol", Range]) -> "SignFinding":
 
 
 def _located(finding: "SignFinding", x: "Symbol", others: Mapping["Symbol", "Expr"]) -> "SignFinding":
-    """The finding, its reason replaced: it names the values of `eta` and others near which `BOUND` may be exceeded."""
+    """The finding with another reason: it names `eta` and other values near which `BOUND` may be exceeded."""
     from sympy import pi
 
     at = dict(finding.at)
@@ -452,7 +453,7 @@ def _located(finding: "SignFinding", x: "Symbol", others: Mapping["Symbol", "Exp
 
 
 def _witnessed(finding: "SignFinding", x: "Symbol", exit: "Expr", others: Mapping["Symbol", "Expr"]) -> "SignFinding":
-    """The refutation, its reason replaced: it names an angle, found by bisection, at which the law fails."""
+    """The refutation with another reason: it names an angle, found by bisection, at which the law fails."""
     from sympy import Rational, S, pi
 
     at = dict(finding.at)

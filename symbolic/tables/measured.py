@@ -3,7 +3,7 @@
 The fit is the exact definition of the table: its coefficients are rational, and what is computed or proved holds for
 it. Its distance from the body that was measured is estimated by an error bar, which is in `Table.fit`.
 
-Points may be in either order round the body. From each point to the next the parameter of the fit grows with their
+Points may be in either order round the body. From each point to the next the parameter of the fit grows by their
 distance, rounded to 64ths of the mean distance (`by="chord"`), or by one (`by="index"`).
 """
 
@@ -93,7 +93,7 @@ def from_points(
 def _pieces(
     name: str, points: tuple[Vector, ...], steps: tuple[int, ...], order: int
 ) -> tuple[tuple[Component, ...], Fraction, Fraction | None]:
-    """The pieces of a spline, how far it passes from its points, and from those that are left out."""
+    """The pieces of a spline, its distance from its points, and an estimate of its error between points."""
     pieces = spline(points, steps, order)
     residual = _rounded_up(max(_distance2(piece[0], point) for piece, point in zip(pieces, points, strict=True)))
     missed = _missed(points, steps, order)
@@ -127,7 +127,8 @@ def spline(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> l
     """The closed spline through the points with `smoothness` continuous derivatives, as cubic Bezier curves.
 
     `steps` are the lengths of the pieces in the parameter. With `smoothness` 2, control points are rounded to about
-    `2**-BITS` of the size: so far it may pass from the given points, while its curvature is exactly continuous.
+    `2**-BITS` of the size. The spline may miss the given points by this distance, but its curvature is exactly
+    continuous.
     """
     n = len(points)
     if smoothness == 0:
@@ -189,7 +190,7 @@ def _smooth_slopes(values: Sequence[int], steps: Sequence[int]) -> list[Fraction
 
 
 def _missed(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> Fraction | None:
-    """How far the spline through every second point passes from the others, rounded up; None for less than 6 points."""
+    """The distance of the spline through every second point from the other points, rounded up; None for less than 6."""
     if len(points) < 6:
         return None
     even = points[::2] if len(points) % 2 == 0 else points[:-1:2]
@@ -281,7 +282,7 @@ def _solved(matrix: list[list[int]], right: list[list[int]]) -> list[list[int]]:
 
 
 def _gap(sums: Sequence[Sequence[Fraction]], points: Sequence[Vector], steps: Sequence[int]) -> Fraction:
-    """The square of the largest distance of every second point from its place on a Fourier sum."""
+    """The square of the largest distance between every second point and the point of a Fourier sum at its parameter."""
     rows = _waves(steps, (len(sums[0]) - 1) // 2)
     worst = Fraction(0)
     for row, point in list(zip(rows, points, strict=True))[1::2]:

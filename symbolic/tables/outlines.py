@@ -65,7 +65,7 @@ class ConicArc(NamedTuple):
         return (swept + self.centre[0] * (q - y) - self.centre[1] * (p - x)) / 2
 
     def parts(self) -> list[Piece]:
-        """The arc as rational Bezier curves of at most about a quarter turn: control points with weights."""
+        """The arc as rational Bezier curves, each of about a quarter turn or less: control points with weights."""
         found: list[Piece] = []
         u, v = self.u, self.v
         steps = [Fraction(1)] * self.quarters + ([self.rest] if self.rest else [])
@@ -99,8 +99,9 @@ class ConicArc(NamedTuple):
     def between(self, first: Vector, last: Vector) -> "ConicArc":
         """The arc with the same ends whose velocities there have the directions `first` and `last`.
 
-        These must be the directions of this arc up to rounding. The result is an affine image of this arc. The lines
-        through its ends meet in `q`. An arc of nearly half a turn also gets the angle by which the directions turn.
+        These must be the directions of this arc up to rounding. The result is an affine image of this arc. It is
+        determined by its ends and by the point where the tangents there meet. For an arc of nearly half a turn, where
+        that point is far away, the angle is adapted too.
 
         >>> ConicArc((0, 0), (1, 0), (0, 1), 1).between((1, 3), (-1, 0)).v
         (Fraction(1, 3), Fraction(1, 1))
@@ -175,10 +176,11 @@ def from_path(curves: Iterable[Sequence[Any]], name: str = "outline") -> Table:
 
 
 def aligned_arcs(sides: Sequence[Any], tolerance: Fraction = Fraction(0)) -> list[Any]:
-    """A closed curve of straight sides and arcs, its tangents made equal at each join where they are so up to rounding.
+    """A closed curve of straight sides and arcs, with tangents made equal at each join where they are equal up to
+    rounding.
 
-    Tangents are made equal too where moving an end of the shorter piece by `tolerance` would do it. The ends of pieces
-    stay. Where a side and an arc join, the arc changes; where two arcs join, the second one does.
+    Tangents are also made equal if moving an end of the shorter piece by `tolerance` would make them so. The ends of
+    pieces do not move. Where a side and an arc join, the arc changes; where two arcs join, the second one does.
 
     >>> almost = ConicArc((0, 0), (0, -1), (1, Fraction(1, 10**14)), 2)
     >>> aligned_arcs([almost, [(0, 1), (-1, 1)], [(-1, 1), (-1, -1)], [(-1, -1), (0, -1)]])[0].v

@@ -50,7 +50,7 @@ def _rational(value: Fraction) -> Rational:
 
 @lru_cache(maxsize=8192)
 def rational_coefficients(component: Component) -> tuple[list[Fraction], list[Fraction]] | None:
-    """Those of both coordinates, constant first; None unless they are polynomials with rational numbers, ends as well.
+    """The coefficients of `x` and of `y`, constant first; None unless both are rational polynomials with rational ends.
 
     >>> from symbolic.tables import square
     >>> rational_coefficients(square(3).components[0])
@@ -64,7 +64,7 @@ def rational_coefficients(component: Component) -> tuple[list[Fraction], list[Fr
 
 
 def derivative(coordinate: Expr) -> Expr:
-    """The derivative by `theta`; of a sum of powers with rational factors it is written down from these.
+    """The derivative by `theta`; for a sum of powers with rational factors it is formed without SymPy's `diff`.
 
     >>> derivative(3 * theta**2 - theta / 2)
     6*theta - 1/2
@@ -85,7 +85,7 @@ def end_point(component: Component, last: bool) -> tuple[Expr, Expr]:
 
 
 def as_sum(coordinate: Expr) -> list[Fraction] | None:
-    """The coefficients of a sum of powers of `theta` with rational factors, constant first; None of anything else.
+    """The coefficients of a sum of powers of `theta` with rational factors, constant first; None for anything else.
 
     >>> as_sum(theta**2 - 1), as_sum((theta + 1) ** 2)
     ([Fraction(-1, 1), Fraction(0, 1), Fraction(1, 1)], None)
@@ -219,7 +219,7 @@ def signed_area(pieces: Sequence[Bezier]) -> Fraction:
 
 
 def separate(name: str, curves: Sequence[Sequence[Piece]]) -> None:
-    """Raises `ValueError` if closed curves meet themselves or one another, or a later one is no hole in the first."""
+    """Raises `ValueError` if closed curves meet themselves or each other, or if a later one is not inside the first."""
     for pieces in curves:
         for piece in pieces:
             if len(set(piece)) == 1:
@@ -256,9 +256,9 @@ Span = tuple[int, int, int, int, int, int, Piece]  # box, outwards on a lattice;
 
 
 def meets(curves: Sequence[Sequence[Piece]]) -> tuple[float, float] | None:
-    """A point near which curves meet, or stop (velocity 0), or may do so; None if it is proved that they do not.
+    """A point near which curves meet, or have velocity 0, or may do so; None if it is proved that they do not.
 
-    A line sweeps the boxes from left to right; only pieces whose boxes overlap are compared. `ValueError` if more than
+    Boxes are swept from left to right, and only pieces whose boxes overlap are compared. `ValueError` if more than
     `MOST` pairs do.
     """
     rings: list[list[Piece]] = []
@@ -293,7 +293,7 @@ def meets(curves: Sequence[Sequence[Piece]]) -> tuple[float, float] | None:
 
 
 def _run_forwards(ring: list[Piece]) -> Piece | None:
-    """Halves pieces in place until all neighbours advance along one direction; a piece where they never do, or None."""
+    """Halves pieces in place until all neighbours advance along one direction; a piece that never does, else None."""
     known = [False] * len(ring)
     for _ in range(DEEPEST):
         bad = [i for i, fine in enumerate(known) if not fine and not _forwards(ring[i - 1], ring[i])]
@@ -317,7 +317,7 @@ def _straight(piece: Piece) -> bool:
 
 
 def _monotone(piece: Piece, depth: int) -> list[Piece]:
-    """The piece cut into parts on which the velocity turns by less than a quarter turn, or that are too short."""
+    """The piece cut into parts on which the velocity turns by less than a quarter turn, unless they get too short."""
     d = _differences(piece)
     if depth >= DEEPEST // 4 or all(_dot(v, w) > 0 for i, v in enumerate(d) for w in d[i:]):
         return [piece]
@@ -333,7 +333,7 @@ def _forwards(before: Piece, after: Piece) -> bool:
 
 
 def _along(piece: Piece) -> Vector:
-    """The chord, scaled to length about 1: `_forwards` may use any vector, so that rounding does no harm."""
+    """The chord, scaled to length about 1. Rounding does no harm, since `_forwards` may use any vector."""
     (x0, y0), *_, (x1, y1) = _cartesian(piece)
     x, y = x1 - x0, y1 - y0
     size = max(abs(x), abs(y))

@@ -60,8 +60,8 @@ class Scene:
 
     `table` is an exact table, the name of one of the paper's or of `tables.GALLERY`, or a function that makes one, such
     as `tables.egg`; shape parameters are keywords. Numbers are exact, or text, where a decimal means the decimal it
-    shows; a float is refused. A parameter may have a range, `b="0.1:0..1/4"`: the boundary is then proved to bound a
-    table for all values in it (see `over`), and the law to point into the table.
+    shows; a float is refused. A parameter may have a range, `b="0.1:0..1/4"`. Then it is proved, for all values in the
+    range, that the boundary bounds a table (see `over`) and that the law points into the table.
 
     >>> egg = Scene("egg", alpha="0.08", lam="1/2")
     >>> egg
@@ -92,7 +92,7 @@ class Scene:
         self._hold(boundary, {**fixed, **_with_ranges(shape, ranges)}, lam, law)
 
     def _hold(self, boundary: dict[str, Any], shape: Mapping[str, Any], lam: Any, law: Law | str) -> None:
-        """Sets `text` after all checks; equal scenes get the same text, however their numbers are written."""
+        """Sets `text` after all checks; equal scenes get the same text, however their numbers were written."""
         name, law = name_of(boundary), law if isinstance(law, Law) else Law(law)
         parameters = tuple(dict.fromkeys((*parameters_of(boundary), *parameters_of_law(law.formula))))
         _one_number(name, law, parameters_of(boundary), shape)
@@ -155,7 +155,7 @@ class Scene:
 
     @property
     def ranges(self) -> "dict[str, tuple[Fraction | Expr, Fraction | Expr]]":
-        """The ends of the range of each parameter that has one, the table's and the law's own.
+        """The ends of the range of each parameter of the table or the law that has a range.
 
         >>> Scene.of({"polar": "1 + b*cos(theta)", "shape": {"b": "0.1:0..1/4"}}).ranges
         {'b': (Fraction(0, 1), Fraction(1, 4))}
@@ -203,8 +203,8 @@ class Scene:
     def over(self, parameter: str, low: Any, high: Any) -> "Table":
         """The table with one of its shape parameters left free, with the range from `low` to `high`.
 
-        `ValueError` with a value at which it is not a table. A table of the user's own is proved to be one for every
-        value of the interval; the paper's tables are checked at both ends.
+        Raises `ValueError`, which names a value, if it is not a table for all values. For a table of the user's own
+        this is proved for the whole interval; the paper's tables are checked at both ends.
 
         >>> flower = Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}})
         >>> flower.over("b", 0, "1/30").shapes[0].range
@@ -286,7 +286,7 @@ class Scene:
 
     @classmethod
     def proved(cls, text: str) -> "Scene":
-        """The scene with this text, which must be the `text` of a scene made before: its proofs are not repeated."""
+        """The scene of a text that is the `text` of a scene made before: its proofs are not repeated."""
         other = object.__new__(cls)
         object.__setattr__(other, "text", text)
         return other
@@ -339,7 +339,7 @@ def as_scene(given: Any, *, lam: Any = None, law: Law | str | None = None, **sha
 
 
 def given_table(table: Any, K: int, shape: Mapping[str, Any]) -> "tuple[Any, dict[str, Any]]":
-    """The table that is given or named, and the shape values not used for it; a function is called for its table."""
+    """The table that is given, named, or made by a given function; and the shape values not used to make it."""
     numbers = dict(shape)
     if isinstance(table, str) and table in GALLERY:
         from symbolic.tables import gallery
@@ -360,7 +360,7 @@ def given_table(table: Any, K: int, shape: Mapping[str, Any]) -> "tuple[Any, dic
 
 
 def _one_number(name: str, law: Law, own: tuple[str, ...], shape: Mapping[str, Any]) -> None:
-    """Raises `ValueError` if a parameter has one value in the law and another, or none, in the table or the scene."""
+    """Raises `ValueError` if a parameter has one value in the law and another value or none in the table or scene."""
     for parameter, held in law.numbers:
         given = value_text(parameter_text(f"{name}: {parameter}", shape[parameter])) if parameter in shape else None
         if given != held and (given is not None or parameter in own):
@@ -390,7 +390,8 @@ def _own_ranges(table: "Table") -> dict[str, str]:
 def _family(line: str) -> "Table":
     """The table of a scene's line of text in which parameters given as a range `LOW..HIGH` stay free.
 
-    A table of the user's own is proved to be one over all of the ranges; the paper's are checked at the ends of these.
+    A table of the user's own is proved to be a table over all of the ranges; the paper's tables are checked at their
+    ends.
     """
     import tomllib
 

@@ -55,9 +55,9 @@ class NotProvedError(ValueError):
 
 
 def prove_simple(table: Table, ranges: Mapping[Symbol, tuple[Expr, Expr]] = NONE) -> None:
-    """Proves that a boundary is closed, simple and counterclockwise; its holes clockwise, within it and disjoint.
+    """Proves that a boundary is closed, simple and counterclockwise, and its holes clockwise, within it and disjoint.
 
-    `ranges` holds the ends of the range of every letter that has no value; what is proved holds for all values in them.
+    `ranges` has the ends of the range of every shape parameter without a value; the proof holds for all values in them.
     Raises `NotProvedError`, a `ValueError`, with the place where the proof fails.
 
     >>> from symbolic.tables import ellipse
@@ -99,7 +99,7 @@ def _middle(box: tuple[Bounds, ...]) -> tuple[Bounds, ...]:
 
 @dataclass(frozen=True)
 class _Node:
-    """A node of a tree over consecutive arcs: their box and two child nodes, or the indices of a curve and its arc."""
+    """A node of a tree over consecutive arcs: a box, with two child nodes or with the indices of a curve and an arc."""
 
     box: Box
     parts: "tuple[_Node, ...]"
@@ -107,7 +107,7 @@ class _Node:
 
 
 class _Boundary:
-    """The closed curves of a table, for proofs over boxes of letters' values; `near` is one value of each letter."""
+    """The closed curves of a table, for proofs over boxes of parameters; `near` has one value of each parameter."""
 
     def __init__(self, table: Table, letters: tuple[Symbol, ...], near: tuple[Bounds, ...]) -> None:
         self.name, self._budget, self._deepest = table.name, [WORK], DEEPEST
@@ -125,7 +125,7 @@ class _Boundary:
             raise self._error(str(why)) from None
 
     def prove(self, letters: tuple[Bounds, ...]) -> None:
-        """Proves that the curves bound a table for all letters within bounds; wide bounds allow fewer halvings."""
+        """Proves that the curves bound a table for all parameters in `letters`; wide bounds allow fewer halvings."""
         width = max([high - low for low, high in letters], default=0)
         self._deepest = min(DEEPEST, max(0, BITS - width.bit_length()) + COARSE)
         rings = [self._cut([piece.at(letters) for piece in ring]) for ring in self._rings]
@@ -144,7 +144,7 @@ class _Boundary:
         return NotProvedError(f"{self.name} is not proved to be a table: {why}")
 
     def _halves(self, *arcs: Arc, near: tuple[Arc, ...] = ()) -> list[Arc]:
-        """The halves of arcs; `NotProvedError` at the limit of depth or work, with the place of `near` or the arcs."""
+        """The halves of arcs; `NotProvedError`, with the place of `near` or the arcs, at the limit of depth or work."""
         places = " and ".join(dict.fromkeys(arc.place for arc in near or arcs))
         if max(arc.depth for arc in arcs) >= self._deepest:
             lost = "the boundary is thinner than 1e-20 of its size, stops, turns back or has no tangent"
@@ -222,7 +222,7 @@ class _Boundary:
 
 
 def _pieces(formulas: Formulas, marks: list[Expr], near: tuple[Bounds, ...]) -> list[Piece]:
-    """The pieces of a component, which is cut at the marked parameters inside it."""
+    """A component cut into pieces at the marked parameters inside it."""
     component = formulas.component
     inside = [at for at in marks if (at - component.start).is_positive and (component.end - at).is_positive]
     places = [component.start, *sorted(inside, key=lambda at: at.evalf()), component.end]
@@ -250,7 +250,7 @@ def _surrounds(ring: list[Arc], hole: list[Arc]) -> bool:
 
 
 def _crossings(ring: list[Arc], point: Box) -> int | None:
-    """The number of arcs that cross the ray from a point to the right; None where that is not decided."""
+    """The number of arcs that cross the ray from a point to the right; None if this is not decided."""
     (left, right), (low, high) = point
     count, todo = 0, list(ring)
     while todo:
@@ -271,7 +271,7 @@ def _crossings(ring: list[Arc], point: Box) -> int | None:
 
 
 def _units(table: Table, values: Mapping[Symbol, Expr]) -> tuple[Expr, Expr]:
-    """Powers of two that scale the boundary to a size of about 1: different for both axes only if it is very flat.
+    """Powers of two that scale the boundary to a size of about 1; they differ for both axes only if it is very flat.
 
     Scaling changes no proof: each statement that is proved here is invariant under affine maps.
     """

@@ -1,10 +1,10 @@
-"""Tables and their parts: smooth components in a closed, simple, counterclockwise chain, in the paper's letters.
+"""Tables and their parts: smooth components in a closed, simple, counterclockwise chain.
 
-A table is written down once, as exact expressions in the boundary parameter `theta`; everything
-else in the package is derived from it. Paper: section 2, the definition of `Gamma`.
+A table is written down once, as exact expressions in the boundary parameter `theta`; everything else in the package is
+derived from it. Paper: section 2, the definition of `Gamma`.
 
-Each letter has the assumptions that the paper makes. One object per letter: two symbols of the same name and different
-assumptions are different to SymPy, so everything in the package takes its letters from here.
+The symbols are the paper's letters, each with the assumptions that the paper makes. For SymPy two symbols of the same
+name and different assumptions are different, so everything in the package takes its symbols from here.
 """
 
 from dataclasses import dataclass, replace
@@ -70,7 +70,7 @@ class Component:
 
     @property
     def radius(self) -> Expr | None:
-        """`rho` of a component that is written as `rho*(cos(theta), sin(theta))`; None of any other.
+        """`rho` of a component that is written as `rho*(cos(theta), sin(theta))`; None for any other component.
 
         >>> from symbolic.tables import cardioid, cuspless
         >>> cardioid.components[0].radius, cuspless.component("wall").radius
@@ -103,9 +103,10 @@ class Mark:
 class Fit:
     """The points that a boundary was fitted to, the method, and estimates of its distance from the measured body.
 
-    The boundary itself is exact. `residual` is the largest distance of a point from its place on it, rounded up;
-    `between` the largest distance of the other points from a fit to every second one, an estimate for what lies between
-    points (None if there are too few); `uncertainty` is the given error of the points themselves.
+    The boundary itself is exact. `residual` is the largest distance of a given point from the boundary's point at the
+    same parameter, rounded up. `between` is the largest distance of the remaining points from a fit to every second
+    one, an estimate of the error between points (None if there are too few); `uncertainty` is the given error of the
+    points themselves.
     """
 
     points: tuple[Pair, ...]
@@ -118,7 +119,7 @@ class Fit:
 
     @property
     def error(self) -> Expr:
-        """The error bar, a length: uncertainty of the points, and the larger of the two distances."""
+        """The error bar, a length: `uncertainty` plus the larger of `residual` and `between`."""
         return self.uncertainty + max(self.residual, self.between or S.Zero)
 
 
@@ -187,7 +188,7 @@ class Table:
 
 
 def exact_number(label: str, given: Expr | int | str) -> Expr:
-    """`given` as an exact expression; a float is refused, because it is not the number it shows.
+    """`given` as an exact expression; a float is refused, since it is not exactly the decimal that it shows.
 
     >>> exact_number("a", "0.08")
     2/25

@@ -63,7 +63,7 @@ def validated(table: Table) -> Table:
 
 
 def counterclockwise_and_simple(table: Table) -> Table:
-    """`table`, checked to be counterclockwise and, if it has no letters, simple; `ValueError` if it is not."""
+    """`table`, checked to be counterclockwise and, if it has no free parameters, simple; otherwise `ValueError`."""
     _counterclockwise(table)
     if not table.shapes:
         simple(table)
@@ -121,7 +121,7 @@ def radius_sign(rho: Expr) -> Outcome:
 def radius_over(table: Table) -> bool:
     """Is the radius of a polar table proved positive for every value of its free shape parameters?
 
-    `ValueError` with a value at which it is not.
+    If it is refuted, raises `ValueError` with a value of the parameters.
     """
     rho = table.components[0].radius
     if rho is None:
@@ -241,7 +241,7 @@ def enclosed_area(table: Table) -> Expr | None:
 
 @lru_cache(maxsize=64)
 def simple(table: Table) -> bool:
-    """True when the boundary is proved to bound a table; False if it has letters. `ValueError` without a proof."""
+    """True if the boundary is proved to bound a table, False if it has free parameters; `ValueError` for no proof."""
     if any(c.free_symbols - {theta} for component in table.components for c in component.point):
         return False
     _prove(table, {})
@@ -249,12 +249,14 @@ def simple(table: Table) -> bool:
 
 
 def prove_table(table: Table, ranges: Ranges | None = None) -> None:
-    """Proves that a boundary bounds a table for all values of its letters in `ranges`; `ValueError` with the place.
+    """Proves that a boundary bounds a table for all parameters in `ranges`; `ValueError`, with the place, if that
+    fails.
 
-    The boundary is closed identically in the letters; it is simple and counterclockwise; its holes are clockwise, lie
-    in it, and meet neither it nor one another. `ranges` holds both ends of the range of every letter, by default those
-    of the table's shape parameters. A positive radius proves this, and so do disjoint boxes round pieces that are
-    polynomials of degree three; all other boundaries are proved by `symbolic.tables.simplicity`.
+    It is proved that the boundary is closed identically in the parameters, simple and counterclockwise, and that its
+    holes are clockwise, lie in it, and meet neither it nor one another. `ranges` has both ends of the range of every
+    parameter, by default those of the table's shape parameters. The proof is by a positive radius, or by disjoint boxes
+    round pieces that are polynomials of degree three; for all other boundaries it is that of
+    `symbolic.tables.simplicity`.
 
     >>> from symbolic.tables import ellipse, stadium
     >>> from symbolic.tables.table import a
@@ -270,7 +272,7 @@ def prove_table(table: Table, ranges: Ranges | None = None) -> None:
 
 
 def _prove(table: Table, ends: Ranges) -> None:
-    """Proves what `prove_table` does for a finite, closed boundary; `ends` are the ranges of its letters."""
+    """Proves what `prove_table` does for a finite, closed boundary; `ends` are the ranges of its parameters."""
     whole = table.components[0]
     if len(table.components) == 1 and not table.undefined and whole.end - whole.start == 2 * pi:
         x, y = whole.point
@@ -348,7 +350,7 @@ def modulus(expression: Expr, box: Box) -> Expr:
 
 
 def is_positive(expression: Expr, box: Box) -> bool:
-    """True when `expression > 0` is proved on the box, whose ends may depend on an integer `K >= 1`."""
+    """True if `expression > 0` is proved on the box; the ends of intervals may depend on an integer `K >= 1`."""
     reach: dict[Symbol, Interval] = {}
     for symbol, interval in box.items():
         if interval.end.free_symbols:

@@ -42,7 +42,7 @@ PATIENCE = 2.0  # seconds before a progress bar appears
 
 
 def columns() -> int:
-    """The width of the terminal, or COLUMNS where it is set, within bounds."""
+    """The width of the terminal, or COLUMNS if it is set, clipped to a fixed range."""
     return min(max(shutil.get_terminal_size().columns, NARROWEST), WIDEST)
 
 
@@ -68,7 +68,7 @@ class Output:
 
     @property
     def wanted(self) -> bool:
-        """Is a document or a picture asked for?"""
+        """True if a JSON document or a picture was asked for."""
         return self.path is not None or self.plot is not None
 
     def write(self, document: Mapping[str, Any], *results: Any) -> None:
@@ -145,7 +145,7 @@ def _writable(context: click.Context, option: click.Parameter, value: str | None
 
 
 def _refuse(value: str, accepted: str) -> Path:
-    """The path of a file that may be written; any other is refused."""
+    """The path, if a file can be written there; otherwise raises click's error."""
     path = Path(value)
     try:
         path.exists()
@@ -162,7 +162,9 @@ def _refuse(value: str, accepted: str) -> Path:
 
 
 def _drawable(context: click.Context, option: click.Parameter, value: str | None) -> Path | None:
-    """The path of a picture; one of unknown format, or that cannot be drawn or written, is refused before any work."""
+    """The path of the picture; an unknown format, or a file that cannot be drawn or written, is refused before any
+    work.
+    """
     if value is None:
         return None
     from verification.plots.sheet import FORMATS
@@ -343,7 +345,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _no_streams() -> int:
-    """Prints that standard output is closed, unless standard error is too; the status of bad input."""
+    """Prints that standard output is closed, unless standard error is closed too; returns the status of bad input."""
     if sys.stderr is not None:
         sys.stderr.write("pinball: standard output is closed; accepted: an open one, or > FILE\n")
     return BAD_INPUT
@@ -434,14 +436,14 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
 
 
 def _read(value: Any) -> Any:
-    """The value of an attribute; JSON text is read."""
+    """The value of an attribute; a text that holds a JSON object is parsed."""
     return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
 
 
 async def refusal(words: Sequence[str], seconds: float) -> str | None:
     """Runs a command in another process; returns the error that it prints, or None if it succeeds.
 
-    The process is ended after `seconds`. What it reads, proves and compiles stays in the cache on disk.
+    The process is ended after `seconds`. What it reads, proves and compiles is kept in the cache on disk.
     """
     import asyncio
 

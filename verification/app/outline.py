@@ -1,9 +1,8 @@
 """Tables from files of data: points, polygons of GIS programs (GeoJSON, WKT), drawings in SVG or DXF.
 
-The exact table is what the file says: a decimal is the decimal it shows. SVG files are read by svgelements, DXF files
-by ezdxf, both optional packages. Pieces that end where others begin are joined; arcs of circles and ellipses stay what
-they are, unless the outline has Bezier curves as well: then they become cubic curves that miss them by less than 1e-7
-of their radius.
+The table is exact: each decimal in the file is taken as the number it shows. SVG files are read by svgelements, DXF
+files by ezdxf, both optional packages. Pieces are joined end to end. Arcs of circles and ellipses are kept; only if the
+outline has Bezier curves as well, they are replaced by cubic curves within 1e-7 of their radius.
 """
 
 from collections.abc import Iterable
@@ -42,14 +41,16 @@ class Data(NamedTuple):
 
 
 class Outline(NamedTuple):
-    """A table, and sentences about what was read, left out and closed."""
+    """A table, and sentences about how the file was read: what was left out, what was closed."""
 
     table: "Table"
     notes: list[str]
 
 
 def read(data: Data) -> Outline:
-    """The table of the option --data, with notes; `ValueError` with a sentence where the file holds none."""
+    """The table of the option --data, with notes; `ValueError` with a one-sentence message if the file holds no
+    table.
+    """
     ending = Path(data.path).suffix.lower()
     drawing = ending in (".svg", ".dxf")
     text = _text("--data", data.path, "latin-1" if ending == ".dxf" else "utf-8-sig")
@@ -78,7 +79,7 @@ def _of_text(data: Data, text: str) -> Outline:
 
 
 def _fitted(data: Data, rings: "list[list[Point]]", smoothness: int | None) -> Outline:
-    """The table from points: a curve fitted to one ring, or a polygon with holes from several."""
+    """The table from points: a curve or polygon through one ring, or a polygon with holes from several rings."""
     from symbolic import tables
     from symbolic.tables.measured import unclosed
 
@@ -198,7 +199,7 @@ def _bounded(data: Data, curves: "list[Run]", unit: str | None, notes: list[str]
 
 
 def _aligned(curve: "Run", tolerance: Fraction) -> "Run":
-    """The curve, its tangents made equal at each join where they agree up to rounding or the tolerance."""
+    """The curve with equal tangents at each join where they differed only by rounding or the tolerance."""
     from symbolic.tables.outlines import ConicArc, aligned_arcs
     from symbolic.tables.polynomial import aligned, elevated
 
@@ -210,7 +211,9 @@ def _aligned(curve: "Run", tolerance: Fraction) -> "Run":
 
 
 def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
-    """A sentence about joins with a curved piece that bend so little that they may be meant to be smooth, if any."""
+    """Yields a sentence about joins of curved pieces with so small an angle that they may be meant as smooth, if
+    any.
+    """
     from symbolic.tables.outlines import ConicArc, directions, shorter
     from symbolic.tables.polynomial import elevated
 
@@ -231,7 +234,9 @@ def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
 
 
 def _cubics(side: "Side") -> "list[Side]":
-    """An arc as cubic curves of at most 11.25 degrees each; any other piece alone."""
+    """The cubic curves, of at most 11.25 degrees each, that replace an arc; a piece that is not an arc stays as it
+    is.
+    """
     from symbolic.tables.outlines import ConicArc
 
     if not isinstance(side, ConicArc):
@@ -307,7 +312,7 @@ def _joined(data: Data, runs: "list[Run]", notes: list[str]) -> "list[Run]":
 
 
 def _open(end: "Point", curve: "Run", left: "dict[int, Run]", near: Fraction, branches: int) -> str:
-    """The sentence of an error: an outline stays open at a point, or branches there."""
+    """An error message: an outline is open at the point `end`, or branches there."""
     x, y = map(float, end)
     where = f"an outline {'branches' if branches else 'is open'} at ({x:.12g}, {y:.12g})"
     others = [p for run in (*left.values(), curve) for p in _both(run) if p != end]
@@ -323,7 +328,7 @@ def _open(end: "Point", curve: "Run", left: "dict[int, Run]", near: Fraction, br
 
 
 def _different(curves: "list[Run]") -> "tuple[list[Run], int]":
-    """The curves without those drawn a second time, and the number of these."""
+    """The curves without duplicates, and the number of duplicates."""
     known: dict[frozenset[Any], Run] = {}
     for curve in curves:
         sides = [_unordered(side) for side in curve]
@@ -353,7 +358,7 @@ def _both(run: "Run") -> "tuple[Point, Point]":
 
 
 def _hull(run: "Run") -> "list[Point]":
-    """The ends of the pieces and their points furthest along the axes, so that the extent is that of the run."""
+    """The ends of a run's pieces and their extreme points in x and y, which have the same extent as the run."""
     from symbolic.tables.outlines import ConicArc
     from symbolic.tables.polynomial import elevated
     from verification.app.drawings import ends
@@ -389,7 +394,7 @@ def _stops(a: float, b: float, c: float) -> list[float]:
 
 
 def _near(data: Data, points: "list[Point]") -> Fraction:
-    """The widest gap between points that is still closed: the tolerance given, or a share of the drawing's extent."""
+    """The largest gap between points that is closed: the tolerance given, or a small fraction of the points' extent."""
     if data.tolerance is None:
         return JOINED * Fraction(max(_extent(points)))
     try:

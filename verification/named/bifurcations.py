@@ -1,4 +1,4 @@
-"""Bifurcations over an interval: of every family that attracts, or of cycles of one period, with proofs."""
+"""Bifurcations over a parameter interval, of all attracting families or, with proofs, of cycles of one period."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -49,7 +49,8 @@ def bifurcations(
     tick: Tick | None = None,
     **interval: Any,
 ) -> Continuation | tuple[Located, ...]:
-    """Every family of cycles that attracts random starts as one parameter varies, with its events; or events of a kind.
+    """Every family of cycles that attracts random starts as one parameter varies, with its events; or events of one
+    kind.
 
     The interval is given as for `follow`. `starts` random starts at each of some `values` of the parameter find the
     families, which are followed from birth to death: `.families`, `.events`, `.check()`, `.document(digits)`. What
@@ -97,7 +98,7 @@ def bifurcations(
 def _searched(
     scene: Scene, period: int, searches: int, parameter: str, ends: Any, say: Tick
 ) -> list[tuple[PeriodicOrbit, Branch]]:
-    """Cycles found at some values, closer together near the ends of the interval, and their branches."""
+    """Cycles found at `searches` values, which are denser near the ends of the interval, and their branches."""
     low, high = (exact(parameter, end) for end in ends)
     found: list[tuple[PeriodicOrbit, Branch]] = []
     for i in range(searches):
@@ -114,5 +115,5 @@ def _searched(
 
 
 def same_multipliers(orbit: PeriodicOrbit) -> tuple[complex, ...]:
-    """The multipliers, rounded: images under a symmetry share them."""
+    """The rounded multipliers; cycles that are symmetric images of each other have equal ones."""
     return tuple(complex(round(mu.real, ALIKE), round(abs(mu.imag), ALIKE)) for mu in orbit.multipliers)

@@ -1,4 +1,4 @@
-"""Cascades of doublings from any attracting cycle that random particles reach, proved flip by flip.
+"""Cascades of period doublings from any attracting cycle that random particles reach; each doubling is proved.
 
 Section 6.6 of the paper ascribes isolated chaotic regions to such cascades of higher period.
 """
@@ -23,7 +23,7 @@ STAGES = (1000, 4000, 35_000)  # bounces, after each of which particles are test
 
 @dataclass(frozen=True)
 class Cascade:
-    """The periods that double and the contractions at which they do; `proved`: each is a supercritical flip."""
+    """The periods that double and the contractions at which they do; `proved` if each is a supercritical flip."""
 
     periods: tuple[int, ...]
     lams: tuple[float, ...]
@@ -37,7 +37,7 @@ class Cascade:
 
     @property
     def limit(self) -> float:
-        """Where the cascade accumulates if further distances shrink by Feigenbaum's number: an estimate."""
+        """The contraction at which the cascade accumulates, estimated with Feigenbaum's ratio of distances."""
         return self.lams[-1] + (self.lams[-1] - self.lams[-2]) / (FEIGENBAUM - 1)
 
 
@@ -57,7 +57,7 @@ def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int
 
 
 def reached(alpha: Rational, lam: Rational, period: int) -> list[float]:
-    """The bounces of a cycle of this period on which a random particle ends; `ValueError` when none does."""
+    """The bounces of a cycle of this period on which a random particle ends; `ValueError` if no particle does."""
     map = PinballMap("egg", lam=str(lam), alpha=str(alpha))
     starts = interior_starts(map, PARTICLES, SEED)
     for bounces in STAGES:

@@ -1,13 +1,13 @@
 """Global continuation: every family of cycles that attracts random starts somewhere, followed from birth to death.
 
-At many values of a parameter random starts show the attractors (`numeric.sweeps.endings`). A cycle that is on no
-branch is followed both ways, once, with the branches that are born on it where it doubles its period or loses a
-symmetry, and all starts are compared with the new branches. For chaos and neutral orbits, which are no cycles, the
-ends of their ranges are bisected. The idea is that of `global_continuation` of Attractors.jl; here each branch
-ends in an event that can be proved.
+At many values of a parameter, random starts show the attractors (`numeric.sweeps.endings`). A cycle that is on no known
+branch is followed both ways, with the branches born on it where it doubles its period or loses a symmetry; all starts
+are then compared with the new branches. For chaotic and neutral orbits, which are not cycles, the ends of their
+parameter ranges are bisected. The idea is that of `global_continuation` of Attractors.jl; here each branch ends in an
+event that can be proved.
 
-A family is missed where fewer than `least` of the starts end on it at each value. `Continuation.check` samples values
-that were not used.
+A family is missed if fewer than `least` of the starts end on it at each value. `Continuation.check` samples values that
+were not used.
 """
 
 from collections.abc import Iterator
@@ -58,7 +58,7 @@ KINDS = {CHAOTIC: "chaotic", NEUTRAL: "neutral"}  # endings that are no cycles
 
 @dataclass(frozen=True)
 class FamilyEvent:
-    """An event next to which a family attracts, the family's number, and that of the family born there, if any."""
+    """An event next to which a family attracts, the family's index, and the index of the family born there, if any."""
 
     event: Event
     family: int
@@ -67,7 +67,7 @@ class FamilyEvent:
 
 @dataclass(eq=False, repr=False)
 class Continuation:
-    """The families of a scene over an interval of one parameter, as far as they are known; with `only`, of one period.
+    """The families of a scene over an interval of one parameter, as far as known; with `only`, those of one period.
 
     >>> found = Continuation(Scene("ellipse", a="3/2"), "lam", ("1/10", "9/10"), starts=20).run(values=8)
     >>> [(family.period, family.attracts) for family in found.families]

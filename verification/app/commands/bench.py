@@ -57,12 +57,12 @@ def command(
 ) -> int:
     """Error against run time: each way to bounce, timed for one bounce at lam = 0.95.
 
-    Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30
-    digits more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the
-    Pareto front: no other way is both faster and more exact. Whole calls, questions, and tables other than the
-    egg, are compared with other times, and each ratio has a bar that it should not pass. The exit status is 1 when
-    one is over its bar or, with --compare, when a time changed by a factor of more than 1.5 against the other times
-    of its run, or an error grew tenfold.
+    Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30 digits
+    more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the Pareto
+    front: no other way is both faster and more exact. The times of whole calls, of questions, and of tables other than
+    the egg are divided by reference times, and each ratio has an upper bar. The exit status is 1 when a ratio is over
+    its bar or, with --compare, when a time changed by a factor of more than 1.5 against the other times of its run, or
+    an error grew tenfold.
     """
     from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
@@ -150,7 +150,7 @@ def show(console: "Console", name: str, rows: "list[SceneTiming]") -> None:
 
 
 def show_ratios(console: "Console", rows: "list[SceneTiming]") -> None:
-    """Prints the times of tables that are not the paper's, as multiples of the egg's in the same run."""
+    """Prints the times of tables that are not in the paper, as multiples of the egg's times in the same run."""
     from verification.measure.extremes.orbits import RADII
 
     times = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}
@@ -168,7 +168,7 @@ def show_ratios(console: "Console", rows: "list[SceneTiming]") -> None:
 
 
 def show_tables(console: "Console", rows: "Sequence[SceneTiming]") -> bool:
-    """Prints times of many tables as multiples of the egg's or the square's; True when none is over its bar."""
+    """Prints times of many tables as multiples of the egg's or the square's; False if a ratio is over its bar."""
     from verification.measure.work.bench import SCALAR
     from verification.measure.work.calls import BARS, KERNEL
     from verification.measure.work.row import duration
@@ -204,7 +204,7 @@ def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
 
 
 def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
-    """What users type, from the start of the process to its last line; what is over its bar is marked."""
+    """Prints the times of whole commands, from process start to last line; times over their bar are marked."""
     from verification.measure.work.row import duration
 
     if asked:
@@ -253,11 +253,11 @@ def work_command(
 ) -> int:
     """Error against run time for a whole question: every arithmetic, and the scripts that one would write first.
 
-    With a table QUESTION is step, jacobian, orbit, cycle, fold or exponent: of that scene. Without one it is step-egg,
-    step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle,
-    exponent-chaos, arclength, arclength-inverse or slap-infimum; all of these if left out. Errors are distances from
-    a certified ball. In the table `*` marks the Pareto front: nothing else is both quicker and more exact; `!` marks
-    a method whose error is larger than it claims.
+    With a table, QUESTION is step, jacobian, orbit, cycle, fold or exponent, for that scene. Without one it is
+    step-egg, step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle,
+    exponent-chaos, arclength, arclength-inverse or slap-infimum, and all of these if left out. Errors are distances
+    from a certified ball. In the printed table `*` marks the Pareto front: no method is both quicker and more exact;
+    `!` marks a method whose error is larger than it claims.
     """
     from verification.measure.work.bench import MISSING, is_checkout
     from verification.measure.work.choice import QUESTIONS
@@ -313,7 +313,7 @@ def described(question: "Question") -> dict[str, str | bool]:
 
 
 def _target(question: str | None, out: str | None) -> Path | None:
-    """The path of the diagram, or None; refused, before anything is measured, where it cannot be written."""
+    """The path of the diagram, or None; a path that cannot be written is refused before anything is measured."""
     if out is None:
         return None
     path = Path(out)
@@ -331,7 +331,7 @@ def _target(question: str | None, out: str | None) -> Path | None:
 @click.option("--clear", is_flag=True, help="Remove the kept tables and kernels; they are made again when needed.")
 @json_option
 def cache_command(where: bool, clear: bool, output: Output) -> int:
-    """Where tables and compiled kernels are kept between runs, and how much of it there is.
+    """Shows in which folder tables and compiled kernels are kept between runs, and the folder's size.
 
     PINBALL_CACHE names another folder, and an empty PINBALL_CACHE switches the cache off. The folder is for its user
     alone: one that belongs to somebody else, or that others can write, is not used, and the exit status is 1.

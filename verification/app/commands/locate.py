@@ -1,4 +1,4 @@
-"""`pinball locate`: where does it happen, to so many certified digits?
+"""`pinball locate`: at which parameter value does an event happen, to a given number of certified digits?
 
 `pinball check` verifies a certificate without the search that found it.
 """
@@ -68,13 +68,13 @@ def command(
 
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
     merging-crisis, boundary-crisis, symmetry-restoring, band-merging, interior-crisis and, with --period, window-end,
-    window-merging, family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes
-    there, and nowhere before, is not. With --law they are those of another law, followed there from the paper's.
+    window-merging, family-end, family-merging: tangencies of manifolds. The tangency is proved; that the attractor
+    changes there, and not earlier, is not. With --law the value is followed from the paper's law to another one.
 
-    With a table, saddle-node, doubling and symmetry-breaking are those of its cycles of one --period, as --lam
-    LOW:HIGH varies, or --shape NAME=LOW:HIGH and --lam is one number; tangency is where, as --lam LOW:HIGH varies, the
-    manifolds of a saddle up to that period touch. Cycles are looked for at some values: each bifurcation that is found
-    is proved, and that there is no other is not.
+    With a table, saddle-node, doubling and symmetry-breaking are bifurcations of its cycles of one --period, as --lam
+    LOW:HIGH varies, or as --shape NAME=LOW:HIGH varies at one --lam. For tangency, --lam LOW:HIGH varies, and the
+    manifolds of saddles up to that period are searched for contacts. Cycles are searched for at some values only: each
+    bifurcation found is proved, but not that there is no other.
     """
     from symbolic.tables.formula import number
     from symbolic.tables.law import PAPERS_LAW, Law
@@ -164,7 +164,7 @@ def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[L
 
 
 def interval_of(scene: Scene, axis: str | None, lam: str | None) -> tuple[Scene, str, tuple[str, str]]:
-    """The scene at its fixed contraction, the parameter that varies, and the two ends."""
+    """The scene at its fixed contraction, the parameter that varies, and the two ends of its interval."""
     if lam is None:
         raise ValueError("--lam is missing; accepted: LOW:HIGH, or one number and --shape NAME=LOW:HIGH")
     ends = (axis or "").rpartition("=")[2] or lam
@@ -191,7 +191,7 @@ HAPPENS = {"flip": "period {n} doubles", "fold": "period {n} folds", "tangency":
 
 
 def marked(path: str, scene: Scene, parameter: str) -> "Marked":
-    """The value that a certificate proves for this scene, checked anew, and what happens there in words."""
+    """The parameter value that a certificate, checked anew, proves for this scene; what happens there, in words."""
     from symbolic.tables.definition import table_boundary
     from verification.named.theorems import checked
     from verification.plots.results import Marked
@@ -280,7 +280,7 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
 
 
 def _checked(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """The verdict on a certificate's theorem, whose hypotheses are proved anew: as JSON and as lines of text."""
+    """Proves a certificate's theorem anew; returns the verdict as a JSON document and as lines of text."""
     from verification.named.locate import WORDS
     from verification.named.theorems import checked
 

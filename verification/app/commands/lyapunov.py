@@ -120,7 +120,7 @@ def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
 
 
 def show_attractor(console: "Console", document: dict[str, Any]) -> None:
-    """Prints a line for each attractor; where that is too wide, with fewer digits and the proofs below."""
+    """Prints a line for each attractor; on a narrow terminal, with fewer digits and with the proofs below the table."""
     names = "row", "symmetry", "attractor", "at x, y, phi", "starts", "share (95%)", "nu_plus", "nu_minus"
     found = document["attractors"]
     proofs = [said(a.get("checks")) for a in found]
@@ -140,7 +140,7 @@ def show_attractor(console: "Console", document: dict[str, Any]) -> None:
 
 
 def show_doubts(console: "Console", doubts: list[tuple[int, str]]) -> None:
-    """Prints which rows may each be several attractors, or part of one, and why: a line for each reason."""
+    """Prints, for each reason, the rows for which it is undecided whether they are one attractor or several."""
     for reason in dict.fromkeys(reason for _, reason in doubts):
         rows = [str(row) for row, word in doubts if word == reason]
         many = f"row {rows[0]} is" if len(rows) == 1 else f"rows {', '.join(rows)} are"
@@ -174,7 +174,7 @@ def share_in_words(a: dict[str, Any]) -> str:
 
 
 def said(checks: dict[str, bool | None] | None) -> str:
-    """`proved`, or the names of the checks that are not proved; empty without a proof."""
+    """`proved`, or the names of the checks that are not proved; empty if there are no checks."""
     if not checks:
         return ""
     missing = [name for name, value in checks.items() if value is not True]
@@ -271,7 +271,9 @@ def command(
 
 
 def add_proofs(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
-    """Adds proved exponents to each group of `document`: of a cycle (null where the proof failed) or proved chaos."""
+    """Adds certified exponents to each group of `document`: those of a cycle (null if the proof failed) or of proved
+    chaos.
+    """
     from sympy import S
 
     from verification.named.attractors import certified_exponents, chaotic_exponents
@@ -288,7 +290,7 @@ def add_proofs(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:
-    """Prints the exponents of the one attractor or of each, and where the error bars come from."""
+    """Prints the exponents, for each attractor if there are several, and where the error bars come from."""
     if document["nu_plus"] is None:
         many = "undecided how many" if document["undecided"] else document["attractors"]
         console.print(f"{many} attractors: nothing is averaged across them")

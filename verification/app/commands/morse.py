@@ -1,6 +1,6 @@
-"""`pinball morse`: which attractors and repellers are proved, and in what order?
+"""`pinball morse`: which attractors and repellers are proved, and in what order do orbits pass through them?
 
-`pinball sweep morse-graphs` does so for each box of a parameter grid, and finds the graphs that continue.
+`pinball sweep morse-graphs` answers this for each box of a parameter grid, and finds the graphs that continue.
 """
 
 import json
@@ -65,11 +65,13 @@ def command(
     certificates: str | None,
     output: Output,
 ) -> int:
-    """Which attractors are proved, and in what order? Exit status 1 when no trapping region but the whole is found.
+    """Which attractors are proved, and in what order? Exit status 1 when only the whole strip is found as a trapping
+    region.
 
-    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. Proved: from some
-    bounce on, every orbit that never lands on a join is in one of the Morse sets listed; it goes from one to another
-    only in the order given; and each trapping region keeps what enters it. A set may hold several attractors, or none.
+    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. It is proved that, from
+    some bounce on, every orbit that never lands on a join is in one of the Morse sets listed; it goes from one to
+    another only in the order given; and each trapping region keeps what enters it. A set may hold several attractors,
+    or none.
     """
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import region, sampled_share, shares
@@ -125,7 +127,7 @@ def span(text: str) -> tuple[Fraction, Fraction]:
 
 
 def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
-    """A Morse set as JSON: its number of boxes, their range, and the sets that walks lead to."""
+    """A Morse set as JSON: its number of boxes, their range, and the Morse sets below it in the order."""
     from verification.rigorous.graph import Cells
 
     members = graph.sets[index]
@@ -139,7 +141,7 @@ def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
 
 
 def blocks(graph: "MorseGraph") -> "Iterator[tuple[int, Mask]]":
-    """Index and trapping region (a mask of boxes) of each attracting set that has one."""
+    """The index and the trapping region (a mask of boxes) of each attracting set that has such a region."""
     for index in graph.attracting:
         block = graph.trapping(index)
         if not block[-1]:

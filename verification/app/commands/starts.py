@@ -49,7 +49,7 @@ def chosen(
     component: str | None,
     file: Path | None,
 ) -> list[Start]:
-    """The starts that the options describe; `ValueError` where they contradict each other."""
+    """The starts that the options describe; `ValueError` if the options contradict each other."""
     given = [name for name, value in (("--start", start), ("--from", point), ("--starts", file)) if value is not None]
     if len(given) != 1:
         raise ValueError(
@@ -175,7 +175,7 @@ def columns(
 ) -> "dict[str, NDArray[Any]]":
     """The named fields of each bounce and particle, with its `code`, as arrays of shape `(bounces + 1, particles)`.
 
-    A particle that sets out inside has no component, parameter or angle there: -1 and nan.
+    For a particle that starts in the interior, the start has component -1, and its parameter and angle are nan.
     """
     needed = {*fields} & {*Orbit._fields, "s"} | {"code"} | ({"x", "y"} if {*fields} & {*MORE} else set())
     theta, phi, component = _arrays(starts)
@@ -221,7 +221,7 @@ def entries_of(map: "PinballMap", found: "dict[str, NDArray[Any]]", particle: in
 
 
 def written(map: "PinballMap", starts: Sequence[Start], bounces: int, path: Path, fields: Sequence[str] | None) -> str:
-    """Writes all bounces as rows of a table in the format of the file's ending; the status of a stopped particle."""
+    """Writes all bounces as rows of a table, in the format that the file's ending names; returns the last status."""
     from numeric.sweeps.orbits import COLUMNS, record, table_written
 
     several = len(starts) > 1

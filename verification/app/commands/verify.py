@@ -138,7 +138,7 @@ def explore_command(port: int, show: bool, output: Output) -> int:
 
 
 def _free(port: int) -> int:
-    """The port, or a free one for 0; `ValueError` when it is taken."""
+    """`port`, or a free port if it is 0; `ValueError` if the port is taken."""
     with socket.socket() as probe:
         try:
             probe.bind((LOOPBACK, port))
@@ -250,14 +250,14 @@ def command(
 
 @dataclass(frozen=True)
 class Last:
-    """Results and images of the last report that still hold, since their code has not changed."""
+    """The results and images of the last report whose code has not changed since, so that they still hold."""
 
     results: "Mapping[str, Result]"
     images: "Mapping[str, bytes]"
 
     @classmethod
     def read(cls, directory: Path, claims: "Sequence[Claim]", digits: int, figures: "Sequence[Figure]" = ()) -> "Last":
-        """The results and images that still hold in the report of a directory; none where there is no report."""
+        """The results and images in the directory's report that still hold; empty if it has no report."""
         path = directory / "report.json"
         if not path.is_file():
             return cls({}, {})
@@ -280,7 +280,7 @@ IMAGE = re.compile(r'<img src="data:image/[^;]*;base64,([^"]*)" data-figure="([^
 
 
 def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
-    """The claims that --only and --section select; `ValueError` with the nearest ids or the sections if none is."""
+    """The claims that --only and --section select; `ValueError` with the accepted ids or sections if there is none."""
     claims = list(about.claims)
     if section is not None:
         known = dict.fromkeys(claim.section for claim in claims)
@@ -304,7 +304,7 @@ def within(name: str, section: str) -> bool:
 
 
 def label(name: str) -> str:
-    """The number at the start of a section's name; the whole name where it has none.
+    """The number at the start of a section's name; the whole name if it has no number.
 
     >>> label("6.3 Period-2 orbits"), label("Abstract"), label("Of the square")
     ('6.3', 'Abstract', 'Of the square')
@@ -326,7 +326,7 @@ def matching(only: str, ids: Sequence[str]) -> list[str]:
 
 
 def prepared(folder: str) -> Path:
-    """The report's directory, made if missing; refused before any work where it cannot be written."""
+    """The report's directory, created if missing; `ValueError`, before any work, if it cannot be written."""
     directory = Path(folder)
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -338,7 +338,7 @@ def prepared(folder: str) -> Path:
 
 
 def drawable(output: Output, wanted: "Sequence[object]") -> bool:
-    """True if Matplotlib is installed; prints a line where pictures are wanted and it is not."""
+    """True if Matplotlib is installed; if it is not, but pictures are wanted, prints a line that says so."""
     if not wanted or find_spec("matplotlib") is not None:
         return True
     output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
@@ -374,7 +374,7 @@ SHOWN = 6  # substantial corrections on the terminal
 
 
 def line_of(result: "Result") -> str:
-    """The line for a claim: its verdict, and what is wrong or why it is not proved."""
+    """The line for a claim: its verdict, and what is wrong with the claim or why it is not proved."""
     said = "" if result.verdict.value == "confirmed" else f": {result.erratum or result.method}"
     return f"{result.verdict.value:9}  {result.id}{said}"
 

@@ -31,9 +31,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Check:
-    """A check by starts at parameter values that were not used before: how many end on a known attractor, and the
-    others.
-    """
+    """A check by starts at new parameter values: how many end on a known attractor, and where the others end."""
 
     values: tuple[float, ...]
     starts: int

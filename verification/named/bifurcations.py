@@ -53,13 +53,13 @@ def bifurcations(
     kind.
 
     The interval is given as for `follow`. `starts` random starts at each of some `values` of the parameter find the
-    families, which are followed from birth to death: `.families`, `.events`, `.check()`, `.document(digits)`. What
-    attracts fewer than a hundredth of the starts at each value, or lives between two of the values alone, is missed;
+    families, which are followed from birth to death: `.families`, `.events`, `.check()`, `.document(digits)`. A family
+    is missed if it attracts fewer than a hundredth of the starts at each value, or exists only between two values;
     within chaos, where windows are narrow, the values lie eight times closer.
 
-    With a `kind`, `saddle-node`, `doubling` or `symmetry-breaking`, what comes back are the events of cycles of one
-    `period`, with proofs: those of the families, and of cycles that a search finds at some values (`searches`), which
-    need not attract. Each value that comes back is proved; that there are no others is not.
+    With a `kind` (`saddle-node`, `doubling` or `symmetry-breaking`), the result is the events of cycles of one
+    `period`, with proofs: events of the families, and of cycles, attracting or not, that a search finds at `searches`
+    values. Each value returned is proved; that there are no others is not.
 
     >>> found = bifurcations("ellipse", a="3/2", lam=("1/10", "1"), values=10, starts=20)
     >>> [(one["period"], one["symmetry"]) for one in found.document()["branches"]]

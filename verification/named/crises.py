@@ -37,9 +37,7 @@ Left = Callable[[Exponents], NDArray[np.bool_]]
 
 @dataclass(frozen=True)
 class Scaling:
-    """The power law `stay ~ distance**-exponent`; the error is a jackknife over blocks, as the points oscillate about
-    it.
-    """
+    """The power law `stay ~ distance**-exponent`; the error is a jackknife over blocks, as the points oscillate."""
 
     exponent: float
     error: float

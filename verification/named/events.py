@@ -68,9 +68,7 @@ def proof_of(
 
 
 def _centred(ring: Chords, x: Array) -> Array | None:
-    """The half cycle, rotated by a symmetry of the table so that its mirror is `theta -> -theta`; None if
-    impossible.
-    """
+    """The half cycle, rotated by a symmetry of the table so that its mirror is `theta -> -theta`, or None."""
     if ring.closure.turn != -1:
         return None
     step = 2 * pi / rotations(ring.table)
@@ -205,9 +203,7 @@ class EventCurve:
         return bool(np.any(np.max(np.abs(before + share[:, None] * step), axis=1) < SAME))
 
     def runs_as(self, other: "EventCurve") -> bool:
-        """True if the curve has the same ends as another, in either order. Symmetric images of a cycle have equal
-        curves.
-        """
+        """True if both curves have the same ends, in either order. Symmetric images of a cycle have equal curves."""
         ends = np.array([self.points[0], self.points[-1]])
         return any(np.allclose(ends, other.points[::way][:: len(other.points) - 1], atol=ALIKE) for way in (1, -1))
 

@@ -1,7 +1,7 @@
-"""The decorator that registers judges, and common steps of judgements.
+"""The decorator that registers judges, and steps that many judgements share.
 
-An identity is proved by reduction or refuted by a ball at a witness; a printed range is judged with its ends; a
-correction counts only when it is proved too.
+An identity is proved by reduction, or refuted by a ball at a witness. A printed range is judged with its end points. A
+correction counts only if it is proved too.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -109,7 +109,7 @@ def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
 
 
 def digits(claim: Claim, value: Number, mend: tuple[str, str] | None = None) -> Judgement:
-    """The judgement on a printed decimal, from the true value; `mend` is the misprint and its correction."""
+    """The judgement on a printed decimal, from the true value; `mend` is a misprint and its correction."""
     shown_value = text_of(value) if isinstance(value, Expr) else real_ball(value, 20).str(15, radius=False) + "..."
     finding = rounded(str(claim.printed), value)
     if mend is None:
@@ -146,7 +146,7 @@ def on_range(
     right: Mapping[Symbol, Interval] | None = None,
     erratum: str = "",
 ) -> Judgement:
-    """The judgement on a statement over the printed range; `right` is the range where it holds."""
+    """The judgement on a statement over the printed range; `right` is the range over which it does hold."""
     finding = prove(claim.box)
     if right is None:
         return Judgement(finding, derived)
@@ -154,7 +154,7 @@ def on_range(
 
 
 def by(argument: str, *findings: SignFinding) -> SignFinding:
-    """The finding of an argument in one sentence that rests on `findings`: proved when all of them are."""
+    """The finding of a one-sentence argument that rests on `findings`: proved if all of them are proved."""
     whole = conjunction(*findings)
     return SignFinding(whole.outcome, f"{argument} [{whole.reason}]" if whole else whole.reason)
 
@@ -185,13 +185,13 @@ def greater(left: Expr, right: Expr) -> SignFinding:
 
 
 def shown(argument: str, holds: bool | None) -> SignFinding:
-    """The finding of an exact decision of SymPy: `True`, `False`, or `None` for undecided."""
+    """The finding of an exact decision by SymPy: `True`, `False`, or `None` if undecided."""
     outcome = {True: Outcome.PROVED, False: Outcome.REFUTED}.get(holds, Outcome.UNKNOWN)  # type: ignore[arg-type]
     return SignFinding(outcome, argument)
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a proof in balls, where a proof that fails refutes nothing.
+    """The finding of a proof in balls; if the proof fails, the finding is unknown and not refuted.
 
     >>> answer(True, "").outcome.name, answer(False, "").outcome.name
     ('PROVED', 'UNKNOWN')

@@ -1,6 +1,6 @@
-"""The division of claims among processes: claims that share results go together, while the load stays even.
+"""The division of claims among processes: claims that share results stay together, and the load is even.
 
-The bounds are relative to the work of one process: the fewer processes there are, the less sharing costs.
+The bounds on groups are relative to the work of one process: with fewer processes, claims can be grouped more.
 """
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ def sharing(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
 
 
 def shared_out(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
-    """The groups of `sharing`, the most expensive first, with small groups of one module bundled."""
+    """The groups of `sharing`, with small groups of one module joined; the most expensive group comes first."""
     share = seconds(claims) / jobs
     group = {claim.id: own for own in sharing(claims, jobs) for claim in own}
     handful: dict[str, list[Claim]] = {}

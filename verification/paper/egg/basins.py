@@ -1,7 +1,7 @@
 """Judges of claims on basins of attraction, and on the absence of cycles of short periods.
 
-The basin of an attracting cycle is open, so no two such basins are intermingled at every point; pictures show a fractal
-boundary, whose dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
+The basin of an attracting cycle is open, so two such basins cannot be intermingled at every point. Pictures show a
+fractal boundary, whose dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
 """
 
 from dataclasses import replace
@@ -55,13 +55,13 @@ def boundary(name: str, contraction: str, distances: tuple[float, ...]) -> Uncer
 
 
 def told(law: Uncertainty) -> str:
-    """The dimension with its error and the range of distances, as text."""
+    """The dimension of the basin boundary with its error, and the range of distances, as text."""
     return f"{law.dimension:.3f} +- {law.error:.3f} for eps from {law.largest:g} to {law.smallest:g}"
 
 
 @cache
 def division() -> Division:
-    """The data at `lam = 9/100`: the tube around period 2, and the annulus around the unstable cycle of period 4."""
+    """The division of phase space at `lam = 9/100`: a tube around period 2, an annulus around an unstable 4-cycle."""
     entries = (0.14, 0.006), (0.1, 0.01)
     tube = AbsorbingTube(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, entry_tubes=entries)
     annulus = ExpandingAnnulus(0.1395, 0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
@@ -69,7 +69,7 @@ def division() -> Division:
 
 
 def alternating() -> Alternating:
-    """The theorem on strips of both basins next to the stable manifold of the vertical orbit."""
+    """The theorem that strips of both basins alternate next to the stable manifold of the vertical orbit."""
     return Alternating(Fraction(9, 100), division().tube)
 
 
@@ -96,7 +96,7 @@ def cuspless_intermingled(claim: Claim) -> Judgement:
 
 @judges("cuspless.two_basins")
 def two_basins(claim: Claim) -> Judgement:
-    """Almost every start is in one of two basins; that the chaotic set is one attractor is not proved."""
+    """Almost every start is in one of two basins; it is not proved that the chaotic set is one attractor."""
     found = division()
     rate = f"each orbit that misses the joins has nu_+ >= {found.rate}"
     return Judgement(
@@ -114,7 +114,7 @@ def two_basins(claim: Claim) -> Judgement:
 
 
 def beyond_the_crisis() -> CommonBoundary:
-    """The theorem on the triangle near the vertices at 0.7, with an orbit to each attracting triangle."""
+    """The theorem on the saddle triangle near the vertices at 0.7: orbits go from it to each attracting triangle."""
     sink, saddle = (1.16897116, 0.43119899), replace(TRIANGLE, start=(-0.14235898,))
     sinks, turns = (sink, (-sink[0], -sink[1])), (Fraction(1, 3), Fraction(2, 3))
     starts = 0.9, 0.21125  # middles of pieces of the branch that were sampled to end on one triangle
@@ -127,7 +127,7 @@ MIDDLE = (Fraction(0), Fraction(1, 50)), (Fraction(0), Fraction(1, 20))  # betwe
 
 @cache
 def common() -> tuple[SignFinding, SignFinding]:
-    """The findings that both basins hold open discs between the triangles, and share a boundary: a stable manifold."""
+    """The findings that both basins contain open discs, and that both have a stable manifold in their boundary."""
     found = beyond_the_crisis()
     checks = found.checks
     cycles = answer(bool(checks["discs"] and checks["apart"]), "two cycles attract a disc each, apart from the other")
@@ -140,9 +140,9 @@ def common() -> tuple[SignFinding, SignFinding]:
 
 @judges("egg.basins_intermingled")
 def egg_intermingled(claim: Claim) -> Judgement:
-    """A sampled boundary has a dimension near 2, and both basins are proved to accumulate at a stable manifold.
+    """A sample gives a boundary dimension near 2; both basins are proved to accumulate at a stable manifold.
 
-    Basins of attracting cycles are open, so neither is dense in a disc of the other: no sample can show that.
+    Basins of attracting cycles are open, so neither is dense in a disc of the other, whatever a sample may suggest.
     """
     law = boundary("egg", "0.7", (1e-3, 1e-5, 1e-7))
     open_, both = common()
@@ -205,7 +205,7 @@ def no_period3_caption(claim: Claim) -> Judgement:
 
 @judges("egg.projection_misses")
 def projection_misses(claim: Claim) -> Judgement:
-    """Two counterexamples: orbits that return to their first position after three bounces."""
+    """Gives two counterexamples: orbits that return to their first position, but not angle, after three bounces."""
     free, produced = witness(EXACT_SHAPE, Rational(0), *SLAP), witness(EXACT_SHAPE, Rational(3, 10), *PRODUCED)
     proved = bool(free.exists and produced.exists and produced.produced)
     met = answer(proved, "both orbits proved by interval Newton")
@@ -232,7 +232,7 @@ def points_of_period_4() -> PeriodicPoints:
 
 @judges("cuspless.slap_no_period4")
 def slap_no_period4(claim: Claim) -> Judgement:
-    """Four intervals hold at most one point each of period dividing 4; the two 2-cycles are these points."""
+    """Fixed points of `T0^4` lie in four intervals, at most one in each; these are the points of the two 2-cycles."""
     found = points_of_period_4()
     known = [cuspless_horizontal(), cuspless_vertical()]
     return Judgement(

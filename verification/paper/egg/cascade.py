@@ -41,7 +41,7 @@ STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # neighb
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    """The finding of a three-valued proof; if the proof fails, the finding is unknown and not refuted."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
@@ -62,7 +62,7 @@ def listed() -> str:
 
 @judges("egg.alpha_destabilises")
 def destabilises(claim: Claim) -> Judgement:
-    """The stability number of the diameters falls with alpha; that chaos spreads is sampled."""
+    """The stability number of the diameters is proved to fall with alpha; only samples show that chaos spreads."""
     falls = positive(tilt().diff(alpha), {alpha: SHAPES})
     counts = [len(row) for row in chaotic_lams().values()]
     said = (
@@ -80,7 +80,7 @@ def destabilises(claim: Claim) -> Judgement:
 
 @judges("egg.tongue")
 def tongue(claim: Claim) -> Judgement:
-    """The range of contractions with chaos, for each shape, from a sample."""
+    """The range of contractions with chaos, for each shape, is determined from a sample."""
     rows = chaotic_lams()
     ends = [(min(rows[x]), max(rows[x])) for x in ("0.08", "0.09", "0.1") if rows[x]]
     starts_lower = [low for low, _ in ends]
@@ -104,7 +104,7 @@ def small_basins(claim: Claim) -> Judgement:
 
 @judges("egg.representative")
 def representative(claim: Claim) -> Judgement:
-    """The same bifurcations occur in the same order at two other shapes, except for the fold of the triangles."""
+    """At two other shapes the same bifurcations occur in the same order, except for the fold of the triangles."""
     said, good = [], True
     for shape in (OTHERS[0], SHAPE, OTHERS[1]):
         events = [located("symmetry-breaking", alpha=shape)]
@@ -135,7 +135,7 @@ def cycles_for_small_lam() -> SignFinding:
 
 @judges("egg.only_period4")
 def only_period4(claim: Claim) -> Judgement:
-    """Proved for small contractions by a cover of phase space; beyond, random starts reach certified cycles only."""
+    """For small contractions, a cover of phase space proves the claim; for larger ones it is sampled."""
     alone = all([a.period for a in egg(x)] == [4, 4, 4] and unsettled(egg(x)) == 0 for x in SMALL)
     proofs = [proved_at(x, 4) for x in SMALL]
     said = (
@@ -154,7 +154,7 @@ def only_period4(claim: Claim) -> Judgement:
 
 @cache
 def attracting_without_mirror() -> SignFinding:
-    """The finding of attracting asymmetric cycles of period 4 from the loss of symmetry to the doubling."""
+    """The finding that asymmetric cycles of period 4 attract, from the loss of symmetry to the period doubling."""
     table, (lam, ends) = table_of(3).at(alpha=SHAPE), BETWEEN
     start = attractor(table, lam, (0.05, 3.1))
     away = abs(np.remainder(start[0] + start[2] + np.pi, 2 * np.pi) - np.pi) > 0.01
@@ -196,7 +196,7 @@ def period4_doubles(claim: Claim) -> Judgement:
 
 @judges("egg.negative_exponents")
 def negative_exponents(claim: Claim) -> Judgement:
-    """A counterexample: an attracting cycle at a bifurcation has a multiplier of modulus 1 and the exponent 0."""
+    """Gives a counterexample: a cycle that attracts at its period doubling has a multiplier -1 and the exponent 0."""
     doubles = located("doubling", alpha=SHAPE, n=Integer(3))
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]  # a cycle's proof
     return Judgement(
@@ -218,7 +218,7 @@ def negative_exponents(claim: Claim) -> Judgement:
 
 @judges("egg.tolerance_sensitive")
 def tolerance_sensitive(claim: Claim) -> Judgement:
-    """The apparent end of period 4, for flights solved with larger and smaller tolerances."""
+    """Period 4 seems to end at contractions that depend on the tolerance with which flights are solved."""
     ends = seen_ends()
     true = float(located("doubling", alpha=SHAPE, n=Integer(3)).ball.mid())
     said = ", ".join(f"{f'{end:.5f}' if end else 'above 0.3725'} with {stop:g}" for stop, end in ends.items())

@@ -48,13 +48,13 @@ EVEN, ODD = (4, 6), (5, 7)
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    """The finding of a three-valued proof; if the proof fails, the finding is unknown and not refuted."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @judges("map.mixture")
 def mixture(claim: Claim) -> Judgement:
-    """Both statements with "only" are proved; the generic mixture is sampled on the egg and the cuspless cardioid."""
+    """Both statements with "only" are proved; the mixture in the egg and the cuspless cardioid is sampled."""
     periodic = by(LIMIT, *lyapunov())
     kinds = {x: (bool(chaotic(egg(x))), bool(cycles(egg(x)))) for x in MIXED}
     cuspless = found("cuspless", "0.09")
@@ -75,7 +75,7 @@ def mixture(claim: Claim) -> Judgement:
 
 @judges("map.sudden_creation")
 def sudden_creation(claim: Claim) -> Judgement:
-    """The chaotic attractor born at the orbit through both joins."""
+    """A chaotic attractor is born at the orbit through both joins, where the contraction passes `lambda-star`."""
     return Judgement(
         by(
             "an orbit joins the two jumps of the curvature at lam = lambda*, and a chaotic attractor is next to it "
@@ -118,7 +118,7 @@ def kink_structure(claim: Claim) -> Judgement:
 
 @judges("map.cascades_of_different_periods")
 def different_periods(claim: Claim) -> Judgement:
-    """The first doublings of cycles of three periods are certified."""
+    """The first two doublings of cycles of three different periods are certified."""
     cascades = doublings()
     told = "; ".join(f"{', '.join(map(str, c.periods))} at {', '.join(f'{x:.6f}' for x in c.lams)}" for c in cascades)
     return sampled(
@@ -192,13 +192,13 @@ def elastic(cycle: Attractor) -> bool:
 
 
 def near(theta: arb, x: float) -> float:
-    """The difference of two angles, modulo full turns."""
+    """The difference between the midpoint of an angle `theta` and `x`, modulo full turns."""
     return float(np.remainder(float(theta.mid()) - x + np.pi, 2 * np.pi) - np.pi)
 
 
 @judges("map.weak_chaos")
 def weak_chaos(claim: Claim) -> Judgement:
-    """No attracting set is a cycle, and every orbit of it off cusp and joins is unstable."""
+    """No attracting set is a cycle, and every orbit in one that misses cusp and joins is unstable."""
     return Judgement(
         by(
             "in the cardioid, for every lam < 1, every orbit that misses the cusp stretches in one direction and "
@@ -216,7 +216,7 @@ def weak_chaos(claim: Claim) -> Judgement:
 
 @judges("map.other_K")
 def other_K(claim: Claim) -> Judgement:
-    """The diameters never double for even K; for odd K they double supercritically, along one curve."""
+    """For K = 4, 6 the diameters never double their period; for K = 5, 7 they do, supercritically."""
     even = [even_stability_numbers(K) for K in EVEN]
     squares = [
         zero("", P - root**2)

@@ -19,7 +19,7 @@ WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # LaTeX commands as text; oth
 
 
 class FigureSource(Protocol):
-    """A picture that is not drawn yet: a figure of the paper, or a diagram of a measurement."""
+    """A picture to be drawn on demand: a figure of the paper, or a diagram of a measurement."""
 
     @property
     def name(self) -> str:
@@ -27,22 +27,22 @@ class FigureSource(Protocol):
 
     @property
     def seconds(self) -> float:
-        """The estimated time to draw it, in seconds."""
+        """The estimated time to draw the picture, in seconds."""
 
     @property
     def module(self) -> str:
-        """The module that draws it."""
+        """The module that draws the picture."""
 
     def drawn(self) -> bytes:
-        """The image, as a file in some format that HTML pages show."""
+        """The image, as the bytes of a file in a format that HTML pages show."""
 
 
 @dataclass(frozen=True)
 class PaperFigure:
     """A figure of the paper: its name, the function that computes its data, and its place in the paper.
 
-    `labels` are the paper's, empty for a figure that it only mentions. The caption is quoted with its misprints;
-    `shows` describes the picture. A draft takes about `seconds`.
+    `labels` are those of the paper, empty for a figure that the paper only mentions. The caption is quoted with its
+    misprints; `shows` describes the picture. A draft takes about `seconds` to compute.
     """
 
     name: str
@@ -60,11 +60,11 @@ class PaperFigure:
 
     @property
     def module(self) -> str:
-        """The module that computes and draws it."""
+        """The module that computes and draws the figure."""
         return f"verification.paper.figures.{self.made_by.partition('.')[0]}"
 
     def data(self, fine: float = DRAFT) -> "Panels":
-        """The panels at a resolution; 1 is a draft."""
+        """The panels at the resolution `fine`, which is 1 for a draft."""
         return self._pair[0](fine)
 
     def image(self, panels: "Panels", ending: str) -> bytes:

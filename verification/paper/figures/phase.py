@@ -49,7 +49,7 @@ def settled(map: PinballMap, particles: int, bounces: int, transient: int = TRAN
 
 
 def particles_of(orbit: Orbit, chosen: Any) -> Orbit:
-    """Some of the particles of an orbit, by an index of columns."""
+    """Some of the particles of an orbit, selected by an index of columns."""
     return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their types
 
 
@@ -85,7 +85,7 @@ def by_angle(orbit: Orbit) -> Curve:
 
 
 def flights(orbit: Orbit) -> Curve:
-    """The trajectories in the plane, with a gap between two particles."""
+    """The trajectories in the plane, with gaps between particles."""
     gap = np.full((1, orbit.x.shape[1]), np.nan)
     return Curve(*(np.concatenate([field, gap]).T.ravel() for field in (orbit.x, orbit.y)))
 
@@ -96,7 +96,7 @@ def outline(map: PinballMap) -> Curve:
 
 
 def facts(map: PinballMap, **more: Fact) -> dict[str, Fact]:
-    """Table, shape and contraction of a panel, and further data, by name."""
+    """Table, shape and contraction of a panel, and the given further data, by name."""
     shape = {entry.name: float(value) for entry, value in zip(map.ir.shape, map.shape, strict=True)}
     lam: dict[str, Fact] = {"lam": float(map.lam)} if map.lam.size == 1 else {}
     return {"table": map.ir.table, **shape, **lam, **more}
@@ -154,7 +154,7 @@ PARTICLES, FLIGHTS = 300, 3  # orbits in phase space, and orbits drawn in the ta
 
 
 def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
-    """The flights of a few particles and the bounces of many after a transient, as two panels.
+    """Two panels: the flights of a few particles, and the bounces of many, after a transient.
 
     >>> room, space = portrait(PinballMap("ellipse", lam="1/2", a=2), 0.1)
     >>> space.x, space.y

@@ -1,7 +1,7 @@
-"""Judges of claims on Lyapunov exponents and sizes of basins: proved for cycles, else sampled with an error.
+"""Judges of claims on Lyapunov exponents and sizes of basins: proved for cycles, otherwise sampled with an error.
 
 Paper: sections 5.3, 6.4, 6.6 and the appendix. Exponents of cycles are proved from certified multipliers, those of
-chaotic orbits sampled with standard errors.
+chaotic orbits are sampled, with standard errors.
 """
 
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ SEED = 1
 
 
 def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:
-    """The share of random starts that end on period 3: a negative exponent, away from the diameters."""
+    """The fraction of random starts that end on period 3 (with a negative exponent, away from the diameters)."""
     map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
     ball = phase_starts(map, starts, SEED)
     end = map.exponents(ball.theta, ball.phi, 200, bounces, ball.component)

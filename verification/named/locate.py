@@ -149,7 +149,9 @@ def _searched(problem: Problem, start: list[float], digits: int, in_balls: bool 
 def _box(
     system: System, start: list[float], digits: int, guard: int, sizes: tuple[int, int], in_balls: bool = False
 ) -> tuple[tuple[tuple[arb, ...], arb, int, int], Steps]:
-    """Centre, radius, bits and digits of a box for the proof, and Newton's steps; `sizes`: digits of both."""
+    """Centre, radius, bits and digits of a box, and Newton's steps; `sizes`: digits of the radius, of Newton's
+    method.
+    """
     tick = telling(f"{digits} digits")
     solution = refined(system, start, sizes[1], in_balls)
     tick(MPMATH_SHARE)

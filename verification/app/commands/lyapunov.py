@@ -227,9 +227,9 @@ def command(
 ) -> int:
     """The two exponents per bounce, in the coordinates (s, phi), with standard errors, for each attractor.
 
-    Starts are those of the paper's appendix: points uniform in the table, directions uniform, the first collision
-    elastic; or uniform in arc length and sin(phi). Nothing is averaged across attractors. Ctrl-C ends a long count,
-    and what was counted is reported.
+    Starts are those of the paper's appendix (points uniform in the table, directions uniform, the first collision
+    elastic), or uniform in arc length and sin(phi). Nothing is averaged across attractors. Ctrl-C ends a long run; the
+    bounces so far are reported.
     """
     if until_error is not None and not until_error > 0:
         raise ValueError(f"--until-error = {until_error} is no error; give a positive number such as 1e-4")

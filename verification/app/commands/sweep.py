@@ -207,7 +207,7 @@ def bifurcation_command(
     marks: tuple[str, ...],
     how: How,
 ) -> int:
-    """Where random particles are after a long time, for each contraction; starts as in the paper's appendix.
+    """Bifurcation diagram: random particles after a long time, for each contraction; starts as in the paper's appendix.
 
     With --shape NAME=LOW:HIGH:N a parameter of the table or of the law varies, and --lams is one number. Each --mark is
     a certificate that `pinball locate --certificate` wrote for this scene, and is drawn as a line at the proved value.

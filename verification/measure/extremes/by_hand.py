@@ -275,7 +275,7 @@ def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
 
 
 def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
-    """Particles from one end of a piece, or beside it, to the other end: along a side or the chord of an arc."""
+    """Particles that fly from one end of a piece, or near it, to the other end: along a side or the chord of an arc."""
     where = starts.component
     ends = np.array(map.states.ends)[where]
     at = np.where(off > 0, ends[:, 0], ends[:, 1])

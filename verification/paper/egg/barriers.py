@@ -2,7 +2,7 @@
 
 At `lam = 0.66` a curve around phase space, a *barrier* above `phi = 0`, is mapped strictly below itself: no orbit that
 starts below it reaches the attracting triangle with `phi > 0`. With its mirror image it encloses a trapping region. At
-0.6623 an orbit crosses. Beyond the crisis there are windows in which other cycles attract.
+0.6623 an orbit crosses from below to above. Beyond the crisis there are windows in which other cycles attract.
 
 The barriers do not prove that the region holds one chaotic attractor, nor that this attractor vanishes when the
 barriers break: an attractor with a smaller basin may remain.

@@ -328,9 +328,7 @@ def near_tenth(claim: Claim) -> Judgement:
 
 @judges("egg.figure_chaos")
 def figure_chaos(claim: Claim) -> Judgement:
-    """Samples for panels (c) and (d) show three chaotic attractors at one vertex each, and one that visits all
-    three.
-    """
+    """Samples for panels (c), (d) show three chaotic attractors at one vertex each, and one that visits all three."""
     local, wide = chaotic(egg("0.43")), chaotic(egg("0.45"))
     good = [len(vertices(a)) for a in local] == [1, 1, 1] and [len(vertices(a)) for a in wide] == [3]
     rates = [f"{max((a.nu_plus for a in some), default=np.nan):.2f}" for some in (local, wide)]
@@ -355,9 +353,7 @@ def vertices(attractor: Attractor) -> set[int]:
 
 @judges("egg.only_smooth_chaos")
 def only_smooth(claim: Claim) -> Judgement:
-    """It is proved that only cycles of period 2 attract in circle and ellipses, and that the egg has strange
-    attractors.
-    """
+    """Only cycles of period 2 are proved to attract in circle and ellipses; the egg has proved strange attractors."""
     others = by(
         "for 0 < lam < 1 every orbit of an ellipse converges to one of two cycles, and every orbit of the circle to a "
         "diameter, since |phi| falls by the factor lam",

@@ -239,9 +239,7 @@ def chaotic_attractor(claim: Claim) -> Judgement:
 
 @judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
 def near_cusp(claim: Claim) -> Judgement:
-    """Almost every orbit comes near the cusp: curves grow even though the cusp cuts them, and long ones come near
-    it.
-    """
+    """Almost every orbit comes near the cusp: curves grow although the cusp cuts them; long ones come near it."""
     return Judgement(
         by(
             "a short curve along the cone is cut in two pieces at most, and the sum of the inverses of their stretches "
@@ -259,9 +257,7 @@ def near_cusp(claim: Claim) -> Judgement:
 
 @judges("cuspless.stable_if_flatter")
 def stable_if_flatter(claim: Claim) -> Judgement:
-    """A straight wall has the least curvature possible; a wall that bends can reverse the sign of the flip's normal
-    form.
-    """
+    """No wall has less curvature than a straight one; bending it can reverse the sign of the flip's normal form."""
     free, bent = coefficient()
     M, _ = return_map()
     trace, det = trace_and_determinant(cuspless_horizontal())

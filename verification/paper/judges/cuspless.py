@@ -291,7 +291,7 @@ def map_nondifferentiable(claim: Claim) -> Judgement:
 
 @judges("map.noncompact_domain")
 def noncompact(claim: Claim) -> Judgement:
-    """The cardioid's phase space is not closed: at the rightmost point the normal hits the cusp, its neighbours do
+    """The cardioid's phase space is not closed: the normal at the rightmost point hits the cusp, its neighbours do
     not.
     """
     arc = cardioid.components[0]

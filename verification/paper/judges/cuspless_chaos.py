@@ -98,9 +98,7 @@ def one_attractor(lams: tuple[str, ...]) -> Judgement:
 
 @judges("cuspless.global_near_one")
 def global_near_one(claim: Claim) -> Judgement:
-    """Near 1, a compact set whose orbits off the joins are unstable attracts all orbits; that it is one attractor is
-    sampled.
-    """
+    """Near 1, a compact set whose orbits off the joins are unstable attracts all; it is sampled as one attractor."""
     return one_attractor(NEAR_ONE)
 
 
@@ -206,9 +204,7 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.chaotic_above_star")
 def chaotic_above_star(claim: Claim) -> Judgement:
-    """Chaos is proved by a trapping polygon up to 1/10 and by a cone of beams above; not that the attractor is the
-    same.
-    """
+    """Chaos is proved by a polygon up to 1/10 and by a cone of beams above; not that the attractor is the same."""
     return Judgement(
         by(
             "from lambda* to 1/10, and from there to 1, almost every start of an open set stretches, and "

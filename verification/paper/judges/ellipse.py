@@ -267,9 +267,7 @@ def curvature_minor(claim: Claim) -> Judgement:
 
 @judges("ellipse.major_axis_eigenvalues")
 def major_eigenvalues(claim: Claim) -> Judgement:
-    """Judges the printed bounds of the eigenvalues: the characteristic polynomial is positive at 0 and negative at
-    1.
-    """
+    """Judges the printed bounds of the eigenvalues: the characteristic polynomial is > 0 at 0 and < 0 at 1."""
     trace, det = major()
     return on_range(
         claim,

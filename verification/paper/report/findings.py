@@ -33,7 +33,7 @@ GRADES = {
 
 @dataclass(frozen=True)
 class ReportFinding:
-    """A finding: its kind (`holds` or `new`), its sentence, its claims and its figure."""
+    """A main finding: its kind (`holds` or `new`), its sentence, its claims and its figure."""
 
     kind: str
     text: str
@@ -43,7 +43,7 @@ class ReportFinding:
 
 @dataclass(frozen=True)
 class Erratum:
-    """One correction, its gravity, and the claims that it concerns."""
+    """A correction, its gravity, and the claims that it concerns."""
 
     text: str
     grade: str
@@ -57,7 +57,7 @@ def _document(folder: Path) -> dict[str, Any]:
 
 
 def findings(results: Iterable[Result], about: Paper) -> dict[str, list[ReportFinding]]:
-    """The findings by kind, `holds` and `new`, that rest on the judged claims."""
+    """The findings whose claims were all judged, by kind (`holds` and `new`)."""
     settled = {result.id for result in results if result.verdict.value != "open"}
     known = [
         ReportFinding(**{**each, "claims": tuple(each["claims"])})
@@ -93,7 +93,7 @@ MARK = Markup("<mark>{}</mark>")
 
 
 def compared(result: Result) -> tuple[Markup, Markup]:
-    """The printed and the true text as HTML, with their difference marked where they are similar."""
+    """The printed and the true text as HTML; the differences are marked if the texts are similar."""
     wrong = result.verdict.value in ("corrected", "refuted")
     witness = tuple(result.witness.items()) if wrong and result.printed.startswith("[[") else ()
     return _compared(result.printed, result.derived, wrong, witness)
@@ -119,7 +119,7 @@ def _compared(printed: str, true: str, wrong: bool, witness: tuple[tuple[str, st
 
 
 def _differing(left: str, right: str, witness: Sequence[tuple[str, str]]) -> list[int]:
-    """The indices of the entries in which two matrices differ at a point."""
+    """The indices of the entries in which two matrices differ at the point `witness`."""
     values = {LETTERS[name]: parse(text, {}) for name, text in witness if name in LETTERS}
     pairs = zip(_entries(left), _entries(right), strict=True)
     return [n for n, (a, b) in enumerate(pairs) if _unequal(a, b, values)]
@@ -143,7 +143,7 @@ def _cells(matrix: Markup, marked: Sequence[int]) -> Markup:
 
 
 def _worded(printed: str, true: str) -> tuple[Markup, Markup]:
-    """Two sentences as HTML; where most words agree, the others are marked."""
+    """Two sentences as HTML; if most words agree, the differing words are marked."""
     sides = [[piece for raw, shown in pieces(text) for piece in _split(raw, shown)] for text in (printed, true)]
     keys = [[raw.casefold().strip(".,;:") for raw, _ in side] for side in sides]
     matcher = SequenceMatcher(None, keys[0], keys[1], autojunk=False)
@@ -164,12 +164,12 @@ def _marked(words: Sequence[tuple[str, Markup]], alone: set[int]) -> Markup:
 
 
 def _split(raw: str, shown: Markup) -> list[tuple[str, Markup]]:
-    """A formula as one piece, other text word by word."""
+    """A text in pieces with their HTML: a formula as one piece, other text word by word."""
     return [(raw, shown)] if "<math" in shown else [(word, remark(word)) for word in raw.split()]
 
 
 def letter(results: Sequence[Result], about: Paper) -> str:
-    """A letter in LaTeX to the authors: substantial errata with the printed text, the others on one line each."""
+    """A letter in LaTeX to the authors: substantial errata with the printed text, other errata on one line each."""
     by_grade = graded(results, about)
     items = [
         rf"\item {_where(each)} ``{_quoted(each.claims[0].quote)}'' -- {_set(each.text)}"
@@ -240,7 +240,7 @@ def _quoted(quote: str) -> str:
 
 
 def _set(text: str) -> str:
-    """Our text as a sentence in LaTeX, with its formulas."""
+    """A text of ours as a sentence in LaTeX, with its formulas."""
     text = text[:1].upper() + text[1:] if text[:1].islower() and text[1:2].isalpha() else text
     text = text if text.endswith((".", "!", "?")) else f"{text}."
     shown, at = "", 0
@@ -251,7 +251,7 @@ def _set(text: str) -> str:
 
 
 def _typed(text: str) -> str:
-    """Text in LaTeX: letters of the paper and signs become mathematics, quotation marks are opened."""
+    """Text in LaTeX: symbols of the paper and signs become mathematics, quotation marks are opened."""
     parts = LETTER_OR_SIGN.split(re.sub(r"(?<![\w)])'(?=\w)", "`", text))
     return "".join(_symbol(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
@@ -292,7 +292,7 @@ BREAKS = "*/+,=_"  # a long formula may be broken after these
 
 
 def tables(results: Sequence[Result], sections: Iterable[str] = ()) -> str:
-    """Three tables: the counts, the errata, and every claim; they need the packages longtable and booktabs."""
+    """Three tables in LaTeX (the counts, the errata, and every claim), for the packages longtable and booktabs."""
     parts = [
         "% \\usepackage{booktabs,longtable}",
         _table("lr", ("verdict", "claims"), [[name, str(number)] for name, number in counts(results).items()]),

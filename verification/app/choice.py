@@ -33,9 +33,9 @@ MOST = 500  # bounces drawn
 
 @dataclass(frozen=True)
 class Choice:
-    """A table by name or formula, its shape and contraction as text, where the particle starts and how far it flies.
+    """The table (name or formula), its shape and contraction as text, the particle's start and its number of bounces.
 
-    The default particle ends on the triangle, a cycle of period 3.
+    The default particle ends on an attracting cycle of period 3.
     """
 
     table: str = "egg"
@@ -184,9 +184,7 @@ def tip(map: PinballMap, particle: BoundaryParticle, length: float) -> tuple[flo
 
 
 def phase(map: PinballMap, orbit: Orbit) -> Curve:
-    """The points `(s, sin(phi))` of all bounces until the particle stops; `s` is arc length from minus half the
-    perimeter.
-    """
+    """The phase points `(s, sin(phi))` of all bounces until the particle stops; `s` is from `-L/2` to `L/2`."""
     made = orbit.code == 0
     return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
 
@@ -199,7 +197,7 @@ def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> BoundaryPart
 
 
 def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
-    """Yields without end the phase points of random particles; each curve has the next few bounces of all particles."""
+    """Yields the phase points of random particles without end, a few bounces of all particles at a time."""
     starts = interior_starts(map, particles, seed)
     component, theta, phi = starts.component, starts.theta, starts.phi
     while True:
@@ -247,8 +245,7 @@ LAMS, EACH, SHOWN = 201, 6, 48  # contractions of the strip, particles of each, 
 
 
 def strip(choice: Choice, seed: int = 1) -> tuple[Curve, Array, Array]:
-    """The points `(lam, s)` of orbits after a long time, the contractions, and the largest exponent at each
-    contraction.
+    """Points `(lam, s)` of orbits after a long time; the contractions; the largest exponent at each contraction.
 
     `ValueError` if the formula is not a law at some contraction.
     """
@@ -289,7 +286,7 @@ CELLS = (120, 60)  # of a picture of basins
 
 
 def basins_of(map: PinballMap, seed: int = 1) -> tuple[NDArray[np.int64], float, list[str]]:
-    """The index of the attractor that each cell of phase space reaches; half the perimeter; the attractors in words."""
+    """The index of the attractor that each cell of phase space reaches, half the perimeter, the attractors in words."""
     attractors = find(map, 200, seed, images=True)
     half = map.arclength.perimeter / 2
     s, sine = ((np.arange(n) + 0.5) / n * 2 - 1 for n in CELLS)

@@ -1,7 +1,7 @@
 """`pinball`: the command line, with the output and the errors that all commands share.
 
-A command is imported when it is called, so `pinball --help` loads no mathematics. People read text and a bar,
-programs read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
+A command is imported when it is called, so `pinball --help` loads no mathematics. Output is text with a progress bar
+for people, or JSON for programs. An error is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
 """
 
 import gc
@@ -162,9 +162,7 @@ def _refuse(value: str, accepted: str) -> Path:
 
 
 def _drawable(context: click.Context, option: click.Parameter, value: str | None) -> Path | None:
-    """The path of the picture; an unknown format, or a file that cannot be drawn or written, is refused before any
-    work.
-    """
+    """The path of the picture; a file that cannot be drawn or written is refused before any work."""
     if value is None:
         return None
     from verification.plots.sheet import FORMATS
@@ -185,7 +183,7 @@ class Whole(click.IntRange):
     """
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number; click's error, with what is accepted, for anything else."""
+        """The number; raises click's error, which says what is accepted, for anything else."""
         if isinstance(value, str) and len(value) > DIGITS:
             self.fail(f"{value[:DIGITS]!r}... has {len(value)} digits", param, ctx)
         return super().convert(value, param, ctx)
@@ -201,7 +199,7 @@ json_option = click.option(
 
 
 def plot_option(kind: str, about: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Decorator that gives a command `--plot FILE`, where `Output.write` draws its results by the function `kind`."""
+    """Decorator that adds the option `--plot FILE` to a command, whose results the function `kind` draws."""
 
     def given(command: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(command)
@@ -271,7 +269,7 @@ LONGEST = 600  # characters of an error; of a longer one the middle is left out
 
 
 class Questions(click.Group):
-    """A command group with its commands' names and one-line helps, which imports a command only when it is called."""
+    """A command group that knows its commands' names and short helps, and imports a command only when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -352,7 +350,7 @@ def _no_streams() -> int:
 
 
 def _discard_output() -> None:
-    """Discards what is left to be written, since the last flush would fail."""
+    """Discards the output that is still buffered, since flushing it at exit would fail."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

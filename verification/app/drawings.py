@@ -1,6 +1,6 @@
-"""Curves of drawings: what SVG and DXF files show, as straight sides, Bezier curves and arcs of conics.
+"""Reads SVG and DXF files: their curves as straight sides, Bezier curves and arcs of conics.
 
-What is not drawn (hidden layers, dimensions, texts) is left out. Numbers are the decimals that the file shows.
+Hidden layers, dimensions and texts are left out. Numbers are exactly the decimals in the file.
 """
 
 import io
@@ -49,16 +49,12 @@ class Drawing(NamedTuple):
 
 
 def shown(value: float) -> Fraction:
-    """The shortest decimal that rounds to this float, which is the number in the file unless a transformation moved
-    it.
-    """
+    """The shortest decimal that rounds to this float: the number in the file, if nothing has transformed it."""
     return Fraction(repr(float(value)))
 
 
 def arc_between(p: Point, q: Point, v: tuple[float, float] | None, sweep: float) -> ConicArc:
-    """The arc from `p` to `q` that turns by the angle `sweep`, of a circle, or of an ellipse with velocity `v` at
-    `p`.
-    """
+    """The arc from `p` to `q` that turns by `sweep`, of a circle, or of an ellipse with velocity `v` at `p`."""
     quarters = floor(abs(sweep) / (pi / 2) + NEAR)
     rest = shown(tan(max(abs(sweep) - quarters * pi / 2, 0.0) / 2))
     rest = Fraction(0) if rest < NEAR else rest
@@ -126,7 +122,7 @@ def of_svg(path: str, text: str) -> Drawing:
 
 
 def _page_scale(path: str, root: ElementTree.Element, box: list[float]) -> Fraction | None:
-    """Page units per unit of the view box: the smaller ratio of width and height, or the larger for `slice`."""
+    """The number of page units per unit of the view box: the smaller of both directions, or the larger for `slice`."""
     sizes = [LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height")]
     if len(box) != 4 or not (box[2] and box[3]):
         return None
@@ -166,7 +162,7 @@ def _shapes(path: str, root: ElementTree.Element) -> int:
 
 
 def _label(element: ElementTree.Element, layer: str, page: list[float]) -> None:
-    """Writes into every shape the name of its group, and replaces percentages of the page by lengths."""
+    """Writes into every shape the name of its group, and replaces percentages by lengths on the page."""
     if element.tag in UNDRAWN:
         inner = ElementTree.Element(element.tag, element.attrib)
         inner.extend(list(element))
@@ -269,7 +265,7 @@ def moved(side: Side, p: Point, q: Point) -> Side:
 
 
 def _chained(sides: Iterable[Side]) -> Iterator[Side]:
-    """The pieces without those of zero length; a gap from one to the next that rounding may have left is closed."""
+    """The pieces, without those of zero length; small gaps between one and the next are closed."""
     last = None
     for side in sides:
         p, q = ends(side)

@@ -27,13 +27,12 @@ def console(stderr: bool = False, width: int | None = None) -> "Console":
 
 
 def on_terminal(text: str, stream: TextIO, width: int) -> str:
-    """The text, broken into lines of `width` letters if the stream is a terminal."""
+    """The text; if the stream is a terminal, it is broken into lines of `width` letters."""
     return wrapped(text, width) if stream.isatty() else text
 
 
 def wrapped(text: str, width: int) -> str:
-    """The text with long lines broken at words; continuation lines are indented, to the last column if there are
-    columns.
+    """The text with long lines broken at words; continuation lines are indented, in a table to its last column.
 
     >>> print(wrapped("egg   a table with three points that is convex", 30))
     egg   a table with three
@@ -111,7 +110,7 @@ def of_bounces(entries: Sequence[Mapping[str, Any]], keys: Sequence[str], width:
 
 
 def _one(index: int, entry: Mapping[str, Any], keys: Sequence[str]) -> list[str]:
-    """The lines of a bounce whose numbers have a line each."""
+    """The lines for a bounce whose numbers are printed on one line each."""
     words = [str(entry[key]) for key in ("component", "status") if key in keys]
     numbers = [key for key in keys if key not in ("component", "status") and entry[key] is not None]
     wide = max(len(key) for key in numbers)
@@ -129,8 +128,7 @@ def _exact(value: Any) -> str:
 
 
 def short(value: Any, places: int = 6, size: float | None = None) -> str:
-    """A number with `places` decimals, or in scientific notation if it is too small or large for that; other values as
-    text.
+    """A number with `places` decimals, or in scientific notation if too small or large; other values as text.
 
     `size` is the number that decides on the notation, such as the largest of a column; by default the number itself.
 

@@ -143,7 +143,7 @@ class LiveTable:
             each.on_event(Tap, self._picked)
 
     def view(self) -> Any:
-        """The page; on a narrow window the table comes before the controls, and the texts to copy come last."""
+        """The page; on a narrow window the table comes before the controls, and texts that can be copied come last."""
         controls = (self.table, self.formula, self.shape, self.law, self.lam, self.bounces)
         texts = (self.command, self.copies[0], self.python, self.copies[1])
         narrow = {"flex": "1 1 300px", "max-width": "360px"}
@@ -165,9 +165,7 @@ class LiveTable:
     # ---- what changes
 
     def rebuild(self) -> None:
-        """Takes another table, shape or contraction from the widgets; bad input shows an error and keeps the old
-        scene.
-        """
+        """Takes another table, shape or contraction from the widgets; bad input shows an error, and nothing changes."""
         if self.table.value != self.choice.table:
             self._other_table()
             return
@@ -224,9 +222,7 @@ class LiveTable:
         self.diagram.data, self.growth.data = dict(zip("xy", points, strict=True)), {"x": lams, "y": nu}
 
     def _restored(self, choice: Choice) -> None:
-        """Sets the page to a choice, for example that of an address; its formulas are read as if they had been
-        typed.
-        """
+        """Sets the page to a choice, such as that of an address; its formulas are read as if they had been typed."""
         self.choice = replace(choice, law=self.choice.law)
         self.table.value, self.formula.visible = choice.table, choice.table == OWN
         self.formula.value, self.shape.value, self.law.value = choice.formula, choice.shape, choice.law

@@ -48,9 +48,7 @@ class Outline(NamedTuple):
 
 
 def read(data: Data) -> Outline:
-    """The table of the option --data, with notes; `ValueError` with a one-sentence message if the file holds no
-    table.
-    """
+    """The table of the option --data, with notes; `ValueError` if the file holds no table."""
     ending = Path(data.path).suffix.lower()
     drawing = ending in (".svg", ".dxf")
     text = _text("--data", data.path, "latin-1" if ending == ".dxf" else "utf-8-sig")
@@ -79,7 +77,7 @@ def _of_text(data: Data, text: str) -> Outline:
 
 
 def _fitted(data: Data, rings: "list[list[Point]]", smoothness: int | None) -> Outline:
-    """The table from points: a curve or polygon through one ring, or a polygon with holes from several rings."""
+    """The table from points: a curve or a polygon through one ring, or a polygon with holes through several rings."""
     from symbolic import tables
     from symbolic.tables.measured import unclosed
 
@@ -199,7 +197,7 @@ def _bounded(data: Data, curves: "list[Run]", unit: str | None, notes: list[str]
 
 
 def _aligned(curve: "Run", tolerance: Fraction) -> "Run":
-    """The curve with equal tangents at each join where they differed only by rounding or the tolerance."""
+    """The curve; at each join whose tangents differ only by rounding or the tolerance, they are made equal."""
     from symbolic.tables.outlines import ConicArc, aligned_arcs
     from symbolic.tables.polynomial import aligned, elevated
 
@@ -211,9 +209,7 @@ def _aligned(curve: "Run", tolerance: Fraction) -> "Run":
 
 
 def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
-    """Yields a sentence about joins of curved pieces with so small an angle that they may be meant as smooth, if
-    any.
-    """
+    """Yields a sentence about joins of curved pieces whose angle is so small that they may be meant as smooth."""
     from symbolic.tables.outlines import ConicArc, directions, shorter
     from symbolic.tables.polynomial import elevated
 
@@ -234,9 +230,7 @@ def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
 
 
 def _cubics(side: "Side") -> "list[Side]":
-    """The cubic curves, of at most 11.25 degrees each, that replace an arc; a piece that is not an arc stays as it
-    is.
-    """
+    """The cubic curves, each over at most 11.25 degrees, that replace an arc; another piece stays as it is."""
     from symbolic.tables.outlines import ConicArc
 
     if not isinstance(side, ConicArc):
@@ -264,7 +258,7 @@ def _cubics(side: "Side") -> "list[Side]":
 
 
 def _joined(data: Data, runs: "list[Run]", notes: list[str]) -> "list[Run]":
-    """The closed curves formed by chains of pieces end to end, in whichever direction each was drawn."""
+    """The closed curves formed by joining pieces end to end, whatever the direction in which each was drawn."""
     from symbolic.tables.outlines import ConicArc
     from verification.app.drawings import ends, moved
 
@@ -358,7 +352,7 @@ def _both(run: "Run") -> "tuple[Point, Point]":
 
 
 def _hull(run: "Run") -> "list[Point]":
-    """The ends of a run's pieces and their extreme points in x and y, which have the same extent as the run."""
+    """The end points of a run's pieces and their extreme points in x and y; their extent is that of the run."""
     from symbolic.tables.outlines import ConicArc
     from symbolic.tables.polynomial import elevated
     from verification.app.drawings import ends
@@ -383,7 +377,7 @@ def _hull(run: "Run") -> "list[Point]":
 
 
 def _stops(a: float, b: float, c: float) -> list[float]:
-    """Parameters in (0, 1) where a cubic's coordinate is stationary; `a`, `b`, `c` are steps of its control points."""
+    """Parameters in (0, 1) at which a cubic is stationary; `a`, `b`, `c` are differences of its control points."""
     square, middle = a - 2 * b + c, a - b
     if abs(square) <= 1e-12 * (abs(a) + abs(b) + abs(c)):
         times = [a / (2 * middle)] if middle else []
@@ -394,7 +388,7 @@ def _stops(a: float, b: float, c: float) -> list[float]:
 
 
 def _near(data: Data, points: "list[Point]") -> Fraction:
-    """The largest gap between points that is closed: the tolerance given, or a small fraction of the points' extent."""
+    """The largest gap between points that is closed: the tolerance given, or a small fraction of their extent."""
     if data.tolerance is None:
         return JOINED * Fraction(max(_extent(points)))
     try:

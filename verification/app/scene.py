@@ -1,7 +1,7 @@
 """Scenes from the options of a command line, and the options that commands share.
 
-Table, shape and contraction are exact: a decimal stands for the number it shows. The paper's tables do without SymPy.
-The options also give a starting point as exact numbers, and the axes of a sweep.
+Table, shape and contraction are exact: a decimal stands for the number it shows. SymPy is not imported for the paper's
+own tables. The options also give a starting point as exact numbers, and the axes of a sweep.
 """
 
 import json
@@ -45,7 +45,7 @@ def scene(
     /,
     **shape: str | None,
 ) -> Scene:
-    """The scene that the options describe; `ValueError` when they contradict each other.
+    """The scene that the options describe; `ValueError` if they contradict each other.
 
     >>> scene("ellipse", None, None, None, "0.5", a="sqrt(2)")
     Scene('ellipse', a='sqrt(2)', lam='1/2')
@@ -166,7 +166,7 @@ def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
 
 
 def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool) -> tuple[str, ...]:
-    """The texts of --shape; a parameter that `axis` varies and that has no number gets the lower end of its interval.
+    """The texts of --shape; the parameter that `axis` varies gets the lower end of its interval, if it has no number.
 
     With `by_name`, the parameter is a length of a table of the gallery; it also gets the interval as its range.
 
@@ -188,7 +188,7 @@ def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool)
 def _from_file(
     file: str, lam: str | None, values: dict[str, str], K: int | None, shape: dict[str, Any], formula: str | None
 ) -> Scene:
-    """The scene of a file; a law, a contraction and shape parameters on the command line replace its own."""
+    """The scene in a file; a law, contraction or shape parameter on the command line replaces the file's."""
     for key, text in {"K": K, **shape}.items():
         if text is not None:
             raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
@@ -207,7 +207,7 @@ def _lengths(name: str) -> tuple[str, ...]:
 
 
 def _of_gallery(name: str, values: dict[str, str]) -> "tuple[Table, dict[str, str]]":
-    """The gallery's table with the given lengths; also the texts of those lengths that have a range and stay free."""
+    """The gallery's table with the given lengths, and the texts of the lengths that have a range and stay free."""
     from sympy import Interval, Symbol
 
     from symbolic.tables.table import Shape
@@ -422,9 +422,7 @@ class Varied(NamedTuple):
 
 
 def over(scene: Scene, lams: str, axis: str | None) -> Varied:
-    """The parameter that a sweep varies, from --lams or `NAME=LOW:HIGH:N`; a bad shape is refused before anything
-    runs.
-    """
+    """The parameter that a sweep varies, by --lams or `NAME=LOW:HIGH:N`; a bad shape is refused before any work."""
     import numpy as np
 
     from numeric.sweeps.sweep import map_of, text_of
@@ -443,7 +441,7 @@ def over(scene: Scene, lams: str, axis: str | None) -> Varied:
 
 
 def along(scene: Scene, axis: str) -> "tuple[Scene, str, NDArray[np.float64]]":
-    """The scene with the range of `NAME=LOW:HIGH:N`, the parameter's name, and its N values."""
+    """The scene with the range in `axis`, the text `NAME=LOW:HIGH:N`; the parameter's name; its N values."""
     import numpy as np
 
     name, equals, ends = axis.partition("=")

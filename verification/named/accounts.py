@@ -8,7 +8,7 @@ from verification.cycles.family import Interval
 
 @dataclass(frozen=True)
 class Unfollowed:
-    """A cycle that could not be followed, with the reason; a fraction `share` of the starts ends on it."""
+    """A cycle that a fraction `share` of the starts reach, but which could not be followed, and the reason."""
 
     value: float
     period: int
@@ -18,7 +18,7 @@ class Unfollowed:
 
 @dataclass(frozen=True)
 class Range:
-    """A parameter range in which starts end on no cycle but on a chaotic or neutral orbit; each end is an interval."""
+    """A parameter range in which starts end on chaotic or neutral orbits; each end is an interval that contains it."""
 
     kind: int
     low: Interval
@@ -31,7 +31,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Check:
-    """A check by starts at new parameter values: how many end on a known attractor, and where the others end."""
+    """A check by starts at new parameter values: how many reach a known attractor, and which attractors are missing."""
 
     values: tuple[float, ...]
     starts: int
@@ -53,5 +53,5 @@ class Check:
         return f"{said} (seed {self.seed})." + (f" NOT ACCOUNTED FOR: {each}." if each else "")
 
     def document(self) -> dict[str, Any]:
-        """The counts as JSON."""
+        """The result of the check as JSON."""
         return asdict(self)

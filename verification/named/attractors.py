@@ -1,4 +1,4 @@
-"""Attractors: a proof that one exists, its proved exponents, and which of them coexist at each contraction.
+"""Attractors: a proof that a cycle attracts, its proved exponents, and which attractors coexist at a contraction.
 
 For a cycle found in float64, it is proved in balls that it exists, is admissible, has this least period, and attracts;
 its exponents come from its certified multipliers. Such a proof says nothing about other attractors, nor about the size
@@ -136,7 +136,7 @@ class AttractorCounts:
 
     @property
     def attractors(self) -> int:
-        """The number of attractors that the starts found."""
+        """The number of different attractors that the starts reached."""
         return sum(member.copies for member in self.members)
 
 

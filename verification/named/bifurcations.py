@@ -33,7 +33,7 @@ def bifurcations(
     tick: Tick | None = None,
     **interval: Any,
 ) -> tuple[Located, ...]:
-    """The events of one kind of the cycles of one period, each with its proof."""
+    """The events of one kind on cycles of one period, each with its proof."""
 
 
 def bifurcations(
@@ -49,8 +49,7 @@ def bifurcations(
     tick: Tick | None = None,
     **interval: Any,
 ) -> Continuation | tuple[Located, ...]:
-    """Every family of cycles that attracts random starts as one parameter varies, with its events; or events of one
-    kind.
+    """Every family of cycles that attracts random starts as a parameter varies, with its events; or events of one kind.
 
     The interval is given as for `follow`. `starts` random starts at each of some `values` of the parameter find the
     families, which are followed from birth to death: `.families`, `.events`, `.check()`, `.document(digits)`. A family
@@ -115,5 +114,5 @@ def _searched(
 
 
 def same_multipliers(orbit: PeriodicOrbit) -> tuple[complex, ...]:
-    """The rounded multipliers; cycles that are symmetric images of each other have equal ones."""
+    """The multipliers, rounded so that cycles which are symmetric images of each other have equal ones."""
     return tuple(complex(round(mu.real, ALIKE), round(abs(mu.imag), ALIKE)) for mu in orbit.multipliers)

@@ -31,7 +31,7 @@ class Cascade:
 
     @property
     def ratios(self) -> list[float]:
-        """Ratios of successive distances; they tend to Feigenbaum's 4.669."""
+        """Ratios of successive distances between doublings; they tend to Feigenbaum's 4.669."""
         gaps = np.diff(self.lams)
         return [float(ratio) for ratio in gaps[:-1] / gaps[1:]]
 
@@ -43,7 +43,7 @@ class Cascade:
 
 @cache
 def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int = 3) -> Cascade:
-    """The first doublings of an attracting cycle of this period that exists at `lam`, followed in steps of `step`.
+    """The first period doublings, in steps of `step`, after an attracting cycle of this period that exists at `lam`.
 
     >>> found = cascade(Rational(2, 25), Rational(3, 10), 4, 0.005, count=1)  # the paper's lambda_3, section 6.6
     >>> found.periods, round(found.lams[0], 6), found.proved
@@ -57,7 +57,7 @@ def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int
 
 
 def reached(alpha: Rational, lam: Rational, period: int) -> list[float]:
-    """The bounces of a cycle of this period on which a random particle ends; `ValueError` if no particle does."""
+    """The bounces of a cycle of this period that attracts a random particle; `ValueError` if there is none."""
     map = PinballMap("egg", lam=str(lam), alpha=str(alpha))
     starts = interior_starts(map, PARTICLES, SEED)
     for bounces in STAGES:

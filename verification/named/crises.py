@@ -37,7 +37,7 @@ Left = Callable[[Exponents], NDArray[np.bool_]]
 
 @dataclass(frozen=True)
 class Scaling:
-    """The power law `stay ~ distance**-exponent`; the error is a jackknife over blocks, as the points oscillate."""
+    """The power law `stay ~ distance**-exponent`, with a jackknife error over blocks, as the points oscillate."""
 
     exponent: float
     error: float
@@ -71,7 +71,7 @@ KINDS: dict[str, tuple[Left, tuple[float, float]]] = {
 
 
 def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) -> Crisis:
-    """The `merging` crisis (three pieces become one) or the `boundary` crisis (the attractor vanishes).
+    """The egg's `merging` crisis (three pieces become one) or `boundary` crisis (the attractor vanishes).
 
     >>> found = crisis("merging", "0.08", tolerance=1e-3, budget=10**6)
     >>> abs(found.lam - 0.4434) < 1e-3
@@ -121,7 +121,7 @@ def stay(left: Left, alpha: str, lam: float, budget: int, enough: int = MANY) ->
 
 
 def spread(stays: list[tuple[float, float]], low: float, high: float, budget: int) -> float:
-    """The error of a crisis: from the bracket's middle to the least contraction at which ten left within the budget.
+    """The error of a crisis: from the middle of its bracket to the least contraction at which ten particles left.
 
     >>> spread([(0.5, 10.0), (0.4, 1e7)], 0.38, 0.4, 10**7)
     0.11
@@ -131,14 +131,14 @@ def spread(stays: list[tuple[float, float]], low: float, high: float, budget: in
 
 
 def scaling(kind: str, alpha: str, at: float, distances: Array, budget: int = 10**9) -> Scaling:
-    """The power law of the mean stay above a crisis at `at`, from its values at `distances` above it."""
+    """The power law of the mean stay above a crisis at `at`, fitted to contractions at `distances` above it."""
     left, _ = KINDS[kind]
     stays = [(float(d), stay(left, alpha, at + float(d), budget)) for d in distances]
     return power(tuple((d, mean) for d, mean in stays if np.isfinite(mean)))
 
 
 def power(points: tuple[tuple[float, float], ...]) -> Scaling:
-    """The least-squares power law through points in order, with a jackknife over `BLOCKS` blocks of neighbours.
+    """The least-squares power law through ordered points, with a jackknife over `BLOCKS` blocks of neighbours.
 
     >>> power(tuple((x, x**-2) for x in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6))).exponent
     2.0
@@ -171,7 +171,7 @@ class OrbitExtent:
 
     @property
     def lengths(self) -> tuple[float, float, float]:
-        """The lengths `angle`, `near` and `far`. The area is left out: it grows with every fold and proves little."""
+        """The lengths `angle`, `near` and `far`, without the area, which grows with every fold of the attractor."""
         return self.angle, self.near, self.far
 
 
@@ -196,7 +196,7 @@ def extent(map: PinballMap) -> OrbitExtent | None:
 
 
 def widenings(alpha: str, lams: Array) -> list[tuple[OrbitExtent, OrbitExtent]]:
-    """The steps of an upward scan in which the attractor suddenly grows, narrowed to quarters: extents on both sides.
+    """The quarter steps of an upward scan in which the attractor suddenly grows: the extents on both sides of each.
 
     A length is compared with its maximum over all smaller contractions, so that a return to the old size at the end of
     a window does not count. In the quarter step it must grow by half of `AT_ONCE`; steady growth by `AT_ONCE` over a
@@ -224,7 +224,7 @@ def _beyond(here: OrbitExtent, farthest: Array, part: float) -> bool:
 
 
 def narrowed(alpha: str, step: tuple[OrbitExtent, OrbitExtent], tolerance: float) -> tuple[OrbitExtent, OrbitExtent]:
-    """Extents on both sides of a widening, by bisection of a step around it.
+    """The extents on both sides of a sudden widening, after bisection of the step around it.
 
     Just above a crisis the new part of the attractor is visited so seldom that the orbits may miss it; the lower end
     may then be too high.

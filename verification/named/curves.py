@@ -7,11 +7,11 @@ again, up to an accumulation curve. Every curve is followed in the two parameter
 A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and then
 Neimark-Sacker bifurcations are possible. Four facts about the paper's own egg are proved in balls:
 
-- `contracting_up_to`: a contraction below which no cycle of the egg expands areas, so that there is no such
-bifurcation; - `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1; -
-`double_one`: a cycle of period 17 with the double multiplier 1 at some `lam < 1`. It is a regular zero, so the trace
-crosses 2 there along `det M = 1`: on one side the multipliers are complex, of modulus 1; - `invariant_circle`: the
-cycle on that side with trace 1/2, around which an attracting closed curve is born.
+- `contracting_up_to`: a contraction below which no cycle of the egg expands areas, so that none bifurcates that way;
+- `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1;
+- `double_one`: a cycle of period 17 with the double multiplier 1 at some `lam < 1`. It is a regular zero, so along
+  `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1;
+- `invariant_circle`: the cycle on that side with trace 1/2, around which an attracting closed curve is born.
 
 The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified, by two schemes that both assume
 only geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on the remainder after
@@ -58,7 +58,7 @@ Tick = Callable[[str], None]
 
 @dataclass(frozen=True)
 class BifurcationCurve:
-    """One curve of the cascade: a bifurcation of a cycle of `period` bounces."""
+    """A curve of the cascade: a bifurcation of a cycle of `period` bounces."""
 
     name: str
     period: int
@@ -110,7 +110,7 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
 
 
 def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
-    """The fold curve of the egg's polygon that turns by `2*pi*p/q` at each bounce, by continuation."""
+    """The fold curve of the egg's polygon that turns by `2*pi*p/q` at each bounce, computed by continuation."""
     ring = polygon(K, p, q)
     top = largest_shape(K)
     at = {"alpha": 0.8 * top}
@@ -123,7 +123,7 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
 
 @dataclass(frozen=True)
 class AccumulationCurve:
-    """The accumulation of the doublings: for each shape a contraction with its error."""
+    """The curve at which the doublings accumulate: for each shape a contraction with its error."""
 
     alpha: Array
     lam: Array
@@ -168,7 +168,7 @@ class Expanding:
 
 
 def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
-    """The hexagon of the egg, proved to exist, and its determinant.
+    """A hexagon in the egg that is proved to exist, and its determinant.
 
     >>> found = expanding_cycle()
     >>> found.certified, bool(found.determinant > 1)
@@ -199,7 +199,7 @@ def double_one() -> Enclosure:
 
 @cache
 def invariant_circle() -> Torus:
-    """The torus bifurcation of the cycle of period 17, at trace 1/2, as the contraction varies.
+    """The cycle of period 17 with trace 1/2 and determinant 1, a torus bifurcation as the contraction varies.
 
     For each contraction above the enclosed one and near it, an attracting closed curve of the 17th iterate surrounds
     each point of the cycle. As the trace 1/2 is not an integer, contractions with an irrational rotation on the curve
@@ -214,7 +214,7 @@ def invariant_circle() -> Torus:
 
 
 def contracting_up_to(alpha: Expr, K: int = 3) -> float:
-    """A contraction up to which the determinant of every cycle of the egg is below 1, in steps of 1/64.
+    """A contraction, a multiple of 1/64, up to which the determinant of every cycle of the egg is below 1.
 
     With `d` the largest tilt of the normal and `r` the ratio of the largest and the smallest radius, the sine
     rule on the triangle of a chord and the centre gives `|eta| <= d + asin(r*sin(d + |phi|))`. If the largest

@@ -1,4 +1,4 @@
-"""Bifurcations met on a branch: each certified, and followed as a curve in two parameters.
+"""Bifurcations that are met on a branch: their proofs, and their curves in two parameters.
 
 The event in float64 is the start of a proof in balls. A fold and a period doubling are proved on the whole cycle; a
 pitchfork on the half cycle that flips, rotated so that the mirror is `theta -> -theta`. Other events have no
@@ -41,9 +41,9 @@ from verification.proofs.periodic.cycle_in_box import UniqueCycle
 def proof_of(
     event: Event, digits: int, parameter: str = "lam", lam: Expr | Fraction | None = None
 ) -> UniqueCycle | None:
-    """The proof that the event happens at the enclosed `parameter`; None where there is no certificate for its kind.
+    """The proof that the event happens at the enclosed `parameter`; None if its kind has no certificate.
 
-    Where the parameter is a shape, `lam` is the contraction.
+    If the parameter is a shape, `lam` is the contraction.
 
     >>> from symbolic.tables import egg
     >>> from verification.cycles.branch import branch
@@ -88,7 +88,7 @@ PROVED_AT = (0.2, 0.4, 0.6, 0.8)  # places along the points of a curve where the
 
 @dataclass(frozen=True)
 class Surveyed:
-    """An event on the branch of a cycle of `period` bounces, and its curve, or None if it could not be followed."""
+    """An event on the branch of a cycle of `period` bounces, and its curve (None if it could not be followed)."""
 
     period: int
     event: Event
@@ -98,7 +98,7 @@ class Surveyed:
 def survey(
     alpha: Expr, lam: Expr, longest: int, K: int = 3, tick: Tick = lambda said: None, steps: Steps | None = None
 ) -> Iterator[Surveyed]:
-    """For the cycles of the K-pointed egg at one shape and contraction, the curves of all events on their branches.
+    """The curves of all events on the branches of the egg's cycles at one shape and contraction.
 
     >>> from sympy import Rational
     >>> [(one.period, one.event.kind.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
@@ -150,7 +150,7 @@ class Plane:
     def of(cls, scene: Scene, parameter: str, ends: tuple[Any, Any], lams: tuple[Any, Any] = ("0", "1")) -> "Plane":
         """The plane of a parameter of a scene's table or law and the contraction; `ValueError` if one has no range.
 
-        The ends are exact, or text; the formula is proved to be a law over all of the plane.
+        The ends are exact numbers or text; the formula is proved to be a law in the whole plane.
         """
         shapes, contractions = ([exact(name, end) for end in pair] for name, pair in ((parameter, ends), ("lam", lams)))
         table, law = scene.table, scene.law
@@ -171,8 +171,8 @@ class Plane:
 class EventCurve:
     """The curve of a bifurcation of a cycle of `period` bounces, and the point `near` of the plane where it was met.
 
-    Each point has the two parameters and `det M - 1`; those of codimension two stand in `special` by name. `depth` is
-    the number of doublings and pitchforks between the branch that was followed and the cycle of the curve. `proved`
+    Each point has the two parameters and `det M - 1`; those of codimension two are listed in `special` by name. `depth`
+    is the number of doublings and pitchforks between the branch that was followed and the cycle of the curve. `proved`
     lists points of the curve at which the event is proved in balls: an exact shape, the contraction, its radius.
     """
 
@@ -216,7 +216,7 @@ def curves_along(
     steps: Steps | None = None,
     tick: PointTick | None = None,
 ) -> Iterator[EventCurve]:
-    """The curves in a plane through the events of a branch, and of the branches born on it, up to `SWITCHES` deep.
+    """The curves in a plane of events on a branch, and on the branches born on it, up to `SWITCHES` generations.
 
     `other` is the value of the plane's other parameter, fixed on the branch. Curves in `known` are not repeated.
     """

@@ -99,7 +99,7 @@ class Continuation:
         return self.interval[1] - self.interval[0]
 
     def run(self, values: int | None = None) -> "Continuation":
-        """Samples `values` values, follows the cycles found, bisects the ends of chaotic ranges; returns `self`."""
+        """Samples `values` values, follows the cycles found, and bisects the ends of chaotic ranges; returns `self`."""
         values = values or (VALUES if self.parameter == "lam" else SHAPES)
         known = {each.value for each in self.seen}
         grid = self.interval[0] + (np.arange(values) + 0.5) / values * self.width
@@ -156,7 +156,7 @@ class Continuation:
         return [{"kind": KINDS[one.kind], "low": list(one.low), "high": list(one.high)} for one in found]
 
     def amid_chaos(self) -> list[float]:
-        """Some values at which a sufficient fraction of the starts is chaotic, spread over all such values."""
+        """Some parameter values, well spread, at which a sufficient fraction of the starts is chaotic."""
         at = np.array(
             [seen.value for seen in self.seen if np.sum(seen.kind == CHAOTIC) >= max(2, self.least * seen.starts)]
         )
@@ -204,15 +204,15 @@ class Continuation:
 
     @cached_property
     def size(self) -> float:
-        """The diameter of the table in the middle of the interval, as the unit of length."""
+        """The unit of length for distances: a power of two near the size of the table in the middle of the interval."""
         return float(self.map_at(sum(self.interval) / 2).states.size)
 
     def endings(self, values: Array, starts: int, seed: int) -> list[Endings]:
-        """The attractors on which random starts end, at some values."""
+        """For each of some parameter values, the attractors on which random starts end."""
         return endings(text_of(self.scene), self.parameter, values, float(self.scene.lam), starts, seed)
 
     def sample(self, values: Array, starts: int | None = None) -> None:
-        """Adds to the sample the endings of random starts at the given values."""
+        """Samples random starts at the given values, and adds the attractors on which they end."""
         if not len(values):
             return
         self.tick(f"{len(values)} values of {self.parameter}")
@@ -235,7 +235,7 @@ class Continuation:
         return label
 
     def clusters(self, seen: Endings, label: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
-        """Groups of starts, as indices, that end on the same cycle or its symmetric images, and on no known family."""
+        """Groups of starts, as indices, that end on the same cycle up to symmetry, if no known family contains it."""
         left = np.nonzero(label == UNKNOWN)[0]
         while left.size:
             apart = np.max(np.abs(seen.marks[left] - seen.marks[left[0]]), axis=1)
@@ -244,7 +244,7 @@ class Continuation:
             left = left[~alike]
 
     def follow_next(self) -> bool:
-        """Follows the cycle, on no known family, that most starts reach; False if there is no such cycle."""
+        """Follows the cycle that most starts reach, among cycles on no known family; False if there is none."""
         clusters = [
             (rows.size, -int(seen.period[rows[0]]), i, rows)
             for i, (seen, label) in enumerate(zip(self.seen, self.labels, strict=True))
@@ -298,7 +298,7 @@ class Continuation:
         return number
 
     def _marks(self, map: PinballMap, points: PhasePoints) -> Array:
-        """The marks of a cycle: the numbers by which it is recognised."""
+        """The marks of a cycle: numbers that identify it up to symmetry."""
         at = map.orbit(points.theta, points.phi, 1, points.component)
         return np.asarray(marks_of(np.stack([at.x[0], at.y[0]])[:, :, None])[0])
 
@@ -317,9 +317,7 @@ class Continuation:
                 )
 
     def _descend(self, number: int) -> None:
-        """Adds the attracting families born on family `number`, or its parent, and recursively those of the new
-        ones.
-        """
+        """Adds families, if they attract: those born on family `number`, its parent, recursively those of new ones."""
         family = self.families[number]
         for event in family.branch.along:
             if not self._leads_on(family, event):
@@ -365,7 +363,7 @@ class Continuation:
         return [found]
 
     def _leads_on(self, family: CycleFamily, event: Event) -> bool:
-        """True if an event may lead to an unknown attracting family, born at it or giving birth to this one."""
+        """True if an attracting family that is not yet known may be born at an event, or be the parent of this one."""
         kind, n = event.kind, family.period
         if kind is BifurcationKind.FLIP and not event.birth:
             supercritical = event.form is None or event.form.supercritical is not False
@@ -416,9 +414,9 @@ class Continuation:
         return None
 
     def seen_without_cycle(self, kind: int) -> list[Range]:
-        """The ranges in which starts end on orbits of this kind, which are no cycles; each end lies between two values.
+        """The ranges in which starts end on chaotic or neutral orbits (`kind`); each end lies between two values.
 
-        A value with few starts, none of which ends on this kind, does not end a range if few starts did so before it.
+        A value with few starts, none of them of this kind, does not end a range if this could be by chance.
         """
         rows, share, found = list[tuple[float, bool]](), 0.0, list[Range]()
         for seen in self.seen:
@@ -460,10 +458,10 @@ class Continuation:
             self.sample(np.array(inner[first : first + BATCH]), min(FEW, self.starts))
 
     def check(self, values: int = 8, starts: int = 400, seed: int = 2027) -> Check:
-        """Runs random starts at random values, one in each of `values` equal parts of the interval: do they end as
-        known?
+        """A check by random starts at random values, one in each of `values` equal parts of the interval.
 
-        A new attractor counts as missing even if only a few starts reach it.
+        It counts the starts that end on known attractors. A new attractor is reported as missing even if only a few
+        starts reach it.
         """
         shares = (np.arange(values) + np.random.default_rng(seed).uniform(size=values)) / values
         at = self.interval[0] + self.width * shares

@@ -110,7 +110,7 @@ class SearchOutcome:
 
 
 def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) -> Located:
-    """The value of the bifurcation `name` (see `NAMES`) to `digits` decimal digits; tangencies under any `law`.
+    """The parameter value of the bifurcation `name` (see `NAMES`) to `digits` decimals; tangencies under any `law`.
 
     >>> locate("lambda-c", 20).value
     '0.0934003354313602414161'
@@ -149,9 +149,7 @@ def _searched(problem: Problem, start: list[float], digits: int, in_balls: bool 
 def _box(
     system: System, start: list[float], digits: int, guard: int, sizes: tuple[int, int], in_balls: bool = False
 ) -> tuple[tuple[tuple[arb, ...], arb, int, int], Steps]:
-    """Centre, radius, bits and digits of a box, and Newton's steps; `sizes`: digits of the radius, of Newton's
-    method.
-    """
+    """Centre, radius, bits, digits of a box, and Newton's steps; `sizes` are digits: of the radius, of the centre."""
     tick = telling(f"{digits} digits")
     solution = refined(system, start, sizes[1], in_balls)
     tick(MPMATH_SHARE)
@@ -162,7 +160,7 @@ def _box(
 
 
 def _agreeing(searched: tuple[SolutionInBox, Steps], ball: arb) -> SearchOutcome:
-    """The result of a proof, with a further check: that its value meets the ball of a closed form."""
+    """The result of a proof, with the further check that the value agrees with a closed form, the ball `ball`."""
     proof, steps = searched
     overlap = proof.found and bool(proof.value.overlaps(ball))
     return SearchOutcome(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof), steps)
@@ -305,7 +303,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> Se
 
 
 def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: Law = PAPERS_LAW) -> dict[str, str]:
-    """The notes on a tangency at a shape or law for which the attractor was not examined: name, behaviour of particles.
+    """The notes on a tangency at a shape or law where the attractor was not examined: its name, what particles do.
 
     The exponent of transients is left out if no orbit is chaotic, as it belongs to an attractor that is destroyed.
     """
@@ -326,7 +324,7 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: L
 
 
 def one_of(kind: str, parameter: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW, **which: Expr) -> SearchOutcome:
-    """A numbered event: end or merging of a window or small family of a given period, or the n-th interior crisis."""
+    """A numbered event: the end or merging of a window or small family of a given period, or an interior crisis."""
     from verification.proofs.manifolds.known import CONTACTS
 
     name = f"{kind}-{which[parameter]}"

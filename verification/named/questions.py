@@ -179,7 +179,7 @@ def _orbit(scene: Scene, cycle: "Found") -> PeriodicOrbit:
 
 @dataclass(frozen=True)
 class FollowedOrbit:
-    """A branch of cycles in one parameter, with its events; `.folds`, `.flips` and similar properties select some."""
+    """A branch of cycles in one parameter, with its events; properties such as `.folds` and `.flips` select some."""
 
     orbit: PeriodicOrbit
     parameter: str
@@ -211,7 +211,7 @@ class FollowedOrbit:
         return self._of("border collision")
 
     def plot(self, axes: "Axes | None" = None) -> "Figure":
-        """A figure of the bounces along the branch, dashed where unstable, and of its events; on `axes` or new."""
+        """A figure of the bounces along the branch, dashed where unstable, with its events; on `axes` or alone."""
         from numeric.pinball.states import plotted
 
         made: Figure = plotted("dynamics.plotted", (self.branch,), None, axes=axes)
@@ -246,14 +246,12 @@ class BranchEvent:
 
     @property
     def collision(self) -> str:
-        """What becomes of the cycle at a border collision on a smooth join: persistence or nonsmooth fold; else ''."""
+        """The fate of the cycle at a border collision on a smooth join: persistence or nonsmooth fold; else ''."""
         return self.event.collision.value if self.event.collision else ""
 
     @property
     def supercritical(self) -> bool | None:
-        """True if the bifurcation is supercritical (the new cycle is stable where the old one is not); else False or
-        None.
-        """
+        """True if the bifurcation is supercritical: the new cycle is stable where the old one is not; None if open."""
         return self.event.form.supercritical if self.event.form else None
 
 
@@ -284,7 +282,7 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
 
 
 def ring_over(orbit: PeriodicOrbit, parameter: str, ends: Any) -> "tuple[Chords, float, dict[str, float] | None]":
-    """The chord system of a cycle with `parameter` free, the parameter's value at the cycle, the fixed parameters."""
+    """The chord system of a cycle with `parameter` free, the parameter's value, and the values of fixed parameters."""
     from verification.cycles.chords import Chords
 
     ends_of(parameter, ends)
@@ -343,7 +341,7 @@ def ends_of(parameter: str, given: Any) -> tuple[float, float]:
 
 
 def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Located":
-    """A proof in balls, to `digits` digits: of an event, with its parameter, or of a cycle, with its first bounce.
+    """A proof in balls, to `digits` digits, of an event and its parameter, or of a cycle and its first bounce.
 
     Folds, period doublings, pitchforks and cycles have certificates. The checklist of the result says what holds;
     `notes["stability"]` is what the one-sided derivatives prove where the curvature jumps at a bounce.
@@ -451,7 +449,7 @@ def trapping_region(
 def _graph(
     table: Any, lam: Any, columns: int, rows: int, coarsest: int, law: Law | str | None, shape: dict[str, Any]
 ) -> "tuple[PinballImages, MorseGraph]":
-    """The map over a range of contractions, and its Morse graph on a grid."""
+    """The map for one contraction or a range of them, and its Morse graph on a grid."""
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.rigorous.graph import Grid, morse_graph, refined
 

@@ -1,5 +1,4 @@
-"""Tangencies of the manifolds of a saddle, in any scene whose boundary is one smooth formula: searched for, then
-proved.
+"""Tangencies of the manifolds of saddles, in scenes whose boundary is one smooth formula: found, then proved.
 
 Each tangency is found in float64 and then proved in balls. A crisis is such a tangency; it is not shown here that an
 attractor changes there. If the boundary is not convex, each flight is proved to meet no other part of it.
@@ -41,8 +40,7 @@ SAME = 1e-6  # parameters of bounces that a symmetry exchanges, and of one tange
 
 
 def objection_of(scene: Scene) -> str:
-    """The reason why tangencies cannot be searched for in a scene; empty if boundary and law are one smooth formula
-    each.
+    """The reason why a scene has no search for tangencies; empty if boundary and law are one smooth formula each.
 
     >>> from symbolic import tables
     >>> objection_of(Scene(tables.stadium()))
@@ -129,7 +127,7 @@ def proved(scene: Scene, contact: Contact, digits: int) -> Tangency | str:
 def near(
     scene: Scene, ends: tuple[float, float], period: int, seed: int = 1, heard: Tick = lambda said: None
 ) -> Iterator[tuple[Touch, PeriodicOrbit]]:
-    """Tangencies between two contractions, by Newton's method from the scene's contraction, each with its saddle."""
+    """The tangencies between two contractions that Newton's method finds from the scene's own, each with its saddle."""
     mirror = scene.law.odd and reflected(scene.table)
     map, known = pinball(scene.table, scene.law), set[tuple[complex, ...]]()
     for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):
@@ -148,7 +146,7 @@ def near(
 
 
 def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> SaddleCycle:
-    """The shortest part of a cycle that a symmetry maps to the next part, in angles that count whole turns.
+    """The shortest part of a cycle from which symmetries give the rest; angles count whole turns.
 
     >>> from symbolic import Scene
     >>> egg, thirds = Scene("egg", alpha="2/25"), (0.0, 2.0943951, -2.0943951)

@@ -35,7 +35,7 @@ def theorem_class(kind: str) -> type[Certified]:
 
 
 def theorem(document: Mapping[str, Any]) -> Certified:
-    """The theorem that a document states, not yet proved; `ValueError` if an entry differs from what it would write."""
+    """The theorem that a document states, not yet proved; `ValueError` if the theorem would write another entry."""
     stated = theorem_class(document.get("kind", "")).from_dict(document)
     stated.check_entries(document)
     return stated

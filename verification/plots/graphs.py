@@ -50,7 +50,7 @@ def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
 
 
 def database(found: "xr.Dataset") -> "Figure":
-    """Figure of parameter boxes, coloured by continued Morse graph and by the number of trapping regions."""
+    """Figure of the parameter boxes, coloured by class of Morse graphs, and by the number of trapping regions."""
     from matplotlib.colors import ListedColormap, to_rgb
 
     from verification.proofs.global_dynamics.database import continued

@@ -1,6 +1,6 @@
 """Figures of sweeps: basins, attractors against a parameter, parameter space, exponents of attractors.
 
-The resolution is so high that each cell of a grid has at least one pixel.
+The resolution is high enough that each cell of a grid has at least one pixel.
 """
 
 from collections.abc import Iterable, Sequence
@@ -39,7 +39,7 @@ def fine(made: "Figure", axes: "Axes", columns: int, rows: int) -> None:
 
 
 def basins(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
-    """Figure of the starts `(s, sin(phi))`, in the colour of the attractor that each reaches, or blank."""
+    """Figure of the starts `(s, sin(phi))`, each in the colour of the attractor it reaches; blank if none."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 
@@ -67,7 +67,7 @@ def basins(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
 
 
 def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = (), axes: "Axes | None" = None) -> "Figure":
-    """Figure of the attractors against the parameter as a density, with proved values as lines and exponents below.
+    """Figure of the attractors against the parameter as a density; proved values are lines, exponents are below.
 
     On given axes, only the attractors are drawn.
     """
@@ -124,7 +124,7 @@ def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[f
 
 
 def parameter_space(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
-    """Figure of the largest exponent over shape and contraction, and below it of the least chaotic particle's period.
+    """Figure of the largest exponent over shape and contraction; below it, the period of the least chaotic particle.
 
     Positive exponents are red, and a line surrounds cells with a chaotic particle. Each period has a colour; a cell
     without a cycle is grey, darker for a larger value of its smallest exponent. On given axes, only the exponents are
@@ -153,7 +153,7 @@ def parameter_space(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure"
 
 
 def periods(period: NDArray[Any], nu: Array) -> Array:
-    """RGB image of shape `(rows, columns, 3)`: a colour for each period; grey without a cycle, darker for larger `nu`.
+    """RGB image of shape `(rows, columns, 3)`: a colour for each period; else grey, which is darker for larger `nu`.
 
     >>> periods(np.array([[2, 0]]), np.array([[-1.0, 0.6]]))[0, 1].round(2).tolist()
     [0.4, 0.4, 0.4]

@@ -35,7 +35,7 @@ class Canvas(FigureCanvasAgg):
     """Canvas that shares its formula parser with all other canvases of the process."""
 
     def get_renderer(self) -> RendererAgg:
-        """Matplotlib's renderer with the formula parser of the first canvas, so that equal formulas are parsed once."""
+        """Matplotlib's renderer, with the formula parser of the first canvas, so that formulas are parsed once."""
         made: RendererAgg = super().get_renderer()  # type: ignore[no-untyped-call]
         made.mathtext_parser = _parsers.setdefault("agg", made.mathtext_parser)
         return made
@@ -74,7 +74,7 @@ class GridLayout(LayoutEngine):
 
 
 def _cell_starts(size: float, room: "Array", foot: float = 0.0) -> "tuple[Array, float]":
-    """The starts of the cells along a side of the figure, and their length, as fractions of `size`; `room` in inches.
+    """The starts of the cells along a side, and their length, as fractions of `size`; `room` is in inches.
 
     >>> _cell_starts(10.0, np.array([[1.0, 0.0]]))[0].round(3).tolist()
     [0.104]
@@ -95,7 +95,7 @@ def _outside(box: Bbox, inner: BboxBase) -> "Array":
 
 @dataclass(eq=False)
 class Cell:
-    """Axes, and how far their tick labels, axis labels and title extend; measured again only if the ticks change."""
+    """One pair of axes, and the room that its labels and title need, which is cached until the ticks change."""
 
     axes: "Axes"
     dpi: float

@@ -54,14 +54,14 @@ class Marked(NamedTuple):
 
 
 def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
-    """The picture of a command's results as bytes; `kind` is `module.function` of this package, `ending` as `.png`."""
+    """The picture of a command's results as bytes; `kind` is `module.function` in this package, `ending` a suffix."""
     module, _, name = kind.partition(".")
     with styled():
         return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
 
 
 def shown(kind: str, results: Sequence[Any], axes: "Axes | None" = None) -> "Figure":
-    """Figure of results for a script or a notebook, on given axes or new.
+    """Figure of results for a script or a notebook; on given axes, or new.
 
     `kind` is `module.function` of this package, or the full name of a function.
     """
@@ -95,7 +95,7 @@ def outline(map: PinballMap) -> tuple[Array, Array]:
 
 
 def position(map: PinballMap, s: Array) -> tuple[Array, tuple[float, float]]:
-    """Arc length reduced to half the perimeter on either side of 0 (unchanged with holes), and the ends of its range.
+    """Arc length reduced to `[-L/2, L/2]` (unchanged if the table has holes), and the ends of its range.
 
     >>> position(PinballMap("circle"), np.array([4.0]))[0].round(4).tolist()
     [-2.2832]
@@ -147,7 +147,7 @@ def cloud(axes: "Axes", x: Array, y: Array, colour: str, size: float = 2.5) -> N
 
 
 def pair() -> "tuple[Figure, Axes, Axes]":
-    """A figure with axes on the left for the table, and on the right for phase space."""
+    """A new figure, with its axes for the table (left) and for phase space (right)."""
     made = figure(7.0, 3.0)
     left, right = made.subplots(1, 2, width_ratios=(1, 1.25))
     return made, left, right
@@ -169,7 +169,7 @@ def orbit(map: PinballMap, entries: Sequence[Mapping[str, Any]]) -> "Figure":
 
 
 def flights(found: "Orbit", axes: "Axes | None" = None) -> "Figure":
-    """Figure of an `Orbit`: flights and bounces, the first particles in colours; on given axes only the flights."""
+    """Figure of an `Orbit`: flights and bounces, with the first particles in colours; on given axes, flights only."""
     map = found.map
     assert map is not None
     rows: list[Any] = [np.asarray(row).reshape(len(found.theta), -1)[:, :LABELLED] for row in found]
@@ -213,7 +213,7 @@ def _bounces(axes: "Axes", map: PinballMap, s: Array, phi: Array, colour: str, l
 
 
 def attractors(map: PinballMap, found: "Sequence[Attractor]", axes: "Axes | None" = None) -> "Figure":
-    """Figure of attractors, each in a colour: flights in the table, points in phase space, fraction of the starts.
+    """Figure of attractors, each in its colour: flights in the table, points in phase space, fraction of starts.
 
     On given axes, only phase space is drawn.
     """
@@ -243,7 +243,7 @@ def attractors(map: PinballMap, found: "Sequence[Attractor]", axes: "Axes | None
 
 
 def beside(made: "Figure", axes: "Axes", own: bool, columns: int) -> None:
-    """Puts the legend outside the axes: below a figure of its own, to the right of given axes."""
+    """Puts the legend below a figure of its own, or to the right of given axes."""
     if own:
         made.legend(loc="outside lower center", ncols=columns)
     else:
@@ -251,7 +251,7 @@ def beside(made: "Figure", axes: "Axes", own: bool, columns: int) -> None:
 
 
 def exponents(document: Mapping[str, Any], axes: "Axes | None" = None) -> "Figure":
-    """Figure of both exponents of each attractor with twice their standard errors, and of the errors over bounces.
+    """Figure of both exponents of each attractor, with two standard errors, and of the errors by number of bounces.
 
     On given axes, only the exponents are drawn.
     """
@@ -317,7 +317,7 @@ def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "S
 
 
 def _with_gaps(values: Array) -> Array:
-    """The values with nan before each jump, which is a step of more than 8 times the upper quartile of steps.
+    """The values, with nan before each jump (a step of more than 8 times the upper quartile of the steps).
 
     >>> _with_gaps(np.array([0.0, 1.0, 2.0, 30.0, 31.0, 32.0])).tolist()
     [0.0, 1.0, nan, 30.0, 31.0, 32.0]
@@ -328,7 +328,7 @@ def _with_gaps(values: Array) -> Array:
 
 
 def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequence[float], **look: Any) -> None:
-    """Draws each chord of a cycle only once, since a second dashed line would fill the gaps of the first."""
+    """Draws the chords of a cycle, each once: a second dashed line would fill the gaps of the first."""
     x, y = map.states.point(np.array([*components, components[0]]), np.array([*theta, theta[0]], dtype=float))
     ends = [tuple(end) for end in np.round(np.stack([x, y], axis=1), 6)]
     chords = {frozenset(pair): i for i, pair in reversed(list(enumerate(pairwise(ends))))}
@@ -337,7 +337,7 @@ def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequ
 
 
 def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":
-    """Figure of the first cycles in the catalogue, each in its own table; solid if stable, dashed if unstable."""
+    """Figure of the first cycles in the catalogue, each in a table; solid if stable, dashed if unstable."""
     map, found = PinballMap(scene), catalogue.cycles
     rows = max(1, -(-min(len(found), SMALL) // 4))
     made = figure(7.0, 2.0 * rows + 0.3)

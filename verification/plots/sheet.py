@@ -43,7 +43,7 @@ class Raster(NamedTuple):
 
 @dataclass(frozen=True)
 class Panel:
-    """The data of one pair of axes: `x` and `y` are keys of `AXES`, `facts` the settings of the computation."""
+    """The data of one pair of axes: `x` and `y` are keys of `AXES`, `facts` tells how the data were computed."""
 
     title: str
     x: str
@@ -71,7 +71,7 @@ Panels = tuple[Panel, ...]
 
 
 def scaled(count: int, fine: float, least: int = 2) -> int:
-    """The number of points at resolution `fine`, where a draft has `count`; at least `least`.
+    """The number of points at resolution `fine`, relative to `count` in a draft; at least `least`.
 
     >>> scaled(100, 8.0), scaled(100, 0.001)
     (800, 2)
@@ -141,7 +141,7 @@ CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew"
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Sets Matplotlib's options for the figures, and restores them afterwards."""
+    """Context in which Matplotlib has the options for our figures; they are restored afterwards."""
     try:
         import matplotlib
     except ImportError:
@@ -238,7 +238,7 @@ def sides(centres: Array) -> tuple[float, float]:
 
 
 def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tuple[Figure, list[Axes]]":
-    """A figure with one pair of axes for each panel, with titles and labels; a row has this `height` in inches."""
+    """A figure with titled and labelled axes for each panel; `height` is that of a row, in inches."""
     from matplotlib.figure import Figure
 
     from verification.plots.layout import GridLayout
@@ -283,7 +283,7 @@ def _pi(halves: int) -> str:
 
 
 def cloud(ax: "Axes", curve: Curve, color: str, size: float = 0.6, label: str | None = None) -> None:
-    """Draws a curve as separate points; if there are more than 4000, they are pixels even in a vector file."""
+    """Draws a curve as separate points; more than 4000 points are drawn as pixels even in a vector file."""
     ax.plot(*curve, ls="", marker="o", mew=0, ms=size, color=color, rasterized=curve.x.size > 4000, label=label)
 
 
@@ -296,7 +296,7 @@ def legend(ax: "Axes", columns: int = 3) -> None:
 
 
 def graphs(ax: "Axes", panel: Panel) -> None:
-    """Draws graphs of a map and its iterates with the diagonal, lighter for higher iterates."""
+    """Draws the graphs of a map and its iterates, lighter for higher iterates, with the diagonal."""
     low = min(float(curve.x[0]) for curve in panel.curves.values())
     high = max(float(curve.x[-1]) for curve in panel.curves.values())
     ax.plot([low, high], [low, high], **FAINT)

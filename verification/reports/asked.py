@@ -32,10 +32,10 @@ CONTRACTIONS = ("1/10", "1/2", "9/10")
 class Asked:
     """The settings of a report: a scene, the interval of the parameter that varies, and what is examined on it.
 
-    `low` and `high` are exact numbers as text, `at` the contractions of the portraits and attractor counts, `period`
-    the longest period that is searched for, `digits` those of a certificate. `second` is a parameter of the table or of
-    the law that varies beside the contraction, with its ends; the other sections are then at the scene's own value of
-    it.
+    `low` and `high` are exact numbers as text, `at` the contractions for which portraits are drawn and attractors are
+    counted, `period` the longest period that is searched for, `digits` the number of digits in a certificate. `second`
+    is a parameter of the table or of the law that varies beside the contraction, with its ends; the other sections are
+    then at the scene's own value of it.
     """
 
     scene: Scene
@@ -104,7 +104,7 @@ class Asked:
 
     @property
     def varied(self) -> str:
-        """The parameter that varies, as options for `pinball follow`."""
+        """The parameter that varies and its interval, as options for `pinball follow`."""
         if self.parameter == "lam":
             return f"--lam {self.low}:{self.high}"
         return f"--lam {self.at[0]} --shape {self.parameter}={self.low}:{self.high}"
@@ -135,15 +135,15 @@ class Asked:
         return ["--scene", FILE]
 
     def scene_file(self) -> str:
-        """The text of the scene's file."""
+        """The scene as the text of a scene file."""
         return self.scene.text + "\n"
 
 
 class Parts:
     """The folder of a report's intermediate results: a document for each step, arrays and pictures.
 
-    A document has a checksum of itself and of the files of its step, and begins with the digest of the settings; what
-    was altered since is computed again. Certificates from an earlier run are proved again before they are shown.
+    A document has a checksum of itself and of its step's files, and the digest of the settings; a step is computed
+    again if its files were altered. Certificates from an earlier run are proved again before they are shown.
     `scheduler` is the address of a Dask cluster whose workers compute the grids; without it, this machine does.
     """
 
@@ -191,7 +191,7 @@ class Parts:
         self.files[file] = sha256((self.folder / file).read_bytes()).hexdigest()
 
     def arrays(self, name: str) -> dict[str, NDArray[Any]]:
-        """The arrays of the file `name.npz`."""
+        """The arrays in the file `name.npz`, by name."""
         with np.load(self.folder / f"{name}.npz") as found:
             return dict(found)
 

@@ -39,8 +39,7 @@ class ShownNumber:
 
 
 def solved(value: float, digits: int, error: float = 0.0) -> ShownNumber:
-    """A number computed in float64, to `digits` digits; its error is half a unit of the last digit, or `error` if
-    larger.
+    """A number computed in float64 to `digits` digits; its error is half a unit of the last, or `error` if larger.
 
     >>> solved(2 / 3, 4).words, solved(0.25, 4, 0.01).words
     ('0.6667 ± 5e-05', '0.25 ± 1e-02')
@@ -112,7 +111,7 @@ KINDS: dict[str, type[Block]] = {
 
 @dataclass(frozen=True)
 class Effort:
-    """The cost of a question: its seconds, and the remaining error of its answer."""
+    """The cost of a question in seconds, and the remaining error of its answer."""
 
     question: str
     size: str

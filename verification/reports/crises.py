@@ -42,7 +42,7 @@ DIGITS = 10  # of a multiplier
 
 
 def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found:
-    """Tangencies near the changes that the diagram shows, in float64 and not yet proved, with their cost."""
+    """The tangencies near the changes in the diagram, found in float64 and not yet proved, with the cost."""
     arrays = parts.arrays("diagram-0")
     changes = changed(arrays["counts"], arrays["chaotic"])
     if objection_of(asked.scene):
@@ -85,7 +85,7 @@ def proved(asked: Asked, said: Document, number: int) -> Found:
 
 @dataclass(frozen=True)
 class Told:
-    """The report on tangencies: its blocks, its lines in the diagram, and its events for JSON."""
+    """The report on tangencies: blocks of a section, lines for the diagram, and events for JSON."""
 
     blocks: list[Block]
     lines: list[list[Any]]
@@ -109,7 +109,7 @@ def told(asked: Asked, made: Mapping[str, Document]) -> Told:
 
 
 def changed(counts: NDArray[Any], chaotic: NDArray[Any]) -> list[int]:
-    """The columns after which the chaotic attractor gains or loses the largest fraction of its cells, largest first.
+    """The columns after which the chaotic attractor gains or loses the most cells, by fraction, largest first.
 
     >>> changed(np.array([[1, 1, 1, 1], [1, 1, 0, 0], [1, 1, 0, 0]]), np.array([1, 1, 0, 0]))
     [1]

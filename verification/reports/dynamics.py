@@ -40,7 +40,7 @@ LISTED = 11  # contractions of a diagram whose exponents are listed
 
 
 def slap(asked: Asked, parts: Parts) -> Found:
-    """The slap map's graph (contraction 0: each particle leaves along the normal), as a section's content."""
+    """The content of the section on the slap map: its graph, the limit in which particles leave along the normal."""
     if not asked.scene.law.uniform:
         return [Paragraph("The slap map is the limit of the law phi = -lam*eta; this scene has another law.")], [], {}
     map = PinballMap(asked.scene, lam=0)
@@ -73,7 +73,7 @@ def wrapped(s: Any, half: float) -> Any:
 
 
 def portrait(asked: Asked, parts: Parts, level: int) -> Found:
-    """The density of random particles after a transient, over arc length and the sine of the exit angle."""
+    """The content of the section on phase portraits: the density of random particles after a transient."""
     from numeric.pinball.sampling import interior_starts
 
     orbits, bounces = 100 << level, 400 << level
@@ -108,7 +108,7 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def diagram(asked: Asked, parts: Parts, level: int) -> Found:
-    """Computes arrays for the diagram: attractors against the parameter, and exponents of the same orbits."""
+    """Computes the arrays for the bifurcation diagram: attractors by parameter, and exponents of the same orbits."""
     low, high = asked.ends
     columns, orbits, points = (150 if asked.parameter == "lam" else SHAPES) * 2**level, 12 + 6 * level, 120
     values = np.linspace(low, high, columns)
@@ -155,7 +155,7 @@ def density(s: NDArray[Any], half: float) -> NDArray[np.int32]:
 
 
 def plane(asked: Asked, parts: Parts, level: int) -> Found:
-    """Computes arrays for the plane: the largest exponent over the second parameter and the contraction."""
+    """Computes the arrays for the parameter plane: the largest exponent by second parameter and contraction."""
     assert asked.second is not None
     name, low, high = asked.second
     rows, columns, starts = 16 << level, 32 << level, 6 + 2 * level
@@ -178,7 +178,7 @@ def plane(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def regions(asked: Asked, parts: Parts, level: int) -> Found:
-    """Computes arrays of the attractors that random starts reach, over the second parameter and the contraction."""
+    """Computes, by second parameter and contraction, on which attractors random starts end; kept as arrays."""
     assert asked.second is not None
     name, low, high = asked.second
     first, last = (float(exact(name, end)) for end in (low, high))
@@ -196,7 +196,7 @@ def regions(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def _set_of(seen: Endings, size: float) -> str:
-    """The attractors that some starts reach, in words: the period of each different cycle up to symmetry, chaos."""
+    """The attractors that some starts reach, as text: the periods of different cycles (up to symmetry), and chaos."""
     found = list[str]()
     for n in np.unique(seen.period[seen.kind == CYCLE]):
         left = seen.marks[(seen.kind == CYCLE) & (seen.period == n)]
@@ -214,7 +214,7 @@ def plane_blocks(
     curves: Sequence[dict[str, Any]],
     sets: dict[str, Any] | None,
 ) -> list[Block]:
-    """The regions of coexistence, and the plane with all curves known so far; drawn if the pictures are missing."""
+    """The blocks for the parameter plane: regions of coexistence, and the plane with all curves known so far."""
     assert asked.second is not None
     letter, blocks = asked.second[0], list[Block]()
     lines = (
@@ -257,7 +257,7 @@ def diagram_blocks(
     events: list[tuple[float, str, float]],
     seen: dict[str, Any] | None,
 ) -> list[Block]:
-    """The diagram with all families and events known so far, drawn if it is missing, and exponents along it."""
+    """The blocks for the diagram with all families and events known so far, and for the exponents along it."""
     level = -1 if seen is None else seen["level"]
     name = f"diagram-{said['level']}-{level}-{len(events)}"
     families = None if seen is None else parts.arrays(f"families-{level}")
@@ -301,7 +301,7 @@ def close(asked: Asked, values: Sequence[float]) -> tuple[float, float] | None:
 
 
 def counted(count: int, of: int) -> str:
-    """A count of starts as text, with 95 % bounds of the probability behind it.
+    """A count of starts as text, with a 95 % bound or interval for the probability.
 
     >>> counted(200, 200)
     '200 of 200, at least 98.1%'
@@ -313,7 +313,7 @@ def counted(count: int, of: int) -> str:
 
 
 def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
-    """The attractors that random starts reach at one contraction, and the basins."""
+    """The content of the section on attractors at one contraction: those that random starts reach, and the basins."""
     text = asked.at[which]
     starts = 200 * 4**level
     scene = asked.scene.at(lam=text)
@@ -373,7 +373,7 @@ def _member(member: Member, known: Three) -> tuple[str | ShownNumber, ...]:
 
 
 def _known(scene: Scene, member: Member) -> Three:
-    """Both exponents and the existence of an attractor, and how they are known: proved for a cycle, else sampled."""
+    """Both exponents of an attractor and its existence, each with how it is known: proved for a cycle, else sampled."""
     first = member.first
     if member.kind is not Kind.CYCLE:
         errors = zip((first.nu_plus, first.nu_minus), first.errors, strict=True)

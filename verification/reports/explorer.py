@@ -23,7 +23,7 @@ COLUMNS, ROWS = 48, 64  # cells of phase space on the page, at most
 
 
 def explorer(found: "xr.Dataset", label: Numbers) -> str:
-    """The page as HTML, in one file that needs no network; `label` has the class of each box of parameters."""
+    """The page as one file of HTML that needs no network; `label` is the class of each box of parameters."""
     settings = json.loads(found.attrs["settings"])
     parameter, sets = settings["parameter"], found.sets.values
     scene = Scene.parse(found.attrs["scene"])

@@ -53,7 +53,7 @@ OTHER = ("chaotic", "neutral", "stopped", "other")  # of the shares, after those
 
 
 def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continuation:
-    """The families known so far in this run, followed further; raises `TimeoutError` if `heard` does."""
+    """Follows the families known so far further, and returns them; raises `TimeoutError` if `heard` does."""
     found: Continuation = parts.memory.get("families") or Continuation(
         asked.scene, asked.parameter, (asked.low, asked.high), seed=asked.seed
     )
@@ -63,7 +63,7 @@ def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continu
 
 
 def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
-    """The families that attract random starts, the fractions of starts, and a check at unused parameter values."""
+    """The section on families that attract random starts, with fractions of starts and a check at unused values."""
     try:
         found, late = continuation(asked, parts, level, heard), False
     except TimeoutError:
@@ -102,7 +102,7 @@ def _shares(found: Continuation) -> dict[str, Any]:
 
 
 def lines(asked: Asked, found: Continuation) -> dict[str, Any]:
-    """Curves for the diagram, separated by nan: family, parameter, arc length of bounces and their symmetric images."""
+    """Curves for the diagram, with nan between: family, parameter, arc length of the bounces and symmetric images."""
     map = found.map_at(asked.own_value)
     half, group = map.arclength.perimeter / 2, symmetries_of(map)
     rows = list[Any]()
@@ -139,7 +139,7 @@ def family_said(found: Continuation, number: int, numbers: Mapping[str, Any]) ->
 
 
 def event_said(found: Continuation, event: FamilyEvent) -> Document:
-    """An event as plain data, as known before its proof."""
+    """An event as plain data, without its proof."""
     form = event.event.form
     plain = found.event_document(event, None, LOCATED)
     return {**plain, "supercritical": form.supercritical if form else None, "key": key_of(plain)}
@@ -151,7 +151,7 @@ def key_of(event: Mapping[str, Any]) -> str:
 
 
 def proofs(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
-    """Proofs of the events, first of the families that most starts reach, as far as there is time."""
+    """Proves events as far as there is time, those of the families that most starts reach first."""
     before = parts.read(f"proofs-{level - 1}")
     data: Document = {"proofs": dict(before["data"]["proofs"]) if before else {}, "late": False}
     blocks: list[Block] = []
@@ -181,7 +181,7 @@ def proofs(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
 
 
 def _certificates(found: Mapping[str, Any]) -> Iterator[Document]:
-    """The certificates in the blocks of a step."""
+    """The certificates among the blocks of a step."""
     for block in found["blocks"]:
         if block["kind"] == "certificate":
             yield {key: value for key, value in block.items() if key != "kind"}
@@ -211,7 +211,7 @@ def life(asked: Asked, parts: Parts, said: Document, number: int) -> Made:
 
 
 def chaos(asked: Asked, said: Document) -> Made:
-    """The sets of attractors that coexist at some values where starts end on chaos, with their symmetric images."""
+    """A table of the chaotic attractors that coexist at some values; symmetric images are counted as copies."""
     rows: list[tuple[Cell, ...]] = []
     for value in said["amid_chaos"]:
         map = PinballMap(asked.scene.at(**{asked.parameter: repr(value)}))
@@ -359,7 +359,7 @@ def _between(ends: Sequence[float]) -> ShownNumber:
 
 
 def missing_blocks(asked: Asked, said: Document) -> list[Block]:
-    """What may be missing: the check at other values, cycles that could not be followed, too small basins."""
+    """The blocks on what may be missing: the check, cycles that could not be followed, and too small basins."""
     check = said["check"]
     total = len(check["values"]) * check["starts"]
     blocks: list[Block] = []
@@ -385,7 +385,7 @@ def missing_blocks(asked: Asked, said: Document) -> list[Block]:
 
 
 def located(asked: Asked, event: Event, name: str, branch: Branch) -> tuple[ShownNumber, str, Certificate | None]:
-    """An event's value (to `digits` digits if its kind has a certificate), its checklist in words, its certificate."""
+    """An event's value (to `digits` digits if it can be certified), its checklist in words, and its certificate."""
     between = float(np.max(np.abs(np.diff(branch.values)), initial=0.0))  # two points, one of them on either side
     digits, step = CERTAIN.get(event.kind, LOCATED), 0.0 if event.located else between
     plain = solved(event.value, digits, step)

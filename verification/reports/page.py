@@ -49,7 +49,7 @@ FRAME = '<div class="{}" tabindex="0" role="group" aria-label="{}">{}</div>'  # 
 
 
 def page(report: Report, parts: Parts) -> str:
-    """The whole page as HTML. Two runs differ in computing times, and in how far they got."""
+    """The whole page as HTML. Two runs differ in computing times, and in how many steps they completed."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"remark": remark, "said": said, "further": further}
     environment.filters["block"] = partial(shown, parts=parts)
@@ -79,7 +79,7 @@ def further(left: Iterable[str]) -> str:
 
 
 def said(text: str) -> Markup:
-    """A formula as MathML, any other text as words."""
+    """A formula as MathML, or any other text as words, in HTML."""
     return formula(text) or remark(text)
 
 
@@ -98,7 +98,7 @@ def address(kind: str, content: bytes) -> str:
 
 
 def tag(known: Known) -> Markup:
-    """The mark beside a number that says how it is known, as HTML."""
+    """A mark in HTML, beside a number, that says how the number is known."""
     return Markup('<span class="known {}">{}</span>').format(known.name.lower(), known.value.split(",")[0])
 
 
@@ -223,7 +223,7 @@ def typeset(given: Block, parts: Parts) -> str:
 
 
 def _shares(given: Listing) -> list[int]:
-    """The widths of a table's columns in hundredths, from their longest words and texts."""
+    """The widths of a table's columns in per cent, from their longest words and texts."""
     columns = zip(given.columns, *given.rows, strict=True)
     texts = [[cell if isinstance(cell, str) else f"{cell.words} sampled" for cell in column] for column in columns]
     sizes = [max(max([len(text) / 3, *map(len, text.split())]) for text in column) for column in texts]

@@ -27,7 +27,7 @@ GROUND = {"chaotic": "#5a6478", "neutral": "#c3cad6", "stopped": "#e3dccb", "any
 
 
 def saved(parts: Parts, name: str, drawn: "Figure") -> None:
-    """Writes a picture as PDF and then as SVG; if the SVG file exists, the picture is complete."""
+    """Writes a picture as PDF, then as SVG; the existence of the SVG file shows that the picture is complete."""
     with replacing(parts.folder / f"{name}.pdf") as file:
         drawn.savefig(file, format="pdf", transparent=True, metadata={"CreationDate": None})
     with replacing(parts.picture(name)) as file:
@@ -102,7 +102,7 @@ def diagram(
     periods: Sequence[int] = (),
     window: tuple[float, float] | None = None,
 ) -> None:
-    """Draws families in colour over the density of other orbits, events as lines, fractions of starts, and exponents.
+    """Draws families in colour over the density of other orbits, with events, fractions of starts, and exponents.
 
     With a `window`, only that range of the parameter is drawn.
     """
@@ -165,7 +165,7 @@ def _paints(counts: NDArray[Any]) -> list[str]:
 
 
 def _shares(axes: "Axes", families: Arrays, paints: Sequence[str], periods: Sequence[int]) -> None:
-    """Draws the fractions of starts as a stack, those of the families first."""
+    """Draws the fractions of starts as a stack of areas, those of the families first."""
     at, counts = families["shares_at"], families["counts"].astype(float)
     shares = counts / counts.sum(axis=1, keepdims=True)
     order = sorted(range(len(paints)), key=lambda i: (paints[i] == REST, -shares[:, i].sum()))
@@ -230,7 +230,7 @@ def plane(parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[
 def regions(
     parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[Mapping[str, Any]], own: float
 ) -> None:
-    """Draws which attractors coexist over both parameters: a colour for each set, and the curves of events."""
+    """Draws which attractors coexist, by both parameters: a colour for each set, and the curves of events."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 
@@ -255,7 +255,7 @@ def regions(
 
 
 def _curves(axes: "Axes", lams: Array, values: Array, curves: Sequence[Mapping[str, Any]], own: float) -> None:
-    """Draws the curves of events with names, dots where they are proved, and the fixed value of other sections."""
+    """Draws the curves of events with their names, dots where they are proved, and a line at the scene's own value."""
     taken, size = list[Array](), np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
     axes.axhline(own, color="0.45", lw=0.8)
     for number, curve in enumerate(curves):
@@ -284,7 +284,7 @@ def _apart(points: Array, taken: Sequence[Array]) -> Array:
 def basins(
     parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int], names: Sequence[str], half: float, title: str
 ) -> None:
-    """Draws the attractor that each start reaches, in its colour and with a legend; blank if there is none."""
+    """Draws the attractor that each start reaches: a colour for each attractor, blank for none, and a legend."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 

@@ -29,7 +29,7 @@ def plane_of(asked: Asked) -> Plane:
 def curves(
     asked: Asked, said: Document, number: int, known: Sequence[Document], heard: Tick = lambda said: None
 ) -> Made:
-    """The curves in both parameters through the events of a family, and through those of its cycle in the second one.
+    """The curves in both parameters of events on a family, including those met when the second parameter varies.
 
     Curves that are in `known` are left out.
     """
@@ -44,7 +44,7 @@ def curves(
 
 
 def _lines(asked: Asked, said: Document) -> Iterator[tuple[Branch, float, str]]:
-    """The branch of a cycle in the contraction, and its branches in the second parameter at each contraction of `at`.
+    """A cycle's branch in the contraction, and its branches in the second parameter at the contractions `at`.
 
     Each comes with the value of the fixed parameter, and the command-line options that follow it again.
     """

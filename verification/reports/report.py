@@ -1,7 +1,7 @@
 """The report of a scene, made in steps: a useful page first, then refinements as long as there is time.
 
-Each step writes one file to the folder of intermediate results, and the page is written again after it. So a run that
-is stopped leaves a report, and the next run resumes from its files.
+Each step writes one file to the folder of intermediate results, and the page is written again after it. So a stopped
+run leaves a report, and the next run resumes from its files.
 """
 
 import json
@@ -74,7 +74,7 @@ class Report:
     """The sections of a report, its main numbers, and the steps for which there was no time.
 
     `pending` are the titles of sections about which nothing is known yet. A report is `unfinished` while it is being
-    made; a page that a killed run left behind says so.
+    made; if the run is killed, the page says so.
     """
 
     asked: Asked
@@ -206,7 +206,7 @@ def worked(
     tick: Tick,
     latex: str | Path | None = None,
 ) -> Report:
-    """Runs each step that fits in the time once; writes the report after each step, and returns the last one."""
+    """Runs each step that fits in the time, once; writes the report after each, and returns the last report."""
     left: list[str] = []
 
     def within(share: float) -> Tick:
@@ -326,7 +326,7 @@ def _scene(asked: Asked, parts: Parts) -> Made:
 
 
 def _work(asked: Asked, parts: Parts) -> Made:
-    """The section on error against run time for orbits of this scene, in every arithmetic."""
+    """The section on work-precision: error against run time for orbits of this scene, in every arithmetic."""
     from verification.measure.work.scenes import work_precision
     from verification.plots.sheet import styled
     from verification.reports import pictures
@@ -357,7 +357,7 @@ def _families(asked: Asked, parts: Parts, level: int, within: Callable[[float], 
 
 
 def _best(parts: Parts, name: str) -> dict[str, Any]:
-    """The answer to a question at its highest level so far; empty if there is none."""
+    """The answer to a question from the highest level computed so far; empty if there is none."""
     found = [parts.read(f"{name}-{level}") for level in range(LEVELS)]
     return next((one["data"] for one in reversed(found) if one and one["data"] != UNANSWERED), {})
 
@@ -370,7 +370,7 @@ def _lives(asked: Asked, parts: Parts) -> Iterator[Step]:
 
 
 def _curves(asked: Asked, parts: Parts, heard: Tick) -> Iterator[Step]:
-    """The steps that follow events of the largest families as two-parameter curves, except known curves."""
+    """The steps that follow events of the largest families as curves in two parameters, without repetition."""
     said, known = _best(parts, "families").get("families", []), list[dict[str, Any]]()
     for i in lives.drawn_alone(said):
         name = f"curves-{i}"
@@ -461,7 +461,7 @@ def _still(found: dict[str, Any], name: str, seen: dict[str, Any]) -> bool:
 
 
 def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
-    """The rows in order without repetition: an event on symmetric images of one cycle counts once."""
+    """The rows in order, without repetition: events on symmetric images of a cycle are listed once."""
     return tuple({json.dumps(row): row for row in rows}.values())
 
 

@@ -123,7 +123,7 @@ def inflections(table: Table) -> list[str]:
 
 
 def derivation(asked: Asked) -> list[Block]:
-    """The section on the derivative of the map, and on double normals on axes of symmetry with their thresholds."""
+    """The section on the derivative of the map, and on double normals along symmetry axes with their thresholds."""
     law = asked.scene.law
     matrix = derivative_matrix() if law.uniform else derivative_matrix(lam=Symbol("f'", real=True))
     name = "derivative in (s, phi), one flight and one reflection"
@@ -147,7 +147,7 @@ def derivation(asked: Asked) -> list[Block]:
 
 
 def double_normals(table: Table) -> Iterator[Cycle]:
-    """The chords along axes of symmetry with smooth end points, which are cycles of period 2 for every contraction.
+    """The chords along symmetry axes with smooth end points; they are cycles of period 2 for every contraction.
 
     Chords that a symmetry exchanges are listed once.
 
@@ -190,7 +190,7 @@ def _marked(table: Table, index: int, at: Expr) -> bool:
 
 
 def thresholds(cycle: Cycle) -> list[Block]:
-    """Formulas for the stability number of a double normal, and for the contraction of its period doubling or focus."""
+    """Formulas for a double normal: its stability number, and where it doubles its period or becomes a focus."""
     number = stability_number(cycle)
     value = number.evalf(20)
     blocks: list[Block] = [Formula(f"{cycle.name}: stability number P = (1 + t*K0)*(1 + t*K1)", f"P = {latex(number)}")]

@@ -1,4 +1,4 @@
-"""`pinball locate`: at which parameter value does an event happen, to a given number of certified digits?
+"""`pinball locate`: the parameter values of named events, to a given number of certified digits.
 
 `pinball check` verifies a certificate without the search that found it.
 """
@@ -30,7 +30,7 @@ TANGENCY = "tangency"  # only with a table
 
 
 def _names(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The names of values that begin with `begun`, for completion in a shell."""
+    """The names of events that begin with `begun`, for completion in a shell."""
     from verification.named.locate import NAMES
 
     return [name for name in (*NAMES, TANGENCY) if name.startswith(begun)]
@@ -155,7 +155,7 @@ def of_scene(
 
 
 def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[Located, ...]":
-    """The tangencies of a table's manifolds as the contraction varies; `ValueError` where another parameter varies."""
+    """The tangencies of a table's manifolds as the contraction varies; `ValueError` if another parameter varies."""
     if parameter != "lam":
         raise ValueError(f"locate tangency: {parameter} varies; accepted: --lam LOW:HIGH")
     from verification.named.tangencies import tangencies
@@ -191,7 +191,7 @@ HAPPENS = {"flip": "period {n} doubles", "fold": "period {n} folds", "tangency":
 
 
 def marked(path: str, scene: Scene, parameter: str) -> "Marked":
-    """The parameter value that a certificate, checked anew, proves for this scene; what happens there, in words."""
+    """The parameter value that a certificate proves for this scene (checked anew), and a text on what happens there."""
     from symbolic.tables.definition import table_boundary
     from verification.named.theorems import checked
     from verification.plots.results import Marked
@@ -236,7 +236,7 @@ def show(output: Output, found: "Located") -> None:
 
 
 def writable(path: str) -> None:
-    """Raises `ValueError`, before any work, where the certificate's file could not be written."""
+    """Raises `ValueError`, before any work, if the certificate's file could not be written."""
     where = Path(path)
     if where.is_dir() or not where.parent.is_dir() or not os.access(where if where.exists() else where.parent, os.W_OK):
         raise ValueError(f"--certificate {path!r} cannot be written; accepted: a file in a directory of yours")
@@ -256,8 +256,8 @@ def _write(path: str, found: "Located") -> None:
 def check_command(files: tuple[str, ...], output: Output) -> int:
     """Does a certificate prove what it says? Exit status 1 when an item of its checklist is not proved.
 
-    The whole checklist is worked through anew; what the file says of itself is not believed. With several files the
-    JSON has a list of them, under `files`.
+    The whole checklist is proved anew, whatever verdict the file contains. With several files, the JSON has a list of
+    the verdicts under `files`.
     """
     from verification.rigorous.certificate import read_document
 

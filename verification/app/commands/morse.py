@@ -65,13 +65,12 @@ def command(
     certificates: str | None,
     output: Output,
 ) -> int:
-    """Which attractors are proved, and in what order? Exit status 1 when only the whole strip is found as a trapping
-    region.
+    """Which attractors are proved, and in what order? Exit status 1 when no trapping region but the whole strip is
+    found.
 
-    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. It is proved that, from
-    some bounce on, every orbit that never lands on a join is in one of the Morse sets listed; it goes from one to
-    another only in the order given; and each trapping region keeps what enters it. A set may hold several attractors,
-    or none.
+    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. From some bounce on,
+    every orbit that never lands on a join is proved to be in one of the Morse sets listed; it goes from one to another
+    only in the order given; and each trapping region keeps what enters it. A set may hold several attractors, or none.
     """
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import region, sampled_share, shares
@@ -243,7 +242,7 @@ def graphs_command(
     """The Morse graph of each box of parameters, and which of them continue from box to box.
 
     The N values of --lams and of --shape NAME=LOW:HIGH:N are the borders of the boxes; contractions are below 1. What
-    is proved of a box holds for each of its parameters. Rotations that keep the table are divided out.
+    is proved for a box holds for each of its parameters. Phase space is taken modulo rotations of the table.
     """
     from verification.proofs.global_dynamics.database import continued, database
 
@@ -265,7 +264,7 @@ def graphs_command(
 
 
 def graph_lines(found: "xr.Dataset", label: "Numbers") -> list[str]:
-    """Lines of text: the boxes of the largest classes, and the numbers of trapping regions as a picture."""
+    """Lines of text: the numbers of boxes of the largest classes, and a picture of the numbers of trapping regions."""
     import numpy as np
 
     sets, attracting = found.sets.values, found.attracting.values

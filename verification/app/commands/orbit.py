@@ -67,12 +67,12 @@ def command(
     arithmetic that has the wanted digits at the last bounce, and says why: float64 as long as the orbit leaves it
     enough correct digits, else arb.
 
-    The first line of a --starts file names its columns: theta,phi or theta,phi,component or s,phi or x,y,dx,dy or
-    x,y,angle. Of --fields, `flight` is the length of the flight before a bounce and `time` the length of all flights so
-    far. Only the fields asked for are computed; mpmath and arb compute arc lengths only for --json or --fields. With a
-    --door, a particle that lands between two arc lengths ends as `escaped`, and its number of bounces is printed. With
-    --out every bounce is a row of a table of float64 columns, and `component` and `code` are whole numbers; then --json
-    has the first bounces only. A .zarr store is written in pieces, and the same command resumes it.
+    The first line of a --starts file names its columns (theta,phi or theta,phi,component or s,phi or x,y,dx,dy or
+    x,y,angle). Of --fields, `flight` is the length of the flight before a bounce and `time` the length of all flights
+    so far. Only the fields asked for are computed; mpmath and arb compute arc lengths only for --json or --fields. With
+    a --door, a particle that lands between two arc lengths ends as `escaped`, and its number of bounces is printed.
+    With --out every bounce is a row of a table of float64 columns, and `component` and `code` are whole numbers; then
+    --json has the first bounces only. A .zarr store is written in pieces, and the same command resumes it.
     """
     from numeric import PinballMap
     from numeric.pinball.states import KEYS
@@ -146,9 +146,7 @@ def command(
 
 
 def opened(map: Any, text: str) -> tuple[float, float]:
-    """The arc lengths `(low, high)` of a door, counterclockwise from `low` to `high`; `low > high` if it contains
-    `L/2`.
-    """
+    """The two ends of a door as arc lengths, counterclockwise; the point where arc length jumps may lie inside."""
     half, parts = map.arclength.perimeter / 2, text.split(":")
     try:
         low, high = (float(exact("--door", part)) for part in parts)
@@ -160,7 +158,7 @@ def opened(map: Any, text: str) -> tuple[float, float]:
 
 
 def escape(entries: list[dict[str, Any]], door: tuple[float, float]) -> int | None:
-    """The number of bounces until a particle lands in a door, where `entries` is cut off; None if it never does."""
+    """The number of bounces until a particle lands in a door, or None; `entries` is cut off after this bounce."""
     low, high = door
     for bounce, entry in enumerate(entries[1:], 1):
         s = entry["s"] if entry["status"] == "regular" else None
@@ -172,7 +170,7 @@ def escape(entries: list[dict[str, Any]], door: tuple[float, float]) -> int | No
 
 
 def escapes(times: Sequence[int | None], bounces: int) -> str:
-    """How many particles escaped, and when.
+    """A sentence on how many particles escaped, and after how many bounces.
 
     >>> escapes([3, None, 5], 100)
     '2 of 3 particles escaped within 100 bounces, after 4 on average, the last after 5'
@@ -194,7 +192,7 @@ def wanted(digits: int | None, tolerance: str | None) -> int | None:
 
 
 def in_float64(map: Any, particles: "list[Start]", bounces: int, fields: Sequence[str]) -> list[list[dict[str, Any]]]:
-    """The bounces of each particle by the float64 kernels, until it stops."""
+    """The bounces of each particle until it stops, computed by the float64 kernels."""
     from verification.app.commands.starts import columns, entries_of
 
     found = columns(map, particles, bounces, fields)
@@ -270,9 +268,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
 
 
 def normal_exits(scene: Scene) -> Scene:
-    """The scene with the paper's law, which has the same slap map as every law that exits along the normal at `lam =
-    0`.
-    """
+    """The scene with the paper's law; its slap map is that of every law which exits along the normal at `lam = 0`."""
     if scene.law.uniform:
         return scene
     from symbolic.expressions.signs import vanishes
@@ -308,7 +304,7 @@ def cycles_command(
 ) -> int:
     """Lists the cycles up to a period, found by a search, and shows as far as possible whether the list is complete.
 
-    Exit status 1 when a count does not come out even or a proof stays open; the cycles found are kept.
+    Exit status 1 when the cycles found do not account for a count, or a proof stays open; the cycles are kept.
     """
     from sympy import S
 
@@ -384,7 +380,7 @@ def worth(solution: "Solution") -> dict[str, Any]:
 
 
 def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[str, Any]]:
-    """For each period n, as JSON: the fixed points of `T**n` counted on cells, and those that the catalogue has."""
+    """For each period n, as JSON: the number of fixed points of `T**n` by a count on cells, and in the catalogue."""
     from numeric import PinballMap
     from verification.cycles.cells import fixed_points
     from verification.maps.first_hit import closes_smoothly, convex
@@ -416,7 +412,7 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
 
 
 def provable(scene: Scene) -> None:
-    """Raises `ValueError`, with the reason, where the theorem behind --prove does not apply to the scene."""
+    """Raises `ValueError`, with the reason, if the theorem behind --prove does not apply to the scene."""
     from symbolic.tables.curves import is_periodic
     from verification.maps.first_hit import convex
     from verification.proofs.periodic.completeness import one_smooth_curve, stays_below

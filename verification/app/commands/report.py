@@ -1,4 +1,4 @@
-"""`pinball report`: a page on the dynamics of one table, usable early and refined in the time given."""
+"""`pinball report`: one page on the dynamics of a table, which is soon useful, and refined in the time given."""
 
 from functools import wraps
 from importlib.util import find_spec

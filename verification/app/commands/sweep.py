@@ -1,4 +1,4 @@
-"""Grids of independent tasks, on all cores or on a Dask cluster, into a Zarr store.
+"""Sweeps: grids of independent tasks, run on all cores or on a Dask cluster, with results in a Zarr store.
 
 `pinball sweep KIND` runs any kind of grid; `pinball basins` shows which attractor each start reaches, and `pinball
 bifurcation` draws the attractors against the contraction.
@@ -33,7 +33,7 @@ Lines = Callable[["Memory | Stored"], list[str]]
 
 @dataclass(frozen=True)
 class How:
-    """Where the results of a sweep go, and who computes them."""
+    """How a sweep is run: where its results go, and on which workers it is computed."""
 
     output: Output
     store: Path | None
@@ -72,7 +72,7 @@ def sweep_options(command: Command) -> Command:
 
 
 def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
-    """Runs a sweep and prints its `lines`, or prints its cost; returns the exit status. `more` is passed to --plot."""
+    """Runs a sweep and prints a summary (or only its cost); returns the exit status. `more` is passed to --plot."""
     from numeric.sweeps import run
     from numeric.sweeps.cost import cost
 
@@ -149,7 +149,7 @@ def basins_command(
 
 
 def basins_lines(found: "Memory | Stored") -> list[str]:
-    """Lines of text: the share of cells of each attractor, and a small picture in letters."""
+    """Lines of text: the fraction of cells that reach each attractor, and a small picture made of letters."""
     import numpy as np
 
     label = found.arrays["label"][:]
@@ -268,8 +268,8 @@ class Kinds(click.Group):
 def command() -> None:
     """Parameter space, exponents, basins, bifurcation diagrams and Morse graphs.
 
-    The bits of the results depend on the seed and on nothing else, and a sweep with a --store that was stopped goes
-    on from there when the same command is given again.
+    The results depend on the seed and on nothing else, to the last bit. If a sweep with a --store was stopped, the same
+    command resumes it.
     """
 
 
@@ -298,9 +298,10 @@ def parameter_space(
     seed: int,
     how: How,
 ) -> int:
-    """For each pair of shape and contraction, whether some orbit is chaotic, in the egg or a table with --shape.
+    """For each pair of shape and contraction: does a chaotic orbit exist, in the egg or in a table with --shape?
 
-    An orbit counts as chaotic when its exponent is positive beyond two standard errors and beyond what shear shows.
+    An orbit counts as chaotic if its exponent is above two standard errors, and above the values that shear alone can
+    give.
     """
     import numpy as np
 

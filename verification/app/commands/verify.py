@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 def figure_command(
     name: str | None, out: str | None, full: bool, listing: bool, everything: bool, output: Output
 ) -> int:
-    """One of the paper's figures, computed and drawn.
+    """Computes and draws one of the paper's figures.
 
     With --json and without --out only the data are written, and Matplotlib is not needed.
     """
@@ -152,7 +152,7 @@ def _free(port: int) -> int:
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @json_option
 def claims_command(what: str, folder: Path, output: Output) -> int:
-    """A new folder for the claims of another paper: one sentence and its judge, to be replaced by your own.
+    """Creates a folder for the claims of another paper, with one sentence and its judge as an example to replace.
 
     It has paper.toml (title, authors, where it was printed, its sections, its sentences as printed) and judges.py.
     """
@@ -194,9 +194,9 @@ def command(
     """Is each claim of the paper true? Exit status 1 when one is open.
 
     --claims DIR judges another paper, whose sentences and judges are in DIR; `pinball claims new DIR` begins one. The
-    judges are Python: this option runs them, so give it folders only that you would run. Nothing else loads them.
+    judges are Python code that this option runs, so use only folders that you trust. Nothing else loads them.
 
-    The report does not depend on --jobs, but for the seconds in it.
+    The report does not depend on --jobs, except for its computing times.
     """
     from verification.paper.claims.folder import OWN, paper
     from verification.paper.report.page import ReportFigure, diagrams, set_claims, set_result
@@ -250,7 +250,7 @@ def command(
 
 @dataclass(frozen=True)
 class Last:
-    """The results and images of the last report whose code has not changed since, so that they still hold."""
+    """The results and images of the last report that still hold, as their code has not changed since."""
 
     results: "Mapping[str, Result]"
     images: "Mapping[str, bytes]"
@@ -354,7 +354,7 @@ def write_report(
 ) -> None:
     """Writes `report.html`, `report.md`, `report.json`, `report.tex` and `letter.tex`, each replaced as a whole.
 
-    `code` has digests of the code that the results depend on, kept for `--changed`.
+    `code` has digests of the code on which the results depend, for a later run with `--changed`.
     """
     from verification.paper.claims.folder import paper
     from verification.paper.report.findings import letter, tables

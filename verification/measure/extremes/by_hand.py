@@ -1,9 +1,9 @@
 """First hits on tables of sides and arcs, found by trying every piece in 80-bit arithmetic, for tests of the kernels.
 
-No code is shared with the kernels. Particles are the doubles that a kernel is given, and the table's numbers have 64
-bits. The first hit is the nearest intersection ahead on any piece; on the arc from which a particle starts, it is the
-second intersection of the line with the ellipse. Also computed is how closely each line passes a corner or a tangent,
-relative to the numbers that are summed for the ends of its flight.
+No code is shared with the kernels. Particles start with exactly the doubles that a kernel gets, and the table's numbers
+have 64 bits. The first hit is the nearest intersection ahead on any piece; on the arc from which a particle starts, it
+is the second intersection of the line with the ellipse. Also computed is how closely each line passes a corner or a
+tangent, relative to the numbers that are summed for the ends of its flight.
 """
 
 from collections.abc import Iterator
@@ -79,7 +79,7 @@ class Hit(NamedTuple):
 
 
 def pieces(family: Pieces, shape: Any) -> list[PieceNumbers[Any]]:
-    """Every piece of a table in 80 bits, computed from its program."""
+    """The constants of every piece of a table in 80 bits, computed from its program."""
     ops: Any = Wide()
     wide = [WIDE(float(x)) for x in shape]
     return [
@@ -148,7 +148,7 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
 
 
 def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float) -> Any:
-    """True for lines that may meet a piece, or pass within `ROUGHLY` of the table's size of it; computed in doubles."""
+    """True for lines that may meet a piece, or come within `ROUGHLY` times the table's size; computed in doubles."""
     least = ROUGHLY * table
     if piece.kind == LINE:  # both ends on one side
         one, two = (_cross(v, [float(end[i]) - z[i] for i in (0, 1)]) for end in (piece.start, start))
@@ -163,9 +163,7 @@ def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float
 def _near(
     family: Pieces, known: list[PieceNumbers[Any]], j: int, z: Any, v: Any, size: Any
 ) -> Iterator[tuple[Any, Any, Any]]:
-    """Yields distance ahead, distance aside and `size` for the start corner of piece `j`, and for its tangent, if
-    any.
-    """
+    """Yields for the start of piece `j`, and its tangent if any: distance along the line, across it, and `size`."""
     piece = known[j]
     if not family.closed[j]:
         corner = [piece.start[i] - z[i] for i in (0, 1)]
@@ -176,9 +174,7 @@ def _near(
 
 
 def _added_up(piece: PieceNumbers[Any], point: Any) -> Any:
-    """The sum of the moduli of the numbers that are added to give a point of a piece: its origin, and the way from
-    there.
-    """
+    """The sum of the moduli of the numbers that are added up to a point of a piece (origin plus vector)."""
     return sum(abs(piece.origin[i]) + abs(point[i] - piece.origin[i]) for i in (0, 1))
 
 
@@ -187,9 +183,7 @@ def _cross(v: Any, w: Any) -> Any:
 
 
 def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
-    """The intersections of lines with a piece's curve: length, coordinates `p`, `q`, cos(incidence), whether on the
-    piece.
-    """
+    """The intersections of lines with a curve: length, coordinates `p`, `q`, cos(incidence), True if on the piece."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     if piece.kind == LINE:
@@ -209,7 +203,7 @@ def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depar
 
 
 def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
-    """True if `(p, q)`, a point of the full ellipse, is on the arc."""
+    """True if the point `(p, q)` of the full ellipse is on the arc."""
     if closed:
         return np.isfinite(p)
     c = piece.middle[0] * p + piece.middle[1] * q
@@ -218,7 +212,7 @@ def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
 
 
 def _tangent(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
-    """Distance to a piece's tangent parallel to the line, ahead and aside (infinite if off the piece), and `size`."""
+    """Distance to a piece's tangent parallel to the line, along and across it (infinite if none), and `size`."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     root = np.hypot(a, b)
@@ -265,9 +259,7 @@ def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
 
 
 def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
-    """The particles at `starts` that fly at the angle `away` to the x axis, plus `off`; those that cannot are left
-    out.
-    """
+    """The particles at `starts`, with the direction of flight `away + off` (angle to the x axis), if it is possible."""
     frame = map.family.frame(starts.component, starts.theta)
     phi = frame.angle(map.states.ops, np.cos(away), np.sin(away)) + off
     good = np.abs(phi) < STRAIGHT  # false also where there is no such direction
@@ -288,7 +280,7 @@ def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
 
 
 def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
-    """Kernel fields before and after one bounce, and the code of the status."""
+    """The kernel's fields before and after one bounce, and the status code."""
     component, theta, phi = starts
     own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
     lam = np.full(theta.size, float(map.lam))
@@ -328,7 +320,7 @@ def _one_place(family: Pieces, one: Any, other: Any) -> Any:
 
 
 class CubicHit(NamedTuple):
-    """First hits on a boundary of cubics; `sure` is false where rounding leaves the hit in doubt."""
+    """First hits on a boundary of cubics; `sure` is false if rounding leaves the hit in doubt."""
 
     x: Any
     y: Any
@@ -399,6 +391,6 @@ def _value(p: list[Any], x: Any) -> Any:
 
 
 def _length(v: Any, terms: list[Any], x: Any, leaves: Any) -> Any:
-    """Distance along the line to a point of a cubic; where `leaves`, the known zero has been divided out of `terms`."""
+    """Distance along the line to a point of a cubic; if `leaves`, the known zero has been divided out of `terms`."""
     along = _value([v[0] * term[0] + v[1] * term[1] for term in terms], x)
     return np.where(leaves, along * x, along)

@@ -154,9 +154,7 @@ def _joins() -> tuple[KernelCase, ...]:
 
 
 def _corner_orbit() -> tuple[KernelCase, ...]:
-    """The test cases on the orbit of period 4 through both joins: flights from a join or near it, and to a join or near
-    it.
-    """
+    """The test cases on the orbit of period 4 through both joins: flights from or to a join, or close to one."""
     group, made = "The orbit through both joins, at lambda*", []
     for count in (0, 1, 2, 1000):
         arc = tuple((0, Ulps(count, side), side * PHI_STAR) for side in (1, -1))
@@ -222,9 +220,7 @@ class Truth:
         return made
 
     def bounce(self, here: Bounce, balls: EnclosedMap | None = None) -> Bounce:
-        """The landing, enclosed and proved to be the first hit; if that fails, by the map in mpmath with a hundred
-        digits.
-        """
+        """The landing, proved to be the first hit; if that fails, by the map in mpmath with a hundred digits."""
         balls = balls or self.balls
         found = balls.bounce(balls.start(as_ball(here.theta), as_ball(here.phi), here.component))
         if isinstance(found, Refusal):
@@ -237,9 +233,7 @@ class Truth:
         return self.exact.start(middle(found.theta), middle(found.phi), found.component)
 
     def derivative(self, here: Bounce, landed: Bounce) -> Any:
-        """The derivative of the landing's `(theta, psi)` in the start's, and in the logarithm of a shape that is
-        rounded.
-        """
+        """The derivative of the landing's `(theta, psi)` by the start's, and by log(shape) if the shape is rounded."""
         mp, exact = self.mp, self.exact
         columns = []
         if self.map.law == "slap":
@@ -256,9 +250,7 @@ class Truth:
         return mp.matrix(columns).T
 
     def gap(self, one: Bounce, other: Bounce) -> list[Any]:
-        """`one - other` in `(theta, psi)`, in `theta` only for the slap map; on two components `theta` is their
-        distance.
-        """
+        """`one - other` in `(theta, psi)`, or `theta` alone for the slap map; a distance if the components differ."""
         mp = self.mp
         theta = one.theta - other.theta
         if one.component != other.component:
@@ -291,9 +283,7 @@ class ReferenceState:
         self.condition = mp.sqrt(max(mp.eigsy(self.spread, eigvals_only=True)))
 
     def why(self, status: str) -> tuple[float, str]:
-        """How far the true flight is from the outcome that a kernel reported (a join or a grazing flight), also in
-        words.
-        """
+        """How far the true flight is from the outcome (join or grazing) that a kernel reported; the same in words."""
         mp, landed, (vx, vy) = self.truth.mp, self.landed, self.here.v
         if status == Status.JOIN.name:
             x, height = -mp.mpf(1) / 4 - self.here.x, mp.sqrt(3) / 4
@@ -316,7 +306,7 @@ class ReferenceState:
 
 
 def findings(case: KernelCase, starts: int | None = None) -> list[Finding]:
-    """For each kernel, the finding on its worst start."""
+    """The findings on a case: for each kernel, that on its worst start."""
     truth = Truth(case)
     asked = [ReferenceState(truth, state) for state in truth.starts(case)[:starts]]
     return [_finding(case, truth, kernel, asked) for kernel in (*KERNELS, TEXTBOOK) if kernel.runs(truth.map)]

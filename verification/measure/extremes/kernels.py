@@ -1,11 +1,11 @@
-"""Kernels that are tested on extreme cases: one bounce on LLVM, NumPy, 80-bit floats and mpmath; long products.
+"""Kernels tested on extreme cases (one bounce on LLVM, NumPy, 80-bit floats and mpmath), and tests of long products.
 
 The step of `numeric/flights` on 80-bit arrays has 64 bits of mantissa, 11 more than the doubles that it judges.
 
 Functions made for 53 bits are replaced: sines and arctangents are the C library's, and a zero is refined by Newton's
 method until its correction is below the unit or stops shrinking. Splitting for exact products, and the outcomes that
-stop a particle, are kept. All four run the same step; `TEXTBOOK` is the plain quadratic formula, kept to show that
-large errors are detected.
+stop a particle, are kept. All four kernels run the same step; `TEXTBOOK` is the plain quadratic formula, kept to show
+that large errors are detected.
 
 Products of many derivative matrices, and the exponents they give, are tested for underflow, overflow and errors of sums
 of logarithms. The result is the growth rate per bounce. Its condition number is the largest effect of rounding every
@@ -64,7 +64,7 @@ class Wide(ArrayBackend):
 
     @property
     def pi_low(self) -> Any:
-        """Pi less the 80-bit number nearest to it."""
+        """Pi minus the 80-bit number nearest to it."""
         return PI_LOW
 
     def angle(self, y: Any, x: Any) -> Any:
@@ -118,7 +118,7 @@ def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
 
 
 def made_unit(family: Family, state: list[Any]) -> list[Any]:
-    """An 80-bit state whose pairs are scaled to length one; rounded to doubles, they have that length to 53 bits only.
+    """An 80-bit state whose pairs of numbers are scaled to length one, which they have to 53 bits only as doubles.
 
     >>> from numeric import PinballMap
     >>> u, v = made_unit(PinballMap("cardioid").family, [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])
@@ -141,7 +141,7 @@ GOES_ON = Status.REGULAR.name
 
 @dataclass(frozen=True)
 class TestedKernel:
-    """A way to compute a bounce, with the name that tables show, and its unit of rounding."""
+    """A way to compute a bounce: its name in tables, and its unit of rounding."""
 
     name: str
     unit: float = DOUBLE
@@ -153,7 +153,7 @@ class TestedKernel:
         return self is not LONGDOUBLE or np.finfo(np.longdouble).nmant >= 63
 
     def bounce(self, map: PinballMap, state: list[Any], exact: Sequence[Any] = ()) -> tuple[list[Any], str]:
-        """The fields after one bounce, and the outcome that the kernel itself reports.
+        """The fields after one bounce, and the outcome (such as a stop) that the kernel reports.
 
         `exact` is the exact shape if it is not a double; the 80-bit kernel rounds it to 80 bits.
         """
@@ -347,7 +347,7 @@ def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
 
 
 def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = None) -> Any:
-    """The matrices in float64, for an orbit whose numbers are changed at random by `strength`."""
+    """The paper's matrix of every bounce in float64, of an orbit that is perturbed at random by `strength`."""
     from numeric.backends.scalars import ArrayBackend
 
     theta, phi, eta = (field + (strength * rng.choice([-1, 1], field.shape) if rng is not None else 0)
@@ -359,9 +359,7 @@ def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = Non
 
 
 def _placed(curve: Any, root: Any) -> Any:
-    """Point and curvature from a curve's point and derivatives; the curvature is negative where the boundary
-    focuses.
-    """
+    """Point and curvature from a curve's derivatives; the curvature is negative where the boundary focuses."""
     x, y, dx, dy, ddx, ddy = curve
     square = dx * dx + dy * dy
     return x, y, -(dx * ddy - dy * ddx) / (square * root(square))

@@ -49,7 +49,7 @@ UNIT, DIGITS = 2.0**-52, 15  # of a float64
 
 
 class StabilityVerdict(Enum):
-    """The verdict on a computed answer; its value is the verdict's meaning for a user."""
+    """The verdict on a computed answer; the enum value explains it to a user."""
 
     STABLE = "as right as rounded data allow"
     SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
@@ -59,7 +59,7 @@ class StabilityVerdict(Enum):
 
 @dataclass(frozen=True)
 class Errors:
-    """Forward and backward error in units of rounding, and the condition number between them."""
+    """Forward and backward error in units of rounding, and the condition number that relates them."""
 
     forward: float
     backward: float
@@ -67,7 +67,7 @@ class Errors:
 
     @property
     def ratio(self) -> float:
-        """`error / (cond * eps)`; at most 1 means that rounding the data once has at least as large an effect."""
+        """`error / (cond * eps)`; if it is at most 1, rounding the data once has at least as large an effect."""
         return self.forward / self.condition if isfinite(self.condition) else 0.0
 
     @property
@@ -107,7 +107,7 @@ class Finding:
     def stability(self) -> StabilityVerdict:
         """The verdict on the worst start; `STOPPED` if the kernel gave no number.
 
-        The sensitivity of the answer is taken from the kernel's own verdict, not from what was measured.
+        How sensitive the answer is, is taken from the kernel's own verdict and not from a measurement.
 
         >>> Finding("fold", "Newton", Errors(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
         'SENSITIVE'
@@ -133,9 +133,7 @@ class ChordSystem:
 
 
 def nearly_round(gap: Expr) -> Sought:
-    """The short axis of the ellipse `a = 1 + gap`, with a multiplier close to 1: in a circle, all diameters are
-    cycles.
-    """
+    """The short axis of the ellipse `a = 1 + gap`; its multipliers are near 1, those of a circle's diameters."""
     return Problem(tables.ellipse.at(a=1 + gap), (0, 0), lam=Rational(1, 3)), [1.5707963, -1.5707964]
 
 
@@ -162,7 +160,7 @@ def folded(ulps: int | None) -> Sought:
 
 
 def touching(gap: Expr) -> Sought:
-    """The egg's triangle at a contraction that is a double; the shape is such that its fold lies `gap` below."""
+    """The egg's triangle at a contraction that is a double, for a shape whose fold is lower by `gap`."""
     lam = Rational(float(N(polygons.saddle_node().subs(alpha_symbol, Rational(2, 25)), 30)))
     tilt = pi / 6 * (1 - lam + gap) / (1 + lam - gap)  # the closed form of the fold, solved for the shape
     shape = Rational(str(N(tan(tilt) / sqrt(9 + tan(tilt) ** 2), 60)))
@@ -210,7 +208,7 @@ def findings(cycle: ChordSystem) -> list[Finding]:
 
 
 def solution(problem: Problem, start: list[float]) -> list[Any]:
-    """The solution with `NEAR_DIGITS` digits, reached by doubling the digits, or at once if float64 diverges."""
+    """The solution with `NEAR_DIGITS` digits: by doubling the digits at each step, or at once if float64 diverges."""
     try:
         return refined(problem, start, NEAR_DIGITS).z
     except ValueError:

@@ -1,4 +1,4 @@
-"""Extreme orbits with known truth: very long ones, and one bounce of particles for which it is numerically hard.
+"""Extreme orbits with known truth: very long orbits, and single bounces of numerically hard particles.
 
 A very long orbit is tested by a quantity that is known even after chaos has erased the digits of the start. (1) An
 invariant of the elastic ellipse: each bounce adds one rounding, so `n` independent ones amount to `sqrt(n)`, and a
@@ -10,9 +10,9 @@ because the elastic cardioid is ergodic [Szasz1992] [Markarian1993]. (That its e
 
 The hard particles are grazing, near a cusp or a join, near flat points, or in long tables.
 
-`pinball bench` prints the errors of a few against 50 digits, `benchmarks/adversarial.py` those of millions against
-80-bit floats. Bounds are 4 units of 2**-52 for the position and 8 for the direction, or 8 condition numbers:
-the row sums of the absolute derivative matrix, and one for the rounding of the result.
+`pinball bench` prints the errors of a few particles against 50 digits, `benchmarks/adversarial.py` those of millions
+against 80-bit floats. The bounds are 4 units of 2**-52 for the position and 8 for the direction, or 8 condition
+numbers. A condition number is a row sum of the absolute derivative matrix, plus one for the rounding of the result.
 """
 
 from collections.abc import Callable, Iterator
@@ -44,7 +44,7 @@ MEAN = "more particles or longer orbits: a mean is known to its standard error a
 
 @dataclass(frozen=True)
 class Long:
-    """A test on long orbits: how many particles, and how many bounces of each."""
+    """A test on long orbits: a measure of their error, the number of particles, and the bounces of each."""
 
     name: str
     measure: Callable[["Long"], list[Finding]]
@@ -62,7 +62,7 @@ def findings(asked: Long) -> list[Finding]:
 
 
 def orbits(collisions: int = SHORT, particles: int = PARTICLES) -> tuple[Long, ...]:
-    """All tests on long orbits, each with so many collisions in total, divided among the particles."""
+    """All tests on long orbits, each with `collisions` in total, divided among the particles."""
     each = max(1, collisions // particles)
     kinds: tuple[tuple[str, Callable[[Long], list[Finding]]], ...] = (
         ("elastic ellipse a = 3/2", lambda asked: invariant(asked, "3/2")),
@@ -107,7 +107,7 @@ def root_mean_square(x: Any) -> float:
 
 
 def invariant(asked: Long, a: str) -> list[Finding]:
-    """Drift of the product of the angular momenta about the foci of the elastic ellipse."""
+    """The drift, along elastic orbits in an ellipse, of the product of the angular momenta about its foci."""
     map = PinballMap("ellipse", lam=1, a=a)
     rows = entered(map, *starts(asked.particles))
     after, said = advanced(map, rows, asked.bounces)
@@ -117,9 +117,7 @@ def invariant(asked: Long, a: str) -> list[Finding]:
 
 
 def momenta(map: PinballMap, rows: list[Any]) -> Any:
-    """The product of the angular momenta about both foci, in 80 bits; the rounded fields are first scaled to unit
-    length.
-    """
+    """The product of the angular momenta about both foci, in 80 bits, of fields scaled to unit length."""
     ux, uy, vx, vy = made_unit(map.family, [row.astype(np.longdouble) for row in rows])
     a = np.longdouble(float(map.exact_shape[0]))
     momentum = a * ux * vy - uy * vx
@@ -127,9 +125,7 @@ def momenta(map: PinballMap, rows: list[Any]) -> Any:
 
 
 def turning(asked: Long) -> list[Finding]:
-    """Error of the engine's `theta` after `n` bounces in the elastic circle, against `theta + n*(pi - 2*phi)` in 50
-    digits.
-    """
+    """Error of the engine's `theta` after `n` bounces in the elastic circle; `theta + n*(pi - 2*phi)` is exact."""
     map = PinballMap("circle", lam=1)
     rows = entered(map, *starts(asked.particles))
     (theta, phi), said = advanced(map, rows, asked.bounces)
@@ -187,7 +183,7 @@ def mirrored(asked: Long) -> list[Finding]:
 
 
 def ergodic(asked: Long) -> list[Finding]:
-    """Errors of means over chaotic orbits: `cos(phi)`, whose mean is pi/4, and `sin(theta/2)**2`, whose mean is 1/3."""
+    """Errors of time averages over chaotic orbits: `cos(phi)` (mean pi/4) and `sin(theta/2)**2` (mean 1/3)."""
     map = PinballMap("cardioid", lam=1)
     rows, said, sums = entered(map, *starts(asked.particles)), "", np.zeros((2, asked.particles))
     for done in range(0, asked.bounces, BLOCK):
@@ -244,7 +240,7 @@ class Case(NamedTuple):
 
 
 class Accuracy(NamedTuple):
-    """Largest errors of one bounce, in units of 2**-52, as they are and divided by the condition numbers."""
+    """Largest errors of one bounce, in units of 2**-52, and the largest ratios of errors to condition numbers."""
 
     scene: str
     case: str
@@ -256,9 +252,7 @@ class Accuracy(NamedTuple):
 
 
 def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """Test cases on the paper's tables, of about `count` particles of every kind; the first word of a label is the
-    table.
-    """
+    """Test cases on the paper's tables, with `count` particles of each kind; a label's first word is the table."""
     rng = np.random.default_rng(seed)
     side = np.where(rng.integers(0, 2, count) == 0, 1, -1)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -288,7 +282,7 @@ def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
 
 
 def scene(name: str, lam: Any = LAM) -> PinballMap:
-    """The map of a table of this name, with the shape at which it is measured."""
+    """The map of a table of this name, with the shape that benchmarks use."""
     if name in SCENES:
         return PinballMap(name, lam=lam, **SCENES[name])
     return PinballMap(tables.polar(LONG_RADII[name], name=name), lam=lam)

@@ -33,7 +33,7 @@ Group = tuple[str, str, list[Finding]]
 
 
 def rows(longer: bool = False, collisions: int = SHORT) -> Iterator[Group]:
-    """Group, case and findings; with `longer`, also cases that take minutes."""
+    """Yields group, case and findings of every case; with `longer`, also of cases that take minutes."""
     for case in CASES:
         yield case.group, case.name, [advised(found) for found in flights.findings(case)]
     for cycle in (*near.CYCLES, *(near.LONGER if longer else ())):
@@ -75,13 +75,13 @@ class Line:
 
     @property
     def why(self) -> str:
-        """The verdict in words, with the outcome that the kernel reports and the reason for the verdict."""
+        """The verdict in words, the outcome that the kernel reports, and the reason for the verdict."""
         named = f" ({self.stopped_by})" if self.stopped_by else ""
         return self.verdict.name.lower() + named + (f": {self.reason}" if self.reason else "")
 
 
 def record(rows: Iterable[Group]) -> list[dict[str, Any]]:
-    """Every finding as JSON; numbers have three digits, and infinite ones are texts."""
+    """Every finding as JSON; finite numbers have three digits, infinite ones are texts."""
     return [
         {
             "group": group,
@@ -160,9 +160,7 @@ def _exceptions(found: Sequence[Line]) -> str:
 
 
 def _of_flights(found: Sequence[Line]) -> str:
-    """A table with a row for each case: four numbers of the LLVM kernel, backward errors of other kernels, the
-    verdict.
-    """
+    """A table with a row for each case: numbers of the LLVM kernel, backward errors of other kernels, verdict."""
     others = [*FLIGHTS[1:], TEXTBOOK.name]
     rows = ["| case | condition | forward | error/(cond*eps) | backward: llvm | " + " | ".join(others)
             + " | verdict |", "|---" * (6 + len(others)) + "|"]  # fmt: skip

@@ -47,9 +47,10 @@ UNIT = "2**-52, largest of position and direction"
 
 @dataclass(frozen=True)
 class SceneTiming:
-    """One way to compute a bounce in one scene: its largest error over random particles, and its time per bounce.
+    """One method for a bounce in one scene: its largest error over random particles, and its time per bounce.
 
-    Errors are decimals, as they can be below all floats. `lam` is not in the JSON: `kernel` names it where it differs.
+    Errors are decimals, as they can be smaller than all floats. `lam` is not in the JSON, but part of `kernel` if
+    unusual.
     """
 
     scene: str
@@ -166,7 +167,7 @@ def own_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
 
 
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
-    """Seconds per bounce of `PinballMap.orbit`, which returns all bounces."""
+    """Seconds per bounce of `PinballMap.orbit`, which returns all bounces and not only the last."""
     component, theta = map.states.place(own)
     phi = map.states.exit(component, theta, own, map.law)
 
@@ -226,7 +227,7 @@ def worst(map: PinballMap, own: list[Array]) -> Decimal:
 
 
 def frontier(rows: list[SceneTiming]) -> set[int]:
-    """Indices of the rows on the Pareto front: no other row at the same contraction has less error and time.
+    """Indices of the rows on the Pareto front: no row at the same contraction has both less error and less time.
 
     >>> row = lambda error, seconds: SceneTiming("s", "a", "k", Decimal(error), seconds, 1)
     >>> sorted(frontier([row(1, 1.0), row(2, 2.0), row(0, 3.0)]))
@@ -251,7 +252,7 @@ def frontier(rows: list[SceneTiming]) -> set[int]:
 
 
 def operation_table() -> str:
-    """The vector instructions of one bounce, for every scene and question, as a table in Markdown."""
+    """The vector instructions in one bounce, for every scene and type of result, as a table in Markdown."""
     lines = ["| scene | law | question | fma | add | mul | div | sqrt | compare | select |", "|" + "---|" * 10]
     for name in SCENES:
         for law, lam in LAWS.items():
@@ -281,7 +282,7 @@ SCALAR = "numba, one particle at a time"
 
 
 def is_checkout() -> bool:
-    """True if the package runs from its source tree, so that the benchmark folder beside it belongs to it."""
+    """True if the package runs from its source tree, next to the benchmark folder."""
     return (ROOT / "pyproject.toml").is_file() and FOLDER.is_dir()
 
 

@@ -1,6 +1,6 @@
 """Times of whole calls, as users make them, relative to the kernel that they use; times of tables, relative to the egg.
 
-Each ratio has an upper bar. Seconds differ between machines, ratios hardly: the two times of a ratio are the best of
+Each ratio has an upper limit. Seconds differ between machines, ratios hardly: the two times of a ratio are the best of
 alternating runs, in processor time, which other work does not lengthen. All run on one thread.
 """
 
@@ -59,7 +59,7 @@ BARS: dict[str, tuple[str, float | None]] = {  # table: the one that its bounce 
 
 
 class Call(NamedTuple):
-    """The time of a call and of its reference, in seconds per bounce; `bar` is the largest ratio that is accepted."""
+    """The time of a call and of its reference, in seconds per bounce; `bar` is the largest accepted ratio."""
 
     scene: str
     call: str
@@ -70,7 +70,7 @@ class Call(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """The time of the call over that of its reference.
+        """The time of the call divided by that of its reference.
 
         >>> Call("egg", "a call", 3e-9, "the kernel", 2e-9, 2.0).ratio
         1.5
@@ -125,9 +125,7 @@ def single_rows(name: str, runs: int) -> Iterable[Call]:
 
 
 def batch_rows(name: str, runs: int) -> Iterable[Call]:
-    """Timed calls for many particles, relative to the kernel; on the circle only `step`, since a bounce there is so
-    cheap.
-    """
+    """Timed calls for many particles, relative to the kernel; on the circle only `step`, as its bounce is so cheap."""
     map = made(name)
     starts = phase_starts(map, MANY, seed=1)
     at, phi, where = starts.theta, starts.phi, starts.component
@@ -166,13 +164,13 @@ def made(name: str) -> PinballMap:
 
 
 def pieces_at_rest(runs: int) -> Iterable[Call]:
-    """Timed calls for particles that come to rest, on tables of straight sides and discs."""
+    """Timed calls for particles that come to rest, on tables with straight sides or discs."""
     for table in (tables.square(), tables.regular(6), discs(6)):
         yield at_rest(table.name, runs, FEW_AT_REST, PinballMap(table, lam="9/10"))
 
 
 def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: PinballMap | None = None) -> Call:
-    """Time per bounce after particles have come to rest, against a short run: subnormal numbers would slow it."""
+    """Time per bounce in a long run of particles that come to rest, against a short run: tests for subnormals."""
     count, short, long = sizes
     map = map or scene(name, "9/10")
     starts = phase_starts(map, count, seed=1)
@@ -214,10 +212,10 @@ def compared(name: str, lam: Any = WANDERING) -> PinballMap:
 
 
 def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[SceneTiming]:
-    """Timings of a bounce on every table of `BARS`, by a kernel and in scalar numba, in turn, at one contraction.
+    """Timings of a bounce on every table in `BARS`, by a kernel and in scalar numba alternately.
 
-    The contraction is close to 1; at a smaller one, particles settle between parallel walls and miss all obstacles.
-    Without numba there are rows for the kernels only.
+    All are at one contraction close to 1; at a smaller one, particles settle between parallel walls and miss all
+    obstacles. Without numba there are rows for the kernels only.
     """
     scalar, ways = module("scalar_numba") if baselines else None, dict[tuple[str, str], Callable[[], object]]()
     for name in names:

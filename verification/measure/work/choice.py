@@ -38,7 +38,7 @@ Rows = dict[tuple[str, str], MethodResult]
 
 
 def moved(before: Sequence[MethodResult], after: Sequence[MethodResult]) -> list[str]:
-    """A sentence for each row, or whole question, whose time changed by more than a factor 1.5 relative to the others.
+    """A sentence for each row or whole question whose time changed by a factor above 1.5, relative to the others.
 
     Changes within the quartiles of both runs are not reported. Errors that grew tenfold, and lost answers, are
     reported.
@@ -57,7 +57,7 @@ def moved(before: Sequence[MethodResult], after: Sequence[MethodResult]) -> list
 
 
 def changes(old: MethodResult, new: MethodResult, unit: float) -> list[str]:
-    """Sentences on what changed in a row, relative to a factor `unit` by which all times grew."""
+    """Sentences on what changed in a row; times are compared after a general slowdown by the factor `unit`."""
     if old.error is not None and new.error is None:
         return [f"has no answer any more: {new.failure}"]
     told = []
@@ -86,7 +86,7 @@ def _unit(old: Rows, new: Rows) -> float:
 
 
 def of_bench(rows: Iterable[Mapping[str, Any]]) -> list[MethodResult]:
-    """The rows in a JSON document of `pinball bench`, with a question for each table and a method for each kernel."""
+    """The rows in a JSON document of `pinball bench`: each table is a question, each kernel a method."""
     return [
         timed(
             row["scene"],
@@ -150,7 +150,7 @@ TABLE = Path(__file__).with_name("measured.json")
 
 @dataclass(frozen=True)
 class MeasuredWay:
-    """A method that kept its promise: the digits that it promises, and its seconds for one answer."""
+    """A method that kept its promise: its arithmetic and setting, the digits promised, the seconds for one answer."""
 
     method: str
     arithmetic: str
@@ -173,7 +173,7 @@ class ArithmeticChoice:
 
 
 def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
-    """The methods in some rows that may be chosen: no textbook methods, and only those compared with the truth."""
+    """The methods that may be chosen, from some rows: none from textbooks, and only those compared with the truth."""
     made = []
     for row in rows:
         if row.kept and row.promise and not row.textbook and row.method != "mpmath, no gmpy2":
@@ -183,7 +183,7 @@ def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
 
 
 def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
-    """The table of the methods in some rows that may be chosen, as the text of a JSON file."""
+    """The text of a JSON file with the methods, from some rows, that may be chosen."""
     kept: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
         kept.setdefault(row.question, []).extend(
@@ -198,7 +198,7 @@ def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
 
 @cache
 def table() -> Mapping[str, tuple[MeasuredWay, ...]]:
-    """The table that was measured: for each question, the methods that kept their promise."""
+    """The table of measured methods: for each question, those that kept their promise."""
     document = json.loads(TABLE.read_text(encoding="utf-8"))
     return {name: tuple(MeasuredWay(**each) for each in found) for name, found in document["questions"].items()}
 
@@ -206,9 +206,9 @@ def table() -> Mapping[str, tuple[MeasuredWay, ...]]:
 def cheapest(
     question: str, digits: int, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
 ) -> ArithmeticChoice:
-    """The cheapest method that answers `question` to `digits` decimal digits; with `proof`, only among proved ones.
+    """The cheapest method for `question` with `digits` decimal digits; with `proof`, the cheapest one that is proved.
 
-    If no method has so many digits, it is the cheapest one for the most digits in the table.
+    If no method has so many digits, the cheapest one with the most digits is taken.
 
     >>> kernel = MeasuredWay("kernel", "float64", "4 particles", 14, 1e-6, False)
     >>> ball = MeasuredWay("balls", "arb", "100 digits", 100, 1e-3, True)
@@ -242,7 +242,7 @@ def cheapest(
 def crossovers(
     question: str, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
 ) -> list[tuple[int, ArithmeticChoice]]:
-    """The cheapest methods as pairs: a number of digits, and the method that is cheapest from this number on."""
+    """The cheapest methods, as pairs: a method, and before it the number of digits from which on it is the cheapest."""
     known = tuple(_known(question) if measured is None else measured)
     edges = sorted({1, *(entry.digits + 1 for entry in known)})
     most, found = max(entry.digits for entry in known), list[tuple[int, ArithmeticChoice]]()
@@ -270,7 +270,7 @@ HOPELESS = 400.0  # digits: an orbit that loses more counts as losing all
 def for_orbit(
     map: PinballMap, start: tuple[float, float, int], bounces: int, digits: int, proof: bool = False
 ) -> ArithmeticChoice:
-    """The method to follow a particle from `start` (parameter, exit angle, component) with `digits` left at its end.
+    """The method that follows a particle from `start` (parameter, exit angle, component) to `digits` final digits.
 
     >>> circle = PinballMap("circle", lam="0.5")
     >>> for_orbit(circle, (0.3, 0.2, 0), 10, 10).arithmetic, for_orbit(circle, (0.3, 0.2, 0), 10, 20).arithmetic
@@ -292,7 +292,7 @@ def for_orbit(
 
 
 def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) -> float:
-    """The decimal digits by which a rounding error made anywhere on an orbit can grow; infinite if the orbit stops.
+    """The number of digits that rounding errors made anywhere on an orbit can cost; infinite if the orbit stops.
 
     This is the largest rise of the logarithm of a tangent vector's length, sampled at most `LOOKS` times.
     """
@@ -308,7 +308,7 @@ def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) 
 
 
 def digits_for(tolerance: Decimal | float | str) -> int:
-    """The number of decimal digits that keeps an error below a tolerance.
+    """The number of decimal digits that are needed for an error below `tolerance`.
 
     >>> digits_for(1e-12), digits_for(Decimal("3e-1000"))
     (12, 1000)

@@ -1,4 +1,4 @@
-"""Benchmarks on cycles of period 2, 3 and 64, a fold, and doublings; our equations against shooting and iteration."""
+"""Benchmarks on cycles of period 2, 3 and 64, a fold, and doublings; chord equations against shooting and iteration."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -39,7 +39,7 @@ STRIDE = 0.2  # step, over the distance in the contraction from its birth
 def cycle(
     name: str, title: str, table: Table, at: Rational, start: tuple[float, ...], own: PinballMap, settles: bool
 ) -> Question:
-    """Benchmark on the bounces of a cycle at `lam = at`; `own` is its map, `settles` is True if particles reach it."""
+    """Benchmark on the bounces of a cycle at `lam = at`, for the map `own`; `settles` tells that particles reach it."""
     problem = Problem(table, (0,) * len(start), lam=at)
     usual = textbook_cycle(own, (start[0], first_exit(problem, start)), len(start), settles)
     what = f"a cycle of period {len(start)} of the {table.name}, lam = {at}"
@@ -55,9 +55,7 @@ def cycle_question(
     usual: Sequence[Method],
     here: bool = False,
 ) -> Question:
-    """Benchmark on the bounces of a cycle, in every arithmetic and by the methods `usual`; with `here`, in this
-    process.
-    """
+    """Benchmark on the bounces of a cycle, in every arithmetic, against `usual` methods; `here`: in this process."""
 
     def certified(digits: int) -> list[arb]:
         return list(whole(proof_near(problem, list(start), digits)).enclosure.zero)
@@ -86,7 +84,7 @@ def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
 
 
 def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, settles: bool) -> list[Method]:
-    """Textbook methods for a cycle: single shooting on the compiled step and, if it attracts, iterating a particle."""
+    """Textbook methods for a cycle: single shooting on the compiled step, and iteration if the cycle attracts."""
     book = module("textbook")
     if book is None:
         return []
@@ -121,22 +119,20 @@ def period_3() -> Question:
 
 
 def triangle_start() -> tuple[float, ...]:
-    """The bounces of the triangle at `lam = 1/2`, to three decimals."""
+    """The bounces of the egg's triangle at `lam = 1/2`, to three decimals."""
     first = float(N(polygons.near_flat().subs({lam: HALF, alpha_symbol: ALPHA})))
     return tuple(round(math.remainder(first + k * math.tau / 3, math.tau), 3) for k in range(3))
 
 
 def period_64() -> Question:
-    """Benchmark: a strongly unstable cycle of period 64 of the cascade, far from the contraction at which it is
-    born.
-    """
+    """Benchmark: a strongly unstable cycle of period 64 of the cascade, far from where it is born."""
     own = PinballMap("egg", lam=str(FAR), alpha="2/25")
     return cycle("cycle-64", "A cycle of period 64, egg", EGG, FAR, far_cycle(), own, False)
 
 
 @cache
 def members() -> tuple[Doubling, ...]:
-    """The doublings `lambda_3` to `lambda_6` in float64."""
+    """The period doublings `lambda_3` to `lambda_6` of the egg's cascade, in float64."""
     return tuple(islice(cascade(ALPHA), HIGHEST - FIRST + 1))
 
 
@@ -229,9 +225,7 @@ def _together(methods: tuple[Method, ...]) -> Method:
 
 
 def textbook_doublings() -> list[Method]:
-    """Textbook methods for doublings: `brentq` on the multiplier of a cycle found by shooting, periods after a
-    transient.
-    """
+    """Textbook methods: `brentq` on the multiplier of a cycle found by shooting, and periods after a transient."""
     book = module("textbook")
     if book is None:
         return []

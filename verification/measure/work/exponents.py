@@ -68,7 +68,7 @@ def of_a_cycle() -> Question:
 def read_off(
     problem: Problem, start: tuple[float, ...]
 ) -> tuple[Callable[[Arithmetic, Vector], list[Any]], Callable[[int], list[arb]]]:
-    """Two functions for the larger exponent of a cycle: from a solution of its equations, and proved to some digits."""
+    """Two functions that give the larger exponent of a cycle: from a solution of its equations, and as proved balls."""
 
     def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
         trace, determinant = trace_and_determinant(Linearised(problem, arithmetic, z).terms.rows)
@@ -173,7 +173,7 @@ def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
 
 
 def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
-    """Parameter, exit angle and component of particles on the attractor."""
+    """Parameters, exit angles and components of particles on the attractor."""
     return _arrived(map.ir.table, float(map.lam), orbits)
 
 
@@ -253,7 +253,7 @@ class Inverse:
     label: str = "egg, the parameter at an arc length"
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """The difference between each arc length and the given one."""
+        """Differences between the arc lengths at the parameters `z` and the given arc lengths."""
         return [length(x) - s for x, s in zip(z, AT, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
@@ -267,13 +267,13 @@ class Inverse:
 
 
 def certified(digits: int) -> list[arb]:
-    """The arc lengths, enclosed."""
+    """The arc lengths at the benchmark's parameters, enclosed in balls."""
     with working(bits_of(digits, 32)):
         return [enclosed_length(arb(x)) for x in AT]
 
 
 def lengths() -> Question:
-    """Benchmark: arc length at some parameters."""
+    """Benchmark: the egg's arc length at some parameters."""
     map = PinballMap("egg", alpha="2/25")
     map.arclength.s(np.array(AT))
 
@@ -308,7 +308,7 @@ def lengths() -> Question:
 
 
 def parameters() -> Question:
-    """Benchmark: the parameters at some arc lengths."""
+    """Benchmark: the parameters of points at given arc lengths in the egg."""
     map = PinballMap("egg", alpha="2/25")
     start = tuple(round(float(x), 3) for x in map.arclength.theta(np.array(AT)))
     sought = Sought(Inverse(), start, per=len(AT))

@@ -1,4 +1,4 @@
-"""The work-precision diagram of a question: error against seconds, one line for each method.
+"""The work-precision diagram of a question: error against seconds, with one line for each method.
 
 Errors can go from 1 down to 1e-1000 and below; the vertical scale is then the logarithm of the number of digits, so
 that float64 and a thousand digits fit on one page. Marks and dashes differ, not only colours. Sentences from the same
@@ -58,7 +58,7 @@ def drawn(
 
 
 def _diagram(axes: "Axes", title: str, unit: str, rows: Sequence[MethodResult]) -> None:
-    """Draws lines, front, scales and legend on one pair of axes."""
+    """Draws the lines of methods, the Pareto front, the scales and the legend on one pair of axes."""
     shown = [row for row in rows if row.error]
     wide = min((row.magnitude for row in shown), default=0.0) < WIDE
     for name, look in looks(shown).items():
@@ -85,13 +85,13 @@ def looks(rows: Sequence[MethodResult]) -> dict[str, dict[str, Any]]:
 
 
 def image(figure: "Figure", ending: str = "svg") -> bytes:
-    """A figure as the bytes of an image file; equal figures give equal bytes. WebP files are small, for a page."""
+    """A figure as the bytes of an image file; equal figures give equal bytes. Pages use WebP: its files are small."""
     with styled():
         return encoded(figure, f".{ending}", **({"dpi": 110, **SMALL} if ending == "webp" else {}))
 
 
 def height(magnitude: float, wide: bool) -> float:
-    """Height in the diagram of an error with the decimal logarithm `magnitude`; `wide` is the scale for many digits.
+    """The height in the diagram of an error with decimal logarithm `magnitude`; `wide` if errors span many decades.
 
     >>> height(-16.0, wide=False), height(-100.0, wide=True)
     (-16.0, -2.0)
@@ -204,7 +204,7 @@ def picked(rows: Sequence[MethodResult]) -> str:
 
 
 def bars(rows: Sequence[MethodResult]) -> str:
-    """A sentence on the 95 % error bars after some numbers of bounces, and on the errors as fractions of the bars."""
+    """A sentence on the 95 % error bars after some numbers of bounces, and on the ratios of errors to error bars."""
     own = [row for row in _with_bars(rows) if row.promise and row.error is not None]
     parts = [f"{short(row.promise)} after {row.setting}" for row in own if row.promise]
     shares = [f"{float(row.error / row.promise):.2f}" for row in own if row.error is not None and row.promise]
@@ -229,7 +229,7 @@ def proofs(rows: Sequence[MethodResult]) -> str:
 
 
 def integers(rows: Sequence[MethodResult]) -> str:
-    """A sentence on how much slower mpmath is without gmpy2."""
+    """A sentence on how much slower mpmath is if gmpy2 is missing."""
     own = {row.digits: row for row in rows if row.method == "mpmath" and row.error is not None}
     bare = {row.digits: row for row in rows if row.method == WITHOUT and row.error is not None}
     both = sorted(d for d in own.keys() & bare.keys() if d)
@@ -240,7 +240,7 @@ def integers(rows: Sequence[MethodResult]) -> str:
 
 
 def usual(rows: Sequence[MethodResult]) -> list[str]:
-    """A sentence for each textbook method: its error, and the quickest method here that is as accurate."""
+    """A sentence for each textbook method: its error, and this package's quickest method that is as accurate."""
     names = dict.fromkeys(row.method for row in rows if row.textbook)
     own = [row for row in rows if not row.textbook]
     return [_judged(name, [row for row in rows if row.method == name], own) for name in names]

@@ -47,16 +47,16 @@ class ConvexFlights:
 
     @property
     def label(self) -> str:
-        """The name used in messages."""
+        """The name of the equations in messages."""
         return f"{self.table.name}, flights"
 
     def angles(self, arithmetic: Arithmetic, z: Vector) -> list[tuple[Any, ...]]:
-        """The exit angles of the chords to `z`, with derivatives."""
+        """The exit angles of the chords that end at the parameters `z`, with derivatives."""
         chord = load(chord_kernel(self.table, 0, 0, 1), arithmetic)
         return [chord(exactly(arithmetic, particle[0]), x) for particle, x in zip(PARTICLES, z, strict=True)]
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Differences between the exit angles of the chords to `z` and the given exit angles."""
+        """The exit angles of the chords that end at `z`, minus the given exit angles."""
         found = self.angles(arithmetic, z)
         return [a[0] - exactly(arithmetic, particle[1]) for a, particle in zip(found, PARTICLES, strict=True)]
 
@@ -84,7 +84,7 @@ class ConvexFlights:
 
 
 def exactly(arithmetic: Arithmetic, x: float) -> Any:
-    """A double in any arithmetic, without rounding."""
+    """The number `x`, without rounding, in any arithmetic."""
     return arithmetic.q(*x.as_integer_ratio())
 
 
@@ -114,7 +114,7 @@ def matrix_kernel(table: Table) -> Kernel:
 
 @cache
 def scene(name: str) -> tuple[Table, PinballMap, tuple[float, ...]]:
-    """Exact table, compiled map, and starts for Newton's method: the landings to three decimals."""
+    """The exact table, its compiled map, and the landings to three decimals, as starts for Newton's method."""
     shape: dict[str, Any] = {"alpha": "2/25"} if name == "egg" else {}
     map = PinballMap(name, lam=LAM, **shape)
     table = tables.named(name).at(**shape)
@@ -188,7 +188,7 @@ def bracketing(map: PinballMap) -> Method:
 
 
 def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]], bound: float) -> list[Method]:
-    """Two methods, for a few to thousands of particles: the compiled kernel, and the same step on NumPy arrays."""
+    """The compiled kernel and the same step on NumPy arrays, as methods, for a few to thousands of particles."""
     shape: dict[str, Any] = dict(zip((entry.name for entry in map.ir.shape), map.exact_shape, strict=True))
     plain = PinballMap(map.ir.table, lam=LAM, kernels=False, **shape)
     promise = Decimal(f"{bound:.3g}")
@@ -204,7 +204,7 @@ def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]]
 
 
 def running(map: PinballMap, bound: float) -> Method:
-    """The compiled kernel as a method, within a long run of many particles, where overhead does not count."""
+    """The compiled kernel as a method, timed in a long run of many particles, which makes its overhead negligible."""
     count, bounces = COUNTS[-1], 256
     starts = phase_starts(map, count, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
@@ -226,7 +226,7 @@ def stepped(map: PinballMap, theta: Any, phi: Any) -> list[float]:
 
 
 def turned(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """The derivative matrices of the first few particles."""
+    """The derivative matrices of one bounce of the first few particles."""
     return [float(x) for x in map.derivative(theta, phi)[: len(PARTICLES)].ravel()]
 
 

@@ -1,4 +1,4 @@
-"""The time of commands and scripts as users type them, each in a new process, against the shortest plain script.
+"""The time of commands and scripts, each in a new process as users type them, against the shortest plain script.
 
 A script answers the same question to the same digits. If an answer needs a search or a proof that only this package
 has, the time of importing SymPy, NumPy and SciPy takes the script's place.
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def egg_orbit(start: Sequence[Any], bounces: int, digits: int, alpha: str, lam: str) -> list[tuple[Any, Any]]:
-    """Parameters and exit angles on the egg `r = 1 + alpha*cos(3*theta)`, the start first.
+    """Parameters and exit angles of an orbit in the egg `r = 1 + alpha*cos(3*theta)`; the start comes first.
 
     The float64 kernel computes the landing, Newton steps refine it to full precision, and the exit angle is minus `lam`
     times the incidence angle.
@@ -58,19 +58,19 @@ def egg_orbit(start: Sequence[Any], bounces: int, digits: int, alpha: str, lam: 
 
 @cache
 def egg(alpha: str, lam: str) -> PinballMap:
-    """The egg's map, whose kernel computes the landings; built once."""
+    """The egg's map, cached; its kernel computes the landings of `egg_orbit`."""
     return PinballMap("egg", alpha=alpha, lam=lam)
 
 
 def landing(bounces: int, digits: int) -> str:
-    """The parameter of the last bounce of a particle in the egg; each bounce loses less than a fifth of a digit."""
+    """The last landing of a benchmark particle in the egg, with guard digits: a bounce loses under 1/5 of a digit."""
     last, _ = egg_orbit(("0.3", "0.2"), bounces, digits + bounces // 5, "0.08", "0.5")[-1]
     own = last.context
     return str(own.nstr((last + own.pi) % (2 * own.pi) - own.pi, digits))
 
 
 def flower_length() -> str:
-    """The length of `r = 1 + cos(5*theta)/40`: the trapezoidal rule, which converges geometrically."""
+    """The length of the curve `r = 1 + cos(5*theta)/40` by the trapezoidal rule, which converges geometrically."""
     imports()
     at = [2 * mpmath.pi * k / 200 for k in range(200)]
     speeds = (mpmath.hypot(1 + mpmath.cos(5 * t) / 40, mpmath.sin(5 * t) / 8) for t in at)
@@ -78,7 +78,7 @@ def flower_length() -> str:
 
 
 def imports() -> str:
-    """Only the imports with which most scripts begin; returns the versions."""
+    """Imports NumPy, SciPy and SymPy, as most scripts do at first; returns their versions."""
     import numpy
     import scipy
     import sympy
@@ -92,7 +92,7 @@ def last_theta(said: str) -> str:
 
 
 class Asked(NamedTuple):
-    """A command or Python code, its plain script, the largest accepted ratio of times, and the common digits."""
+    """A command or Python code, the plain script to compare, the largest accepted ratio of times, the common digits."""
 
     typed: str
     script: str
@@ -156,7 +156,7 @@ def agree(one: str, other: str, digits: int) -> bool:
 
 
 def asked_rows(runs: int, questions: Iterable[Asked] = QUESTIONS) -> "Iterable[Call]":
-    """Each command timed against its script: the shortest of alternating runs. `ValueError` if their digits differ."""
+    """Times each command against its script: the shortest of alternating runs. `ValueError` if their digits differ."""
     from verification.measure.work.calls import Call
 
     for one in questions:

@@ -34,7 +34,7 @@ NOTES = 6  # of a task: worker, begin, end, waiting time of its thread before an
 
 
 def waited() -> float:
-    """Seconds for which this thread has been ready but without a core; 0 if the system does not tell."""
+    """Seconds for which this thread has been ready to run but had no core; 0 if the system does not tell."""
     try:
         text = Path(f"/proc/self/task/{threading.get_native_id()}/schedstat").read_text()
     except OSError:
@@ -58,7 +58,7 @@ class Watched:
 
 
 class Busy(NamedTuple):
-    """Wall seconds of all workers (waiting for a core excluded), processor seconds of their tasks, number of tasks."""
+    """The workers' wall time (except waiting for a core), the processor time of their tasks, the number of tasks."""
 
     seconds: float
     spent: float
@@ -66,7 +66,7 @@ class Busy(NamedTuple):
 
 
 def busy(results: Results) -> Busy:
-    """The time of the workers, each counted from the end of its first task, which includes loading."""
+    """The time of the workers, each from the end of its first task, since that task includes loading."""
     rows = np.array([found["notes"].flat[:NOTES] for _, found in results])
     seconds, spent, tasks = 0.0, 0.0, 0
     for worker in np.unique(rows[:, 0]):
@@ -79,7 +79,7 @@ def busy(results: Results) -> Busy:
 
 
 def watched(bounces: int) -> Sweep:
-    """A sweep over a small parameter space of the egg, with tasks of equal length that record their times."""
+    """A sweep over a small parameter space of the egg; all tasks take equally long, and record their times."""
     return with_watch(
         parameter_space(np.linspace(0.08, 0.0801, TASKS), np.linspace(0, 1, 20), PARTICLES // 20, bounces, 0)
     )
@@ -105,14 +105,14 @@ class Waiting:
 
 
 def waiting(workers: int, python: bool = False, seconds: float = WAIT) -> Sweep:
-    """A sweep with `ROUNDS` waiting tasks for each worker; in processes if `python`."""
+    """A sweep with `ROUNDS` waiting tasks for each worker; if `python`, in processes."""
     alphas = np.linspace(0.08, 0.0801, ROUNDS * workers)
     plain = parameter_space(alphas, np.linspace(0, 1, 1000), 1, 400, 0)
     return with_watch(replace(plain, task=Waiting(plain.fields, seconds), python=python))
 
 
 def by_waiting(sweep: Sweep, workers: int, scheduler: str | None = None) -> float:
-    """Worker seconds per waiting task, in a whole sweep that writes to a store."""
+    """The worker time per waiting task in seconds, in a sweep that writes to a store."""
     with TemporaryDirectory() as folder:
         done = run(sweep, Path(folder) / "waiting.zarr", scheduler, workers)
         notes = np.asarray(done["notes"])
@@ -135,7 +135,7 @@ def waiting_rows(workers: int = WORKERS) -> Iterator[Call]:
 
 
 def sweep_rows() -> Iterable[Call]:
-    """Timed sweeps by two threads, two processes and two workers of Dask; predicted against measured time."""
+    """Times of sweeps with two threads, two processes and two Dask workers; predicted against measured time."""
     short, long = (busy(on_threads(watched(bounces), watched(bounces).indices(), 1)).spent for bounces in LENGTHS)
     rise = max((long - short) / (TASKS - 1) / (LENGTHS[1] - LENGTHS[0]), 1e-9)
     sweep = watched(round(WORTH / rise / 4) * 4)
@@ -169,7 +169,7 @@ def clustered(workers: int) -> Iterator[str | None]:
 
 
 def foretold() -> Call:
-    """Predicted and measured seconds of a sweep; the larger is the time, the smaller its reference."""
+    """A sweep's predicted and measured seconds: the larger is reported as time, the smaller as its reference."""
     grid = np.linspace(0, 1, 60)
     sweep = parameter_space((grid / 10).round(9), grid, 20, 1000, 1000)
     expected, begun = cost(sweep, 1, stored=False).seconds, time.process_time()

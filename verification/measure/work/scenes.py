@@ -228,7 +228,7 @@ def in_every_arithmetic(
     call: Callable[..., list[float]],
     entries: Entries,
 ) -> Iterator[Method]:
-    """The methods in every arithmetic: the compiled kernel, NumPy, mpmath and balls."""
+    """Methods in every arithmetic: the compiled kernel, NumPy, mpmath and balls."""
 
     def ran(own: PinballMap, count: int) -> list[float]:
         theta, phi, component = np.tile(np.array(starts), (count // len(starts), 1)).T
@@ -283,7 +283,7 @@ def problem_of(scene: Scene, orbit: PeriodicOrbit) -> tuple[Problem, tuple[float
 
 
 def of_fold(scene: Scene, seed: int) -> Question:
-    """Benchmark: a contraction at which two cycles are born, the first fold on branches of cycles followed in `lam`."""
+    """Benchmark: a contraction at which two cycles are born, the first fold met when cycles are followed in `lam`."""
     for beginning in BEGINNINGS:
         here = scene if beginning == "own" else scene.at(lam=beginning)
         if not 0 < here.lam < 1:

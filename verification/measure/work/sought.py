@@ -76,7 +76,7 @@ def last(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
 
 @dataclass(frozen=True)
 class Sought:
-    """The values that `read` takes from the solution of `system` near `start`; one solution gives `per` answers."""
+    """The values that `read` takes from the solution of `system` near `start`: `per` answers from one solution."""
 
     system: System
     start: tuple[float, ...]
@@ -84,7 +84,7 @@ class Sought:
     per: int = 1
 
     def methods(self, certified: Callable[[int], list[arb]] | None = None) -> tuple[Method, ...]:
-        """The methods in every arithmetic; `certified(digits)` is the proof, by default that of the zero alone."""
+        """Methods in every arithmetic; `certified(digits)` gives the proof, by default that of the system's zero."""
         proof = certified or self.enclosed
         exact = Method("mpmath", "mpmath", "digits", DIGITS, self.in_mpmath, to_digits, self.per)
         found = [
@@ -122,7 +122,7 @@ class Sought:
             return [x.mid() for x in self.read(balls(bits_of(digits + GUARD)), z)]
 
     def middle(self, digits: int) -> list[arb]:
-        """An approximate solution in arb's floats, by Newton's method with digits that double at each step."""
+        """An approximate solution in arb's floating-point numbers; Newton's method doubles the digits at each step."""
         z = [arb(x) for x in floats(self.system, self.start)]
         for level in levels(digits):
             bits = bits_of(level, 8)
@@ -156,7 +156,7 @@ class Sought:
 
 
 def scripted(scene: Scene, starts: Sequence[Sequence[Any]], bounces: int) -> list[Method]:
-    """The method of a plain mpmath script for the last bounces; only for the egg with the paper's law, else empty."""
+    """A plain mpmath script for the last bounces, as a method, in the egg with the paper's law; otherwise empty."""
     if scene.name != "egg" or scene.K != POINTS or not scene.law.uniform:
         return []
     alpha, lam = str(scene.shape["alpha"]), str(scene.lam)
@@ -213,7 +213,7 @@ def textbook_corner() -> list[Method]:
 
 @cache
 def criticality() -> tuple[Kernel, Kernel]:
-    """Two kernels: logarithmic slope of the expansion of `T0^2` and its derivative; the expansion itself."""
+    """Two kernels: the logarithmic slope of the expansion of `T0^2`, with its derivative; the expansion itself."""
     x = Symbol("landing", real=True)
     first, second = slope_squared(x), slope_squared(-sqrt(LAUNCH_Q2.subs(q, x)))
     slope = first.diff(x) / first + second.diff(x) / second
@@ -260,7 +260,7 @@ def slap_infimum() -> Question:
 
 
 def by_polynomial() -> list[Method]:
-    """A method by a polynomial of degree 22, whose zero FLINT isolates with a proof."""
+    """A method for the least slope: a polynomial of degree 22, one of whose zeros FLINT isolates with a proof."""
     book = module("textbook")
     if book is None:
         return []

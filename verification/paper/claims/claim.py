@@ -1,4 +1,4 @@
-"""A claim of a paper as printed, and the judgement of it."""
+"""A claim of a paper as printed, and the judgement on it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ class Verdict(Enum):
 
 
 class Costing(Protocol):
-    """Base of claims and pictures, which have an estimate of their computing time."""
+    """A claim or a picture, which has an estimate of its computing time."""
 
     @property
     def seconds(self) -> float:
@@ -38,7 +38,7 @@ class Costing(Protocol):
 
 
 def seconds(items: Iterable[Costing]) -> float:
-    """The estimated time to judge claims and draw pictures, in seconds."""
+    """The estimated seconds to judge claims and draw pictures, in total."""
     return sum(each.seconds for each in items)
 
 
@@ -79,7 +79,7 @@ class Claim:
 
     @cached_property
     def formula(self) -> Expr | Matrix:
-        """The printed text as an expression; a list or a table of formulas as a matrix."""
+        """The printed text as a formula; a list or a table of formulas as a matrix."""
         if isinstance(self.printed, str):
             return parse(self.printed, self.names)
         rows = [[row] if isinstance(row, str) else row for row in self.printed]
@@ -87,7 +87,7 @@ class Claim:
 
     @cached_property
     def box(self) -> dict[Symbol, Interval]:
-        """The ranges that the paper states for symbols, where they are a plain interval or a point."""
+        """The range that the paper states for each symbol, if it is a plain interval or a point."""
         found = {}
         for name, text in self.over:
             interval = parse_interval(text)

@@ -66,7 +66,7 @@ class Paper:
         return "; ".join(filter(None, (", ".join(self.authors), self.citation)))
 
     def certificates(self) -> dict[str, tuple[Path, ...]]:
-        """The certificates of each claim, by its id, where all their files exist.
+        """The certificates of each claim, by the claim's id, if all their files exist.
 
         >>> [path.name for path in paper().certificates()["egg.doubling.3"]]
         ['doubling-3.json']
@@ -133,7 +133,7 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def _checked(where: Path, entry: Any, kinds: Mapping[str, Any], needed: Iterable[str], name: str = "") -> None:
-    """Raises `ValueError`, with what is accepted, if a table has a missing, unknown or wrong key."""
+    """Raises `ValueError` if a table of the file has a missing, unknown or wrong key, and says what is accepted."""
     label = f"{where}{f', claim {name!r}' if name else ''}"
     if not isinstance(entry, dict):
         raise ValueError(f"{label}: a claim is a table [[claim]], not {entry!r}")
@@ -241,7 +241,7 @@ def _with_judges(found: Paper) -> Paper:
 
 
 def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """The recorded seconds of each claim, and the seconds that its results save each other claim; often empty."""
+    """The recorded seconds of each claim, and those that its results save each other claim; empty if not recorded."""
     if not found.seconds:
         return {}, {}
     record = json.loads(Path(found.seconds).read_text(encoding="utf-8"))

@@ -38,7 +38,7 @@ LONG, BITS = 10, 160
 
 @cache
 def barrier(contraction: str = AT) -> Barrier:
-    """The barrier at one contraction."""
+    """The barrier at one contraction: a curve above `phi = 0` that the map sends strictly below itself."""
     return Barrier(Scene("egg", alpha=SHAPE), (Fraction(contraction), Fraction(contraction)))
 
 
@@ -57,7 +57,7 @@ def triangles(contraction: str = AT) -> SignFinding:
 
 
 def bounces(contraction: str, near: PhasePoints) -> Boxes | None:
-    """The bounces of the cycle near some phase points, as boxes; None if the cycle is not proved."""
+    """The bounces of the cycle near the points `near`, as boxes; None if the cycle is not proved."""
     shape = Rational(SHAPE)
     proof = certificate(tables.egg(3).at(alpha=SHAPE), Rational(contraction), near)
     if not proof.proved:
@@ -85,8 +85,9 @@ def divided(contraction: str = AT) -> SignFinding:
 def above_below(claim: Claim) -> Judgement:
     """The basins lie beyond the barriers, and an attractor that is its own mirror image lies between them.
 
-    It has a dense orbit with points below the upper barrier: the mirror image of a point above that barrier is below
-    the lower one. For the same reason it has points above the lower barrier, and orbits stay between the barriers.
+    Such an attractor has a dense orbit with points below the upper barrier: the mirror image of a point above it is
+    below the lower one. For the same reason it has points above the lower barrier. Orbits between the barriers stay
+    there.
     """
     return Judgement(
         divided(),
@@ -112,7 +113,7 @@ def separate(claim: Claim) -> Judgement:
 
 @cache
 def barrier_ends() -> SignFinding:
-    """The finding that a barrier between `phi = 0` and the triangles stops existing between two given contractions."""
+    """The finding that the barrier between `phi = 0` and the triangles breaks between two given contractions."""
     breaks = BarrierBreaks(barrier(), Fraction(LOST), SINK, CROSSES)
     return by(
         f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper triangle",
@@ -123,7 +124,7 @@ def barrier_ends() -> SignFinding:
 
 @judges("egg.another_crisis")
 def another_crisis(claim: Claim) -> Judgement:
-    """A barrier between `phi = 0` and the triangles exists at 0.66, and no such barrier exists at 0.6623."""
+    """The barrier between `phi = 0` and the triangles exists at 0.66, and is broken at 0.6623."""
     return Judgement(
         barrier_ends(),
         f"at {AT} a curve above phi = 0 is mapped below itself, so that no orbit from phi = 0 comes to a triangle; at "

@@ -61,7 +61,7 @@ def told(law: Uncertainty) -> str:
 
 @cache
 def division() -> Division:
-    """The division of phase space at `lam = 9/100`: a tube around period 2, an annulus around an unstable 4-cycle."""
+    """The theorem's data at `lam = 9/100`: a tube around period 2, and an annulus around an unstable 4-cycle."""
     entries = (0.14, 0.006), (0.1, 0.01)
     tube = AbsorbingTube(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, entry_tubes=entries)
     annulus = ExpandingAnnulus(0.1395, 0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
@@ -75,7 +75,7 @@ def alternating() -> Alternating:
 
 @judges("cuspless.basins_intermingled")
 def cuspless_intermingled(claim: Claim) -> Judgement:
-    """Strips of both basins alternate next to the whole stable manifold of a saddle."""
+    """Strips of both basins are proved to alternate next to the whole stable manifold of a saddle."""
     found = alternating()
     return Judgement(
         by(
@@ -114,7 +114,7 @@ def two_basins(claim: Claim) -> Judgement:
 
 
 def beyond_the_crisis() -> CommonBoundary:
-    """The theorem on the saddle triangle near the vertices at 0.7: orbits go from it to each attracting triangle."""
+    """The theorem that, at 0.7, orbits lead from the saddle triangle near the vertices to both attracting triangles."""
     sink, saddle = (1.16897116, 0.43119899), replace(TRIANGLE, start=(-0.14235898,))
     sinks, turns = (sink, (-sink[0], -sink[1])), (Fraction(1, 3), Fraction(2, 3))
     starts = 0.9, 0.21125  # middles of pieces of the branch that were sampled to end on one triangle
@@ -162,7 +162,7 @@ BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
 
 @cache
 def without_triangles(shape: Expr, most: Expr) -> SignFinding:
-    """The finding that there is no cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
+    """The finding that no cycle of period 3 exists for `0 <= lam <= most`, proved by interval exclusion."""
     found = no_triangles(shape, most, tick=telling(f"triangles excluded at alpha = {shape}"))
     if not found.excluded:
         return answer(None, f"{found.share:.0%} of the triangles excluded")
@@ -171,7 +171,7 @@ def without_triangles(shape: Expr, most: Expr) -> SignFinding:
 
 @judges("egg.slap_no_period3")
 def slap_no_period3(claim: Claim) -> Judgement:
-    """No cycle of period 3 exists at both shapes of the figure."""
+    """There is no cycle of period 3 at either of the two shapes in the figure."""
     findings = without_triangles(Rational(1, 20), Rational(1, 16)), without_triangles(EXACT_SHAPE, BELOW)
     return Judgement(
         by("exclusion of every triangle", *findings), "none for alpha = 0.05 and 0.08, and lam up to 0.378 at 0.08"
@@ -179,7 +179,7 @@ def slap_no_period3(claim: Claim) -> Judgement:
 
 
 def triangle_at(contraction: Rational) -> SignFinding:
-    """The finding of an attracting cycle of period 3 at `alpha = 0.08`, by interval Newton."""
+    """The finding that a cycle of period 3 attracts at `alpha = 0.08`, proved by interval Newton."""
     bounce = float(near_flat().subs({alpha: EXACT_SHAPE, lam: contraction}))
     near = phase_points([bounce + k * tau / 3 for k in range(3)], 0.0)
     proof = certificate(egg(3).at(alpha=EXACT_SHAPE), contraction, near)
@@ -188,7 +188,7 @@ def triangle_at(contraction: Rational) -> SignFinding:
 
 @judges("egg.no_period3_caption")
 def no_period3_caption(claim: Claim) -> Judgement:
-    """The printed limit 0.4 is too large: the fold of period 3 lies below it."""
+    """The printed limit 0.4 is too large: cycles of period 3 are born below it."""
     fold = saddle_node().subs(alpha, EXACT_SHAPE)
     return Judgement(
         counterexample(

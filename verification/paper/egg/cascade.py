@@ -41,13 +41,13 @@ STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # neighb
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof; if the proof fails, the finding is unknown and not refuted."""
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @cache
 def chaotic_lams() -> dict[str, list[float]]:
-    """For each shape the contractions of a grid at which at least a quarter of 20 particles are chaotic."""
+    """For each shape, the contractions on a grid at which at least a quarter of 20 particles are chaotic."""
     shapes = np.array([float(shape) for shape in TONGUE])
     found = in_memory(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), 1)
     rows = zip(TONGUE, found["chaotic"], strict=True)
@@ -91,7 +91,7 @@ def tongue(claim: Claim) -> Judgement:
 
 @judges("egg.small_basins")
 def small_basins(claim: Claim) -> Judgement:
-    """The probability that 100 independent starts all miss a basin is computed exactly."""
+    """If 100 independent starts miss a basin, how likely is this? The probability is computed exactly."""
     missed = Rational(999, 1000) ** 100
     return Judgement(
         by(
@@ -124,7 +124,7 @@ def representative(claim: Claim) -> Judgement:
 
 @cache
 def cycles_for_small_lam() -> SignFinding:
-    """The finding that for every contraction up to `PROVED` all cycles but at most three are unstable."""
+    """The finding that, for every contraction up to `PROVED`, at most three cycles are not unstable."""
     ends, scene = [PROVED * k / 3 for k in range(4)], Scene("egg", alpha=SHAPE)
     return answer(
         all(FewAttractingCycles(scene, band, (12288, 256), 32, 3).proved for band in pairwise(ends)),
@@ -135,7 +135,7 @@ def cycles_for_small_lam() -> SignFinding:
 
 @judges("egg.only_period4")
 def only_period4(claim: Claim) -> Judgement:
-    """For small contractions, a cover of phase space proves the claim; for larger ones it is sampled."""
+    """A cover of phase space proves the claim for small contractions; for larger ones it is sampled."""
     alone = all([a.period for a in egg(x)] == [4, 4, 4] and unsettled(egg(x)) == 0 for x in SMALL)
     proofs = [proved_at(x, 4) for x in SMALL]
     said = (
@@ -165,7 +165,7 @@ def attracting_without_mirror() -> SignFinding:
 
 @judges("egg.period4_doubles")
 def period4_doubles(claim: Claim) -> Judgement:
-    """There are two bifurcations: a pitchfork that breaks the symmetry, and a doubling of the asymmetric orbits."""
+    """Two bifurcations are found: a pitchfork that breaks the symmetry, and a doubling of the asymmetric cycles."""
     breaks, doubles = located("symmetry-breaking", alpha=SHAPE), located("doubling", alpha=SHAPE, n=Integer(3))
     stable = breaks.proof.supercritical if breaks.proof else None  # type: ignore[union-attr]  # a cycle's proof
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]
@@ -234,7 +234,7 @@ def tolerance_sensitive(claim: Claim) -> Judgement:
 
 @cache
 def seen_ends() -> dict[float, float | None]:
-    """For each tolerance the first contraction of a grid whose orbit misses its start after four bounces, or None."""
+    """For each tolerance, the first contraction on a grid whose orbit does not close after four bounces, or None."""
     settled = PinballMap("egg", lam="0.36", alpha=str(SHAPE)).orbit(0.05, 0.0, 1000)
     start, lams = (float(settled.theta[-1]), float(settled.phi[-1])), np.arange(0.3705, 0.3725, 1e-4)
     found = ends_of_period(4, lams, 0.08, STOPS, start, 2000, 1e-4)
@@ -243,7 +243,7 @@ def seen_ends() -> dict[float, float | None]:
 
 @judges("egg.isolated_resolution")
 def isolated_resolution(claim: Claim) -> Judgement:
-    """A strip of chaos that a grid meets at one shape continues at neighbouring shapes."""
+    """A strip of chaos that a coarse grid meets at one shape continues at other shapes."""
     said, good = [], True
     for shape, lam, period, step in STRIPS:
         found = cascade(Rational(shape), Rational(lam), period, step)

@@ -1,6 +1,6 @@
 """Judges of the claims in the paper's conclusions. Paper: section 7.
 
-They use results proved elsewhere; a summary with one sampled part is supported, not confirmed.
+The judges use results proved elsewhere. A summary with one sampled part is supported, not confirmed.
 """
 
 from functools import cache
@@ -48,13 +48,13 @@ EVEN, ODD = (4, 6), (5, 7)
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof; if the proof fails, the finding is unknown and not refuted."""
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @judges("map.mixture")
 def mixture(claim: Claim) -> Judgement:
-    """Both statements with "only" are proved; the mixture in the egg and the cuspless cardioid is sampled."""
+    """The two statements with "only" are proved; the mixture in the egg and the cuspless cardioid is sampled."""
     periodic = by(LIMIT, *lyapunov())
     kinds = {x: (bool(chaotic(egg(x))), bool(cycles(egg(x)))) for x in MIXED}
     cuspless = found("cuspless", "0.09")
@@ -130,7 +130,7 @@ def different_periods(claim: Claim) -> Judgement:
 
 @cache
 def doublings() -> list[Cascade]:
-    """For each cycle of `DIFFERENT` the first two doublings of the period-doubling cascade that starts there."""
+    """For each cycle in `DIFFERENT`, the first two doublings of the cascade that starts there."""
     return [cascade(Rational(SHAPE), Rational(at), period, step, 2) for at, period, step in DIFFERENT]
 
 
@@ -184,7 +184,7 @@ def weak_shows_elliptic(claim: Claim) -> Judgement:
 
 
 def elastic(cycle: Attractor) -> bool:
-    """True if an elliptic cycle of the elastic map is proved near an attracting one."""
+    """True if a cycle of the elastic map is proved to exist near an attracting cycle, and to be elliptic."""
     proof = certificate(tables.egg(3).at(alpha=SHAPE), S.One, cycle.points, 20)
     discrete = all(proof.checks[item] is True for item in ("exists", "unique", "admissible", "minimal_period"))
     apart = max(abs(near(theta, x)) for theta, x in zip(proof.theta, cycle.points.theta, strict=True))
@@ -198,7 +198,7 @@ def near(theta: arb, x: float) -> float:
 
 @judges("map.weak_chaos")
 def weak_chaos(claim: Claim) -> Judgement:
-    """No attracting set is a cycle, and every orbit in one that misses cusp and joins is unstable."""
+    """No cycle is an attracting set, and every orbit on an attracting set that misses cusp and joins is unstable."""
     return Judgement(
         by(
             "in the cardioid, for every lam < 1, every orbit that misses the cusp stretches in one direction and "

@@ -38,19 +38,19 @@ BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions where the attractor's distance
 
 @cache
 def located(kind: str) -> KnownCrisis:
-    """The parameter of a crisis to ten digits, by both methods of `manifolds.known`."""
+    """A crisis: its parameter to ten digits, by both methods of `manifolds.known`."""
     return crisis(kind, EXACT_SHAPE, 10)
 
 
 @cache
 def seen(kind: str) -> crises.Crisis:
-    """The parameter of a crisis from particles that escape, to about 3e-4, as few escape close to the crisis."""
+    """A crisis: its parameter to about 3e-4, from particles that escape (few do close to the crisis)."""
     return crises.crisis(kind, str(EXACT_SHAPE), tolerance=1e-4, budget=10**7)
 
 
 @judges("egg.boundary_crisis")
 def values(claim: Claim) -> Judgement:
-    """Compares the tangency of the manifolds, by two methods, with the contraction where particles begin to escape."""
+    """Compares the parameter of the tangency, by two methods, with that at which particles begin to escape."""
     printed, found, particles = "0.66", located("boundary"), seen("boundary")
     gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
     value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
@@ -109,7 +109,7 @@ def distance(lam: float) -> float:
 
 
 def sides(lam: float, offset: float = 1e-5) -> tuple[float, float]:
-    """The fraction of points close to `boundary(lam)` that end on period 3, just outside it and just inside."""
+    """The fractions of points that end on period 3, just outside `boundary(lam)` and just inside it."""
     x, y = boundary(lam)
     map = PinballMap("egg", lam=lam, alpha=str(EXACT_SHAPE))
     shares = []
@@ -154,7 +154,7 @@ def extent(lam: str) -> AttractorExtent:
 
 @cache
 def period_3(lam: str) -> float:
-    """The share of 4000 random starts that the two period-3 orbits attract."""
+    """The fraction of 4000 random starts that the two period-3 orbits attract."""
     map = PinballMap("egg", lam=lam, alpha=SHAPE)
     start = interior_starts(map, MANY, SEED)
     found = followed(map, start, (200, 1000))
@@ -166,7 +166,7 @@ def period_3(lam: str) -> float:
 
 
 def grows(lams: tuple[str, ...]) -> bool:
-    """True if height and share of the attractors both grow from each contraction to the next one in the list."""
+    """True if the height and the share of the attractors grow from each contraction in the list to the next."""
     found = [extent(lam) for lam in lams]
     return all(a.height < b.height and a.share < b.share for a, b in pairwise(found))
 
@@ -215,7 +215,7 @@ def transient(claim: Claim) -> Judgement:
 
 @judges("egg.just_two", "egg.region_taken_over")
 def just_two(claim: Claim) -> Judgement:
-    """Both orbits of period 3 are proved to attract; every random start reaches one of them."""
+    """Both orbits of period 3 are proved to attract; in a sample, every start reaches one of them."""
     found = egg(LEFT)
     threes = cycles(found, 3)
     alone = len(found) == len(threes) == 2 and unsettled(found) == 0

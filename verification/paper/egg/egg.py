@@ -73,7 +73,7 @@ def symmetry(claim: Claim) -> Judgement:
 
 @judges("egg.nonconvex")
 def nonconvex(claim: Claim) -> Judgement:
-    """The sign of the turning at the flat points is that of `(1 - alpha)*(1 - 10*alpha)`."""
+    """For `1/10 < alpha < 1` the boundary turns right at the flat points, as `(1 - alpha)*(1 - 10*alpha) < 0`."""
     flat = turning_polynomial().subs(COSINE, -1)
     return Judgement(
         by(
@@ -103,7 +103,7 @@ def convex(claim: Claim) -> Judgement:
 
 
 def regular() -> SignFinding:
-    """The finding that the speed of the parametrisation vanishes nowhere."""
+    """The finding that the parametrisation has non-zero speed everywhere."""
     return by("rho^2 + rho'^2 > 0", positive(squared_speed_polynomial(), {COSINE: FULL, alpha: SHAPES}))
 
 
@@ -207,7 +207,7 @@ SOON, EARLY = 250, 1000  # bounces after which many, and most, orbits have reach
 
 @judges("egg.period3_direction")
 def period3_direction(claim: Claim) -> Judgement:
-    """The bounces of the two triangles move in opposite directions, by the sign of a derivative along the branch."""
+    """The bounces of the two triangles move in opposite directions, as a derivative along the branch shows."""
     c = Symbol("c", real=True)
     rho = 1 + alpha * cos(3 * theta)
     return Judgement(
@@ -257,7 +257,7 @@ def noise(claim: Claim) -> Judgement:
 
 
 def chaotic_share(lam_text: str) -> float:
-    """The share of random starts with a positive exponent after a long time."""
+    """The fraction of random starts with a positive exponent after a long time."""
     map = PinballMap("egg", lam=lam_text, alpha=str(SHAPE))
     starts = interior_starts(map, STARTS, SEED)
     rest = followed(map, starts, (SOON, EARLY))

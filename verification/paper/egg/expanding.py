@@ -1,4 +1,4 @@
-"""Judges of claims that the egg's attractor expands with the contraction, by bounds of its exit angles. Section 6.7.
+"""Judges of claims that the egg's attractor expands as the contraction grows, by bounds of exit angles. Section 6.7.
 
 Between a barrier and its mirror image there is a *maximal attractor*: it attracts all orbits there and contains every
 attractor and every cycle. One barrier bounds its largest exit angle (its *extent*) from above for a range of
@@ -70,7 +70,7 @@ def kept() -> tuple[Boxes, ...]:
 
 
 def reach() -> dict[str, float]:
-    """For each contraction, in order, a lower bound of the extent; 0 if none is proved."""
+    """A lower bound of the extent at each contraction, in order; 0 if none is proved."""
     found = {SADDLE: [boxes for boxes in (saddle(),) if boxes], WINDOW: kept()}
     return {lam: max(map(height, some), default=0.0) for lam, some in found.items()}
 
@@ -88,14 +88,14 @@ def ceiling(low: str, high: str) -> float:
 
 
 def before(lam: str) -> tuple[str, float]:
-    """The last contraction in `STOPS` below `lam`, and an upper bound of the extent from `FIRST` to it."""
+    """The last contraction in `STOPS` below `lam`, and an upper bound of the extent between `FIRST` and it."""
     ranges = [(low, high) for low, high in pairwise(STOPS) if Fraction(high) < Fraction(lam)]
     return ranges[-1][1], max(ceiling(low, high) for low, high in ranges)
 
 
 @cache
 def expands() -> SignFinding:
-    """The finding that the extent at each listed contraction exceeds the extent on a range from `FIRST` below it."""
+    """The finding that the extent at each listed contraction is larger than on a range of smaller ones from `FIRST`."""
     steps = []
     for lam, low in reach().items():
         stop, most = before(lam)
@@ -132,12 +132,12 @@ def meet(one: Boxes, other: Boxes) -> bool:
 
 
 def down(x: float) -> str:
-    """The number rounded down to four decimals, as text."""
+    """The number as text, rounded down to four decimals."""
     return f"{floor(x * 10**4) / 10**4:.4f}"
 
 
 def up(x: float) -> str:
-    """The number rounded up to four decimals, as text."""
+    """The number as text, rounded up to four decimals."""
     return f"{ceil(x * 10**4) / 10**4:.4f}" if x < inf else "nothing"
 
 

@@ -110,7 +110,7 @@ def apart() -> SignFinding:
 
 @judges("egg.three_attractors")
 def three(claim: Claim) -> Judgement:
-    """There are at least three attractors at each contraction; in a window, two cycles attract near each diameter."""
+    """Each contraction has at least three attractors; in a window, two cycles attract near each diameter."""
     near = [sorted(vertices(a)) for a in cycles(egg(WINDOW), PERIOD)]
     six = by(
         f"six cycles of period {PERIOD} attract at lam = {WINDOW}, in three regions",
@@ -134,7 +134,7 @@ def three(claim: Claim) -> Judgement:
 
 @cache
 def alternates() -> SignFinding:
-    """The finding that, in one trapping region, cycles, then strange attractors, then cycles attract as `lam` grows."""
+    """The finding that cycles and strange attractors alternate, as `lam` grows, in one trapping region."""
     low, high, grid = PARTS[0]
     chaos, tangency = strange(SHAPE, "interior-crisis-1")
     ends = [ball(ALONG[0][0]), tangency, ball(ALONG[1][0]), ball(high)]
@@ -150,7 +150,7 @@ def alternates() -> SignFinding:
 
 @judges("egg.windows_above")
 def windows(claim: Claim) -> Judgement:
-    """Attracting cycles and strange attractors are proved to alternate; whether these are observed is sampled."""
+    """Attracting cycles and strange attractors alternate, proved; samples suggest that those are the observed ones."""
     (first, one), (second, other) = ALONG
     calm = [proved_at(x, period, starts=STARTS) for x, period, _ in BEYOND]
     wild = [strange(SHAPE, kind) for *_, kind in BEYOND]
@@ -172,7 +172,7 @@ def windows(claim: Claim) -> Judgement:
 
 
 def goes_over(lam: str, start: tuple[float, float]) -> bool:
-    """True if an orbit in balls from near `(0, 0)` is proved to come near a rotated copy of it."""
+    """True if an orbit from near `(0, 0)` is proved, in balls, to come near the rotated image of its start."""
     map = EnclosedMap(PinballMap(Scene("egg", alpha=SHAPE), lam=float(lam)), Fraction(lam), LONG)
     if not max(abs(x) for x in start) < float(CLOSE):
         return False
@@ -188,7 +188,7 @@ def goes_over(lam: str, start: tuple[float, float]) -> bool:
 
 @cache
 def merges() -> SignFinding:
-    """The finding that the three regions stop being disjoint between two contractions, with a tangency in between."""
+    """The finding that, between two contractions, the three regions stop existing and a tangency lies there."""
     chaos, tangency = strange(SHAPE, "merging")
     inside = bool(ball(LAST) < tangency) and bool(tangency < ball(MERGED))
     return by(
@@ -206,7 +206,7 @@ def merges() -> SignFinding:
 
 @judges("egg.parts_join")
 def parts_join(claim: Claim) -> Judgement:
-    """The three regions around the diameters are disjoint; at a larger contraction an orbit connects two of them."""
+    """The regions around the diameters are disjoint; at a larger contraction, an orbit goes from one to another."""
     tangency = strange(SHAPE, "merging")[1]
     return Judgement(
         by("three regions are apart, and no longer", merges()),
@@ -218,7 +218,7 @@ def parts_join(claim: Claim) -> Judgement:
 
 @judges("egg.merging_crisis")
 def merging_crisis(claim: Claim) -> Judgement:
-    """It is proved that the three regions are lost; only samples show that this is a crisis of one attractor."""
+    """That the three regions are lost is proved; that this is a crisis of one attractor is sampled."""
     found, (_, tangency) = merges(), strange(SHAPE, "merging")
     gap = Fraction(str(claim.printed)) - Fraction(tangency.str(9, radius=False))
     counts = [len(chaotic(egg(x))) for x in ("0.442", "0.445")]

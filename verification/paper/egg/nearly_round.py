@@ -5,11 +5,11 @@ This holds for `0 < alpha <= alpha0(most)`, where the bound `alpha0` is not comp
 *An invariant curve.* The circle's map `(theta + pi - 2*phi, lam*phi)` has the derivative `[[1, -2], [0, lam]]`. Let
 `lam <= most < 1` and `K = (1 - most)/4`. The derivative maps slopes `abs(dphi/dtheta) <= K` to smaller ones and
 multiplies `dtheta` by `1 - 2*K > 0` or more; so graphs over the circle with slopes up to `K` are mapped to such graphs.
-The vertical distance `d` of two points becomes a distance from such a graph of at most `(lam + 2*K)*d`, which is less
-than `d`. These are strict inequalities on a compact set, `0 <= lam <= most` and `abs(phi) <= most*pi/2`, on which the
-egg's map and its derivative depend continuously on `alpha`, as the boundary is analytic, convex, and met at an angle.
-So they hold for `0 <= alpha <= alpha0(most)`, and there the egg has an invariant graph, to which every orbit converges,
-and on which the map is a homeomorphism of degree 1.
+The vertical distance `d` of a point from such a graph becomes at most `(lam + 2*K)*d`, which is less than `d`. These
+are strict inequalities on a compact set, `0 <= lam <= most` and `abs(phi) <= most*pi/2`, on which the egg's map and its
+derivative depend continuously on `alpha`, as the boundary is analytic, convex, and met at an angle. So they hold for `0
+<= alpha <= alpha0(most)`, and there the egg has an invariant graph, to which every orbit converges, and on which the
+map is a homeomorphism of degree 1.
 
 *The dynamics on it.* For `lam < 1` an orbit of period 2 is a double normal of the boundary, since the angles at both
 ends of its chord are `lam` times themselves, hence 0. Double normals are the critical points of the width, which is `2
@@ -100,7 +100,7 @@ def settles() -> SignFinding:
 
 @judges("egg.periodic_only_near_zero")
 def periodic_only(claim: Claim) -> Judgement:
-    """Proved for each bound on `lam` below 1 and small `alpha`; a bound on `alpha` for all `lam` is not proved."""
+    """Every orbit becomes periodic for `lam` up to a bound below 1 and small `alpha`; one `alpha` for all is open."""
     found = {(a, x): periods_at(a, x, 60) for a in SHAPES for x in LAMS}
     seen = sorted({period for periods in found.values() for period in periods})
     return sampled(
@@ -123,7 +123,7 @@ def edge() -> BasinEdge:
 
 @judges("map.smooth_basin_boundaries")
 def smooth_boundaries(claim: Claim) -> Judgement:
-    """Proved at and near the contraction of the paper's figure, and in nearly round eggs."""
+    """Basins have smooth boundaries near the contraction of the paper's figure, and in nearly round eggs."""
     return Judgement(
         by(
             "stable manifolds of saddles bound the basins: in the figure of the crisis and in nearly round eggs",

@@ -103,7 +103,7 @@ def crossings() -> "OneZero":
 
 @judges("egg.slap_critical_points")
 def critical_points(claim: Claim) -> Judgement:
-    """The slap map's slope is positive at the vertices; it has zeros where it is not positive at the flat points."""
+    """The slap map's slope is positive at the vertices; it has zeros only if it is not positive at the flat points."""
     shape, birth = {alpha: at("0.08")}, sqrt(82) - 9
     cover = crossings()
     return Judgement(
@@ -167,7 +167,7 @@ def slap_unstable(claim: Claim) -> Judgement:
 
 @judges("egg.other_period2")
 def other_period2(claim: Claim) -> Judgement:
-    """The other period-2 orbits exist for each `alpha`, which takes all values up to 1/10 on them; all have `P > 1`."""
+    """The other period-2 orbits exist for each `alpha` up to 1/10, and their stability number `P` is above 1."""
     family = egg_parallel()
     P = stability_number(family)
     left = {c: Interval.Ropen(Rational(-2, 9), 0)}
@@ -262,7 +262,7 @@ def on_the_curve() -> SignFinding:
 
 @judges("egg.period2_unstable_above")
 def unstable_above(claim: Claim) -> Judgement:
-    """The diameters are unstable above `alpha-tilde`, since `P` falls with alpha."""
+    """The diameters are unstable above `alpha-tilde`, since the stability number `P` falls with alpha."""
     return Judgement(
         by("1 + trace + det = (1+lam)^2*P + (1-lam)^2 vanishes at alpha-tilde and falls with alpha", on_the_curve()),
         "mu_- < -1 for alpha > alpha-tilde(lam)",
@@ -297,7 +297,7 @@ def always_unstable(claim: Claim) -> Judgement:
 
 @judges("egg.period2_stable_below")
 def stable_below(claim: Claim) -> Judgement:
-    """The printed strict inequalities fail at `alpha = 0` and at `lam = 1`, and hold between."""
+    """The printed strict inequalities fail at the ends `alpha = 0` and `lam = 1` of their ranges."""
     trace, det = diameter()
     return Judgement(
         counterexample(
@@ -319,13 +319,13 @@ def stable_below(claim: Claim) -> Judgement:
 
 @judges("egg.alpha_hat")
 def focus_curve(claim: Claim) -> Judgement:
-    """The printed `alpha-hat` equals the derived form, which has no 0/0 at `lam = 1`."""
+    """The printed `alpha-hat` equals the derived one, whose form does not become 0/0 at `lam = 1`."""
     return identity(claim, alpha_hat())
 
 
 @judges("egg.complex_region")
 def complex_region(claim: Claim) -> Judgement:
-    """The multipliers are complex between the curves, where `0 < P < 4*lam/(1+lam)**2`; the tilt grows with alpha."""
+    """The multipliers are complex between the curves, where the stability number has `0 < P < 4*lam/(1+lam)**2`."""
     low = tilt().subs(alpha, alpha_hat()) - (1 - lam) / (1 + lam)
     high = tilt().subs(alpha, complex_up_to()) - 1
     trace, _ = diameter()

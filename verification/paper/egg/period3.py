@@ -84,7 +84,7 @@ def created(claim: Claim) -> Judgement:
 
 
 def third_power(at_flat: bool) -> SignFinding:
-    """The finding that the monodromy matrix has the trace of the cube of a matrix with determinant 1."""
+    """The finding that the triangle's monodromy matrix has the trace of the cube of one flight's matrix."""
     single = elastic_trace(at_flat)
     return zero(
         "the monodromy is a cube", single**3 - 3 * single - trace_and_determinant(egg_triangle(at_flat), S.One)[0]
@@ -108,7 +108,7 @@ def two_period3(claim: Claim) -> Judgement:
 
 
 def flat_triangle() -> list[SignFinding]:
-    """The findings that the triangle at the flat points obeys the elastic law, with multipliers on the unit circle."""
+    """The findings that the triangle at the flat points obeys the elastic law and has multipliers of modulus 1."""
     single = elastic_trace(True)
     return [
         shown("the law phi = -eta holds", is_elastic(egg_triangle(True))),
@@ -152,7 +152,7 @@ def period3_elliptic(claim: Claim) -> Judgement:
 
 
 def polygon_facts() -> list[SignFinding]:
-    """The findings on rotating triangles: the tilt of the normal, its largest value, and that they obey the law."""
+    """The findings on rotating triangles: the tilt of the normal, its largest value, and that the law holds."""
     slope = simplify(tilt_tangent() * (1 + alpha * cos(3 * theta)) / (3 * alpha)) - sin(3 * theta)
     squared = 9 * alpha**2 * (1 - COSINE**2) / (1 + alpha * COSINE) ** 2
     best = 9 * alpha**2 * (COSINE + alpha) ** 2 / ((1 - alpha**2) * (1 + alpha * COSINE) ** 2)
@@ -169,9 +169,9 @@ def polygon_facts() -> list[SignFinding]:
 
 @judges("egg.period3_attracting")
 def attracting(claim: Claim) -> Judgement:
-    """The triangle attracts near `lam = 1`: its multipliers are complex, of modulus `det**(1/2)`, which is below 1.
+    """The triangle attracts near `lam = 1`: its multipliers are complex with modulus `det**(1/2) < 1`.
 
-    At `alpha = 1/10` and `lam = 1` both multipliers of a bounce are -1, and the second order decides. The circle has no
+    At `alpha = 1/10` and `lam = 1` both multipliers of a bounce are -1, so second-order terms decide. The circle has no
     triangle for `lam < 1`.
     """
     gamma, single = half_turn(), elastic_trace(True)
@@ -203,7 +203,7 @@ def attracting(claim: Claim) -> Judgement:
 
 @judges("egg.period3_stay_equilateral")
 def stay(claim: Claim) -> Judgement:
-    """The triangles remain equilateral for smaller `lam`, since they solve one equation in `theta`."""
+    """The triangles stay equilateral as `lam` falls, since one equation in `theta` determines all three bounces."""
     return Judgement(
         by(
             "a triangle turned by 2*pi/3 at each bounce solves the one equation |rho'/rho| = tan(delta(lam))",
@@ -235,7 +235,7 @@ def fold_digits(claim: Claim) -> Judgement:
 
 @judges("egg.projection_argument")
 def projection(claim: Claim) -> Judgement:
-    """A cycle of period 3 returns to its position; if no position returns, there is no such cycle."""
+    """A cycle of period 3 returns to its position after three bounces; if no position returns, none exists."""
     return Judgement(
         implied(
             "T^3(theta, phi) = (theta, phi) says that the place returns and that the angle does; so where no place "
@@ -248,7 +248,7 @@ def projection(claim: Claim) -> Judgement:
 
 @judges("egg.projection_converse")
 def converse(claim: Claim) -> Judgement:
-    """Gives a counterexample to the converse: in the circle `T^3` returns to a position with another angle."""
+    """A counterexample to the converse: in the circle, `T^3` can return to a position, with another angle."""
     angle = flight(*flight(*flight()))
     back = angle[0] - s - 2 * pi
     returning = pi / (2 * (1 + lam + lam**2))

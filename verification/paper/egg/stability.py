@@ -1,7 +1,7 @@
 """Judges of claims on stability over ranges of contractions, and on chaos in the egg. Paper: sections 6.2 to 6.6.
 
-Stability is proved. Chaos is sampled: an exponent counts as positive when it exceeds its error, and a claim that a
-sample contradicts stays open.
+Stability is proved. Chaos is sampled: an exponent counts as positive if it exceeds its error. A claim that a sample
+contradicts stays open.
 """
 
 from collections import Counter
@@ -79,7 +79,7 @@ def period4_small_lambda(claim: Claim) -> Judgement:
 
 @judges("egg.period3_found")
 def period3_found(claim: Claim) -> Judgement:
-    """Jury's three stability conditions hold for one bounce of the triangle, except at the ends of the range."""
+    """Jury's conditions show that the triangle is stable inside the printed range, but not at its ends."""
     jury = [
         answer(contracts(SHAPE), "det < 1, as x*cos(x) grows up to the largest incidence angle"),
         answer(flips_nowhere(SHAPE), "1 + trace + det > 0 on the closed branch, in balls"),
@@ -146,7 +146,7 @@ def figure_attractors(claim: Claim) -> Judgement:
 
 @judges("egg.cascade")
 def cascade_limit(claim: Claim) -> Judgement:
-    """The doublings are certified; their limit is from two extrapolations, whose difference estimates the error."""
+    """The doublings are certified; their limit is extrapolated in two ways, whose difference estimates the error."""
     found = accumulation(SHAPE, 8)
     limit = f"{mpmath.nstr(found.limit.value, 10)} +- {float(found.limit.error):.0e}"
     return Judgement(
@@ -171,7 +171,7 @@ CASCADES = (("0.08", "0.3716", 12, 2e-4, "0.374"), ("0.056", "0.741", 8, 3e-4, "
 
 @judges("egg.no_chaos_below")
 def no_chaos_below(claim: Claim) -> Judgement:
-    """A coarse search finds no chaos, as the paper says; it misses strange attractors that are proved."""
+    """A coarse search finds no chaos, as in the paper, but misses strange attractors that are proved to exist."""
     limit = float(str(claim.printed))
     shapes, lams = np.linspace(0.2, 0.9, 4) * limit, np.linspace(0, 0.95, 20)
     chaotic = in_memory(parameter_space(shapes, lams, 20, seed=SEED), 1)["chaotic"]
@@ -260,7 +260,7 @@ def chaos_beyond_cascade(claim: Claim) -> Judgement:
 
 @judges("egg.isolated_regions")
 def isolated_regions(claim: Claim) -> Judgement:
-    """The first doublings towards two of the regions are proved; chaos just beyond their accumulation is sampled."""
+    """The first doublings towards two of the regions are proved; chaos just beyond is sampled."""
     said, good = [], True
     for shape, contraction, period, step, beyond in CASCADES:
         found = cascade(Rational(shape), Rational(contraction), period, step)
@@ -278,7 +278,7 @@ def isolated_regions(claim: Claim) -> Judgement:
 
 
 def periods_at(shape: str, lam: str, particles: int) -> Counter[int]:
-    """The number of random particles that end on a cycle of each period; period 0 means none up to `LONGEST`."""
+    """How many random particles end on a cycle of each period; 0 stands for no period up to `LONGEST`."""
     map = map_of(shaped(3, float(shape)), float(lam))
     starts = interior_starts(map, particles, SEED)
     end = advanced(map, PhasePoints(*starts[:3]), 40_000).points

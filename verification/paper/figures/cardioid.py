@@ -70,7 +70,7 @@ def attractors(fine: float = 1.0) -> Panels:
 
 
 def draw_attractors(panels: Panels) -> "Figure":
-    """Draws two phase portraits, with the third panel as inset of the first."""
+    """Draws two phase portraits; the third panel is an inset in the first."""
     figure, axes = sheet(panels[:2])
     for ax, panel in zip(axes, panels[:2], strict=True):
         cloud(ax, panel.curves["attractor"], BLACK)
@@ -90,7 +90,7 @@ def exponents(fine: float = 1.0) -> Panels:
 
 
 def draw_exponents(panels: Panels) -> "Figure":
-    """Draws the exponents as filled and open circles, and their sum as a line."""
+    """Draws `nu_plus` as filled circles, `nu_minus` as open circles, and their sum as a line."""
     figure, (ax,) = sheet(panels, columns=1, height=3.0)
     (panel,) = panels
     ax.axhline(0, **FAINT)
@@ -110,7 +110,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Draws both graphs of the slap map, with the diagonal."""
+    """Draws the graphs of the slap map and its second iterate, with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure
@@ -186,7 +186,7 @@ def draw_configurations(panels: Panels) -> "Figure":
 
 
 def phase_space(fine: float = 1.0) -> Panels:
-    """The chaotic attractor at nine contractions, three to a panel."""
+    """The chaotic attractor at nine contractions, three in each panel."""
     panels = []
     for lams in RANGES:
         curves, bounces = {}, scaled(200, fine, 20)
@@ -204,7 +204,7 @@ def phase_space(fine: float = 1.0) -> Panels:
 
 
 def draw_phase_space(panels: Panels) -> "Figure":
-    """Draws the attractors, the least contraction darkest and on top."""
+    """Draws the attractors; that of the smallest contraction is darkest and on top."""
     figure, axes = sheet(panels, columns=3, height=2.6)
     for ax, panel in zip(axes, panels, strict=True):
         for place in (-JOIN, 0.0, JOIN):
@@ -231,7 +231,7 @@ def corner(fine: float = 1.0) -> Panels:
 
 
 def draw_corner(panels: Panels) -> "Figure":
-    """Draws the three graphs, with dotted lines at the joins and at the centre of the wall."""
+    """Draws the graphs for three contractions, with dotted lines at the joins and at the centre of the wall."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     for place in (-JOIN, 0.0, JOIN):
         ax.axhline(place, **(FAINT | {"color": "0.3"}))
@@ -276,7 +276,7 @@ def draw_cuspless_exponents(panels: Panels) -> "Figure":
 
 
 def cuspless_slap(fine: float = 1.0) -> Panels:
-    """The slap map, its second and its fourth iterate."""
+    """The graphs of the slap map, its second and its fourth iterate."""
     map = PinballMap("cuspless", lam=0)
     named = ((1, "T_0"), (2, "T_0^2"), (4, "T_0^4"))
     curves = {name: slap_graph(map, n, scaled(400, fine, 20)) for n, name in named}
@@ -284,14 +284,14 @@ def cuspless_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_cuspless_slap(panels: Panels) -> "Figure":
-    """Draws the three graphs with the diagonal."""
+    """Draws the graphs of the slap map and its iterates, with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure
 
 
 def whole(ax: "Axes") -> None:
-    """Sets the range of the abscissa to the whole boundary: `s` from -C to C."""
+    """Sets the range of the abscissa to the whole boundary: `s` from `-C` to `C`, where `C` is half its length."""
     ax.set_xlim(-9 * JOIN, 9 * JOIN)
 
 
@@ -314,7 +314,7 @@ def found(map: PinballMap, starts: int = STARTS) -> dict[str, Attractor]:
 
 
 def orbit_on(map: PinballMap, attractor: Attractor, bounces: int) -> Orbit:
-    """An orbit on the attractor, as one column; for a cycle, one closed period."""
+    """An orbit on the attractor, for one particle; for a cycle, one period, closed."""
     first, turns = attractor.points, attractor.period or bounces
     return map.orbit(first.theta[:1], first.phi[:1], turns, first.component[:1])
 

@@ -1,4 +1,4 @@
-"""The catalogue of figures: for each the paper's caption, and the functions that compute and draw it."""
+"""The catalogue of figures: the paper's caption of each, and the functions that compute and draw it."""
 
 import re
 import tomllib
@@ -68,14 +68,14 @@ class PaperFigure:
         return self._pair[0](fine)
 
     def image(self, panels: "Panels", ending: str) -> bytes:
-        """The drawn panels as a file in the format of `ending`; the same panels give the same bytes."""
+        """The drawn panels as the bytes of a file in the format of `ending`; equal panels give equal bytes."""
         from verification.plots.sheet import image, styled
 
         with styled():
             return image(self._pair[1](panels), ending)
 
     def drawn(self) -> bytes:
-        """A draft for a page, with transparent background: SVG for lines, WebP for many points."""
+        """A draft for a page with transparent background: SVG for lines, WebP for many points."""
         from verification.plots.sheet import SMALL
 
         panels = self.data()
@@ -108,7 +108,7 @@ class PaperFigure:
 
 
 def plain(text: str) -> str:
-    """LaTeX as plain text.
+    """LaTeX turned into plain text.
 
     >>> plain(r"$s_0 \\defeq -\\sqrt{3}/4$ and $\\mu_{\\pm}$ at $\\lambda = 0.3$")
     's_0 := -sqrt(3)/4 and mu_+- at lambda = 0.3'

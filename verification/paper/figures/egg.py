@@ -66,7 +66,7 @@ def islands(fine: float = 1.0) -> Panels:
 
 
 def draw_islands(panels: Panels) -> "Figure":
-    """Draws the orbits; neighbouring orbits differ in lightness."""
+    """Draws the orbits; neighbouring orbits differ in lightness, so that they can be distinguished."""
     figure, axes = sheet(panels, columns=3, height=2.6)
     for ax, panel in zip(axes, panels, strict=True):
         for i, curve in enumerate(panel.curves.values()):
@@ -86,7 +86,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Draws four graphs in each panel, with the diagonal."""
+    """Draws in each panel the graphs of the slap map and its iterates, with the diagonal."""
     figure, axes = sheet(panels, height=4.0)
     for ax, panel in zip(axes, panels, strict=True):
         graphs(ax, panel)
@@ -116,7 +116,7 @@ def triangle(lam: str) -> float:
 
 
 def draw_period3(panels: Panels) -> "Figure":
-    """Draws the elastic triangle thick, the others lighter as `lam` falls, and the diameters dotted."""
+    """Draws the elastic triangle thick, the other triangles lighter as `lam` falls, and the diameters dotted."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -145,7 +145,7 @@ def perturbed_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_perturbed_slap(panels: Panels) -> "Figure":
-    """Draws a line, dots, plus signs and crosses, as in the paper, and the diagonal."""
+    """Draws the curve for contraction 0, the points for others with a mark for each, and the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot([-np.pi, np.pi], [-np.pi, np.pi], **(FAINT | {"color": "0.3"}))
@@ -164,7 +164,7 @@ RANGE = (0.36, 0.46)  # contractions of the bifurcation diagram
 
 
 def configurations(fine: float = 1.0) -> Panels:
-    """The attractors in the table at four contractions; for a chaotic one, an orbit on it."""
+    """The attractors in the table at four contractions; a chaotic one is shown by an orbit on it."""
     panels = []
     for lam in ("0.1", "0.39", "0.43", "0.45"):
         map, bounces = PinballMap("egg", lam=lam, alpha=ALPHA), scaled(4000, min(fine, 1.0), 20)
@@ -192,7 +192,7 @@ def along(curve: Curve, k: int) -> Curve:
 
 
 def draw_configurations(panels: Panels) -> "Figure":
-    """Draws flights in one shade for each of the three diameters that they follow, and period 3 in black."""
+    """Draws flights in three shades, by the diameter that they follow, and period 3 in black."""
     figure, axes = sheet(panels, columns=4, height=2.1)
     for ax, panel in zip(axes, panels, strict=True):
         ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -222,7 +222,7 @@ def attractors(fine: float = 1.0) -> Panels:
 
 
 def draw_attractors(panels: Panels) -> "Figure":
-    """Draws the smaller set on top of the larger one, and period 3 as crosses."""
+    """Draws the attractors at 0.43 on top of the one at 0.45, period 3 as crosses, and the enlarged part."""
     figure, (left, right) = sheet(panels, height=3.0)
     whole, enlarged = panels
     for start, color, label in (("0.45", MIDDLE, r"$\lambda = 0.45$"), ("0.43", BLACK, r"$\lambda = 0.43$")):
@@ -283,7 +283,7 @@ FIRST = 8  # starts that are followed first: if one of them is chaotic, the pair
 
 
 def parameter_space(fine: float = 1.0) -> Panels:
-    """The pairs `(alpha, lam)` with a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
+    """The pairs `(alpha, lam)` for which one of 100 random starts is chaotic, and the curve `alpha_tilde(lam)`.
 
     An exponent counts as positive if it exceeds twice its error (`numeric.sweeps.sweep`); a pair with no chaotic orbit,
     but with an undecided one, is undecided. The starts differ between values of `lam`; they are those of the elastic
@@ -342,7 +342,7 @@ def _signs(map: PinballMap, lam: Array, starts: Starts, bounces: int) -> tuple[N
 
 
 def draw_parameter_space(panels: Panels) -> "Figure":
-    """Draws crosses and small plus signs, as in the paper, and the doubling of period 2 as a black curve."""
+    """Draws chaotic, regular and undecided pairs with different marks; the doubling of period 2 is a black curve."""
     figure, (ax,) = sheet(panels, columns=1, height=3.6)
     (panel,) = panels
     assert panel.raster is not None

@@ -24,7 +24,7 @@ TRANSIENT = 2000  # bounces before an orbit is shown
 
 
 class Settled(NamedTuple):
-    """Orbits after a transient, one particle in each column, and the larger exponent of each."""
+    """Orbits after a transient, with one particle in each column, and their larger exponents."""
 
     orbit: Orbit
     nu_plus: Array
@@ -49,12 +49,12 @@ def settled(map: PinballMap, particles: int, bounces: int, transient: int = TRAN
 
 
 def particles_of(orbit: Orbit, chosen: Any) -> Orbit:
-    """Some of the particles of an orbit, selected by an index of columns."""
+    """The particles of an orbit that an index of columns selects."""
     return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their types
 
 
 def arc_length(map: PinballMap, component: NDArray[np.int64], theta: Array) -> Array:
-    """The paper's arc length `s`, from `-L/2` to `L/2` with the perimeter `L`.
+    """The paper's arc length `s`, from `-L/2` to `L/2`, where `L` is the perimeter.
 
     >>> cuspless = PinballMap("cuspless")
     >>> arc_length(cuspless, np.array([0, 0]), np.array([-0.001, 0.001])).round(2).tolist()
@@ -80,7 +80,7 @@ def by_arc_length(map: PinballMap, orbit: Orbit) -> Curve:
 
 
 def by_angle(orbit: Orbit) -> Curve:
-    """The bounces as points `(theta, sin(phi))`, `theta` the polar angle."""
+    """The bounces as points `(theta, sin(phi))`, where `theta` is the polar angle."""
     return Curve(elementary.arctan2(orbit.y, orbit.x).ravel(), np.sin(orbit.phi).ravel())
 
 
@@ -91,7 +91,7 @@ def flights(orbit: Orbit) -> Curve:
 
 
 def outline(map: PinballMap) -> Curve:
-    """The boundary of a table without holes, closed."""
+    """The boundary of a table without holes, as a closed curve."""
     return Curve(*(np.append(row, row[0]) for row in results.outline(map)))
 
 
@@ -171,7 +171,7 @@ def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
 
 
 def draw_portrait(panels: Panels) -> "Figure":
-    """Draws both panels side by side."""
+    """Draws the two panels of a portrait side by side."""
     figure, (room, space) = sheet(panels)
     room.plot(*panels[0].curves["flights"], color=BLACK, lw=0.3)
     room.plot(*panels[0].curves["outline"], **OUTLINE)

@@ -34,7 +34,7 @@ C = Symbol("C", real=True)  # cos(omega)
 
 @judges("appendix.ellipse_quadratic")
 def quadratic(claim: Claim) -> Judgement:
-    """The flight equation in the ellipse is quadratic; it is the ray inserted into `x**2/a**2 + y**2 = 1`."""
+    """The flight equation in the ellipse is quadratic: a ray is inserted into `x**2/a**2 + y**2 = 1`."""
     t = Symbol("t")
     x, y = ellipse.components[0].point
     met = Poly(expand(((x + t * cos(omega)) / a) ** 2 + (y + t * sin(omega)) ** 2 - 1), t)
@@ -54,9 +54,7 @@ def quadratic(claim: Claim) -> Judgement:
 
 @judges("appendix.cardioid_cubic")
 def cubic(claim: Claim) -> Judgement:
-    """The flight equation in the cardioid is `U - u` times a cubic in `U`, with `u`, `U` = `exp(i*theta)` at the
-    ends.
-    """
+    """The flight equation in the cardioid, in `U = exp(i*theta)`, is `U - u` times a cubic; `u` is the start."""
     u, U, v = symbols("u U v")  # v = exp(i*omega)
     imaginary = (U - u) * (2 + u + U) / v - (1 / U - 1 / u) * (2 + 1 / u + 1 / U) * v
     rest = u**2 * U**2 * (2 + u + U) + v**2 * (2 * u * U + U + u)
@@ -73,7 +71,7 @@ def cubic(claim: Claim) -> Judgement:
 
 @judges("appendix.cuspless_plane")
 def plane(claim: Claim) -> Judgement:
-    """Gives a counterexample: a vertical ray left of the pole passes the dent and never meets the line of the wall."""
+    """A counterexample: a vertical ray left of the pole passes the dent and never meets the line of the wall."""
     cosines = [(-1 + sign * sqrt(1 + 4 * Rational(-1, 8))) / 2 for sign in (1, -1)]  # x = c*(1 + c) = -1/8
     kept, removed = cosines
     return Judgement(
@@ -150,7 +148,7 @@ def elastic_cartesian(claim: Claim) -> Judgement:
 
 @judges("appendix.trigonometry_unavoidable")
 def trigonometry(claim: Claim) -> Judgement:
-    """Trigonometric functions are avoidable if `lam` is rational: half-angle formulas at 1/2, algebra at `p/q`."""
+    """Trigonometric functions can be avoided if `lam` is rational, by half-angle formulas or algebraic equations."""
     half = cos(eta / 2) ** 2 - (1 + cos(eta)) / 2
     order = Symbol("n", real=True)
     next_one = cos((order + 1) * eta) - 2 * cos(eta) * cos(order * eta) + cos((order - 1) * eta)
@@ -169,7 +167,7 @@ def trigonometry(claim: Claim) -> Judgement:
 
 @judges("appendix.exponents_growth")
 def growth(claim: Claim) -> Judgement:
-    """The exponents are the growth rates of the normalising factors, the diagonal entries of QR factors."""
+    """The exponents are growth rates of normalising factors, which are the diagonal entries of QR factors."""
     return Judgement(
         by(
             "the first factors multiply to |D(T^n) v| and all of them to |det D(T^n)|; where Oseledets' theorem gives "
@@ -183,7 +181,7 @@ def growth(claim: Claim) -> Judgement:
 
 @judges("appendix.exponents_sum")
 def exponents_sum(claim: Claim) -> Judgement:
-    """The sum of exponents is the mean of the logarithm, not the logarithm of the mean."""
+    """The sum of exponents is the mean of a logarithm, and not the logarithm of a mean as printed."""
     rates = (S.Half, S(2))
     gap = (sum(rates) / 2) ** 2 - rates[0] * rates[1]
     return Judgement(
@@ -200,7 +198,7 @@ def exponents_sum(claim: Claim) -> Judgement:
 
 @judges("appendix.elastic_start")
 def elastic_start(claim: Claim) -> Judgement:
-    """An elastic first bounce can give any exit angle in (-pi/2, pi/2), but a bounce with `-lam*eta` cannot."""
+    """After an elastic first bounce every exit angle in (-pi/2, pi/2) is possible; after a bounce `-lam*eta`, not."""
     return Judgement(
         by(
             "phi = -eta runs over all exit angles, -lam*eta over a fraction lam of them",
@@ -213,7 +211,7 @@ def elastic_start(claim: Claim) -> Judgement:
 
 @judges("appendix.periodic_sign")
 def periodic_sign(claim: Claim) -> Judgement:
-    """Gives a counterexample: in the circle the exponent is 0, but no diameter attracts its neighbours."""
+    """A counterexample: in the circle an exponent is 0, but no diameter attracts its neighbours."""
     matrix = Matrix(flight(s, phi)).jacobian([s, phi])
     along = matrix * Matrix([1, 0]) - Matrix([1, 0])
     position, angle = (expression.subs(lam, 1) for expression in iterate(3))

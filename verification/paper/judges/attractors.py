@@ -107,7 +107,7 @@ def strange(alpha: str, kind: str = "boundary") -> tuple[SignFinding, arb]:
 def two_types(claim: Claim) -> Judgement:
     """The claim is refuted in the egg: a strange attractor near a tangency has no dominated splitting.
 
-    The attractor lies in a disc where areas shrink. It is the closure of an unstable manifold with a dense orbit, and
+    The attractor lies in a disc where areas shrink. It is the closure of an unstable manifold and has a dense orbit;
     `docs/global.md` proves that such a set has no dominated splitting. In the other tables the claim is true.
     """
     chaos, where = strange(SHAPE)
@@ -153,7 +153,7 @@ def rotating() -> tuple[SignFinding, dict[Symbol, Expr]]:
 
 @judges("map.no_irrational_rotation")
 def no_rotation(claim: Claim) -> Judgement:
-    """Random starts reach no invariant circle, as the paper says; it is proved where circles exist and where not."""
+    """In samples no start reaches an invariant circle; where such circles exist, and where not, is proved."""
     circles, _ = rotating()
     excluded = by(
         "the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits(), every_return()
@@ -173,7 +173,7 @@ def no_rotation(claim: Claim) -> Judgement:
 
 @judges("map.whispering_gallery")
 def whispering_gallery(claim: Claim) -> Judgement:
-    """Gives a counterexample: in the circle the angle grows by the factor `lam > 1` beyond pi/2, where the map ends."""
+    """A counterexample: in the circle the angle grows by `lam > 1` at each bounce until it exceeds pi/2 and stops."""
     more, n = Symbol("more", positive=True), Symbol("n", positive=True)
     exit = flight()[1]
     rule = equal(exit, lam * phi, {})
@@ -232,7 +232,7 @@ def period2_attracts(claim: Claim) -> Judgement:
 
 @judges("cuspless.compact_near_zero")
 def compact_near_zero(claim: Claim) -> Judgement:
-    """The recurrent boxes lie in four rectangles away from the joins and from grazing flights."""
+    """The recurrent boxes lie in four rectangles, away from the joins and from grazing flights."""
     parts, bounds = near_zero().parts, [1.1, 0.1]  # joins: at 2*pi/3 on the arc, at 0.433 on the wall
     ends = [np.maximum(-p.boxes.x[0], p.boxes.x[1]) < np.array(bounds)[p.boxes.chart] for p in parts or ()]
     inside = all(map(np.all, ends)) if ends else None
@@ -249,7 +249,7 @@ def compact_near_zero(claim: Claim) -> Judgement:
 
 @judges("cuspless.attractors_nonsmooth")
 def nonsmooth(claim: Claim) -> Judgement:
-    """The attractor's slope jumps at the joins by `lam` times the jump of the curvature, and not at `s = 0`."""
+    """The attractor's slope jumps at the joins, by `lam` times the jump of the curvature, but not at `s = 0`."""
     said = []
     for contraction in ("0.5", "0.8"):
         map = PinballMap("cuspless", lam=contraction)
@@ -308,7 +308,7 @@ def both_near_tenth() -> tuple[SignFinding, list[arb]]:
 
 @judges("egg.coexistence_near_tenth")
 def near_tenth(claim: Claim) -> Judgement:
-    """Triangles attract over a range of contractions, and strange attractors exist near both of its ends.
+    """Triangles attract over a range of contractions, near both ends of which strange attractors exist.
 
     Both facts persist for all nearby shapes, since zeros are regular and inequalities are strict over a closed range.
     Sets of positive measure near two contractions do not fill a range; chaos in between is only sampled.
@@ -328,7 +328,7 @@ def near_tenth(claim: Claim) -> Judgement:
 
 @judges("egg.figure_chaos")
 def figure_chaos(claim: Claim) -> Judgement:
-    """Samples for panels (c), (d) show three chaotic attractors at one vertex each, and one that visits all three."""
+    """Samples for panels (c) and (d): three chaotic attractors at one vertex each; one that visits all vertices."""
     local, wide = chaotic(egg("0.43")), chaotic(egg("0.45"))
     good = [len(vertices(a)) for a in local] == [1, 1, 1] and [len(vertices(a)) for a in wide] == [3]
     rates = [f"{max((a.nu_plus for a in some), default=np.nan):.2f}" for some in (local, wide)]
@@ -353,7 +353,7 @@ def vertices(attractor: Attractor) -> set[int]:
 
 @judges("egg.only_smooth_chaos")
 def only_smooth(claim: Claim) -> Judgement:
-    """Only cycles of period 2 are proved to attract in circle and ellipses; the egg has proved strange attractors."""
+    """In circle and ellipses only cycles of period 2 attract; the egg has strange attractors. Both are proved."""
     others = by(
         "for 0 < lam < 1 every orbit of an ellipse converges to one of two cycles, and every orbit of the circle to a "
         "diameter, since |phi| falls by the factor lam",

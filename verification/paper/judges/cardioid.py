@@ -130,7 +130,7 @@ def slap_facts() -> tuple[SignFinding, SignFinding]:
 
 @judges("cardioid.slap_slow", "cardioid.slap_fast")
 def slow_and_fast(claim: Claim) -> Judgement:
-    """The slap map's slope `T0'` is below 1 in a region between the roots of `T0' = 1`, and above 1 elsewhere."""
+    """The slap map's slope `T0'` is below 1 on a region between two roots of `T0' = 1`, and above 1 elsewhere."""
     first, last = (edge.n(6) for edge in slow_region())
     return Judgement(
         by(
@@ -146,7 +146,7 @@ def slow_and_fast(claim: Claim) -> Judgement:
 
 @judges("cardioid.slap_slow_caption")
 def slow_caption(claim: Claim) -> Judgement:
-    """The caption confuses the cusp with the flattest point, at the other end of the boundary."""
+    """The caption confuses the cusp with the flattest point, which is at the other end of the boundary."""
     first, last = (edge.n(6) for edge in slow_region())
     return Judgement(
         counterexample("s = 0 is the flattest point; the cusp is at s = +-4", zero("", position(pi) - 4)),
@@ -191,13 +191,13 @@ def expanding(claim: Claim) -> Judgement:
 
 
 def q_landing(cycle: Cycle) -> Expr:
-    """The coordinate `q` of the second bounce of a cycle."""
+    """The coordinate `q` of the second bounce of a cycle, used in the parametrisation of the slap map."""
     half = cycle.bounces[1][1] / 2
     return sin(half) / sqrt(1 + 7 * cos(half) ** 2)
 
 
 def alone(landing: Expr) -> tuple[SignFinding, SignFinding]:
-    """The findings that `T0^2` has only one mirror pair of fixed points, and that they land at `q = landing`."""
+    """The findings that `T0^2` has one pair of fixed points, mirror images, and that they land at `q = landing`."""
     found = fixed_points()
     here = [zero("it is the one that was counted", end - landing) for ends in found for end in ends]
     return answer(len(found) == 1, "Sturm: T0^2 has one mirror pair of fixed points"), conjunction(*here)
@@ -205,7 +205,7 @@ def alone(landing: Expr) -> tuple[SignFinding, SignFinding]:
 
 @judges("cardioid.vertical_orbit")
 def vertical_orbit(claim: Claim) -> Judgement:
-    """The vertical orbit is an unstable double normal, and gives the only fixed points of the slap map's square."""
+    """The vertical orbit is an unstable double normal; it gives the only fixed points of `T0^2`."""
     cycle = cardioid_vertical()
     P = stability_number(cycle)
     return Judgement(

@@ -108,7 +108,7 @@ NOT_SHOWN = "not shown for 0 < lam < 1: that there is one natural (SRB) measure,
 
 
 def stretching() -> SignFinding:
-    """The finding that every orbit off the cusp stretches exponentially, by a cone that bounces map into itself."""
+    """The finding that every orbit off the cusp stretches exponentially: bounces map a cone into itself."""
     return by(
         "beams that focus before D = cos(phi)/|K| form a cone that every bounce maps into itself at any lam, since "
         "t*(t - D0 - d1) = (4/3)*sin(delta)^4 >= 0 on every chord; their width in units of D grows by (t - D0)/d1 >= 1 "
@@ -186,7 +186,7 @@ def existence(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_signs")
 def signs(claim: Claim) -> Judgement:
-    """Proves the signs of the lower limit of one growth rate and the upper limit of the other."""
+    """The signs are proved: the lower limit of one growth rate is positive, the upper limit of the other negative."""
     return Judgement(
         both_signs(),
         f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "
@@ -197,7 +197,7 @@ def signs(claim: Claim) -> Judgement:
 
 @judges("cardioid.exponents_bounded_away")
 def bounded_away(claim: Claim) -> Judgement:
-    """The exponents are bounded away from 0 at each `lam < 1`, by a bound that tends to 0 as `lam` tends to 1."""
+    """Exponents are proved to be bounded away from 0 at each `lam < 1`; one bound for all `lam` is only sampled."""
     (least, _), (_, most) = ranges()
     return sampled(
         f"proved at each lam < 1: {least_exponent()} bounds all orbits; it tends to 0 as lam tends to 1, so neither "
@@ -257,7 +257,7 @@ def near_cusp(claim: Claim) -> Judgement:
 
 @judges("cuspless.stable_if_flatter")
 def stable_if_flatter(claim: Claim) -> Judgement:
-    """No wall has less curvature than a straight one; bending it can reverse the sign of the flip's normal form."""
+    """A straight wall has the least curvature; a bent wall can reverse the sign of the flip's normal form."""
     free, bent = coefficient()
     M, _ = return_map()
     trace, det = trace_and_determinant(cuspless_horizontal())
@@ -284,7 +284,7 @@ def stable_if_flatter(claim: Claim) -> Judgement:
 
 @judges("cuspless.nontrivial_larger")
 def nontrivial_larger(claim: Claim) -> Judgement:
-    """For small `lam` only the period-2 orbit attracts; above `lambda_star` a region without stable cycles exists."""
+    """For small `lam` only the period-2 orbit attracts; above `lambda_star`, a chaotic attractor exists."""
     return Judgement(
         by("none near 0, and one above", settles_near_zero(), chaos()),
         f"no attractor but the period-2 orbit for 0 < lam <= {NEAR_ZERO}; a chaotic one for lambda_star < lam <= 0.1, "
@@ -307,7 +307,7 @@ def visits_more(claim: Claim) -> Judgement:
 
 @judges("cardioid.error_bars")
 def error_bars(claim: Claim) -> Judgement:
-    """The sampled error bars of 100 starts are smaller than symbols of a hundredth of the axis."""
+    """The error bars from 100 sampled starts are smaller than symbols of a hundredth of the axis."""
     exponents = spectrum("cardioid", TENTHS, 100)
     values = np.stack([exponents.plus[1:], exponents.minus[1:]])
     spread, error = float(np.max(np.std(values, axis=-1))), float(np.max(Spectrum.error(values)))
@@ -321,7 +321,7 @@ def error_bars(claim: Claim) -> Judgement:
 
 @judges("cardioid.finitely_many_attractors")
 def finitely_many(claim: Claim) -> Judgement:
-    """The slap map has one invariant density; for `0 < lam < 1` there are finitely many natural measures."""
+    """The slap map has one natural measure; for `0 < lam < 1` there are finitely many."""
     proof = slap_proof()
     return Judgement(
         by(

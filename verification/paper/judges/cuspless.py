@@ -93,7 +93,7 @@ def convex(claim: Claim) -> Judgement:
 
 @judges("cuspless.smooth_except_joins")
 def smooth(claim: Claim) -> Judgement:
-    """The boundary is smooth away from the joins: each component is analytic with non-zero velocity."""
+    """The boundary is smooth except at the joins: each component is analytic with non-zero velocity."""
     squared = (speed(ARC) ** 2).subs(cos(theta), C)
     return Judgement(
         by("the speed does not vanish on the arc", positive(squared, {C: Interval(Rational(-1, 2), 1)})),
@@ -131,7 +131,7 @@ def rightmost(claim: Claim) -> Judgement:
 
 @judges("cuspless.C")
 def half_perimeter(claim: Claim) -> Judgement:
-    """Both printed forms of `C` are half the perimeter."""
+    """Both printed forms of `C` are equal to half the perimeter."""
     half = perimeter(cuspless) / 2
     return identity(claim, Matrix([half, half]))
 
@@ -144,13 +144,13 @@ def joins_positions(claim: Claim) -> Judgement:
 
 @judges("cuspless.upper_join_s")
 def upper_join(claim: Claim) -> Judgement:
-    """Judges the printed arc length of the upper join, which precedes the wall's centre counterclockwise."""
+    """Judges the printed arc length of the upper join; counterclockwise, it comes before the wall's centre."""
     return identity(claim, on_arc(UPPER_JOIN))
 
 
 @judges("cuspless.no_unfolding")
 def no_unfolding(claim: Claim) -> Judgement:
-    """Unfolding fails: it replaces a bounce by a straight passage, which needs `phi = -eta`."""
+    """Unfolding fails, since it replaces a bounce by a straight passage, which requires `phi = -eta`."""
     gap = (exit_angle() + eta) / eta
     return Judgement(
         by(
@@ -266,7 +266,7 @@ def period_doubling(claim: Claim) -> Judgement:
 
 @judges("cuspless.mu_minus_at_lambda_c")
 def mu_at_lambda_c(claim: Claim) -> Judgement:
-    """At `lambda_c` the smaller multiplier is -1, because the product is `lambda_c**2 < 1`."""
+    """At `lambda_c` the smaller multiplier is -1, since the product of both is `lambda_c**2 < 1`."""
     trace, det = (x.subs(lam, lambda_c()) for x in horizontal())
     root = zero("", 1 + trace + det)
     return Judgement(
@@ -291,9 +291,7 @@ def map_nondifferentiable(claim: Claim) -> Judgement:
 
 @judges("map.noncompact_domain")
 def noncompact(claim: Claim) -> Judgement:
-    """The cardioid's phase space is not closed: the normal at the rightmost point hits the cusp, its neighbours do
-    not.
-    """
+    """The cardioid's phase space is not closed: only the normal at the rightmost point hits the cusp."""
     arc = cardioid.components[0]
     start, cusp = arc.at(0), arc.at(pi)
     return Judgement(
@@ -310,7 +308,7 @@ def noncompact(claim: Claim) -> Judgement:
 
 @judges("cuspless.noncompact")
 def cuspless_noncompact(claim: Claim) -> Judgement:
-    """Phase space has no gaps at the joins, where the normal is unique and only the derivative does not exist."""
+    """Phase space has no gaps at the joins, where the normal is unique; only the derivative is undefined there."""
     return Judgement(
         counterexample(
             "the normal is unique at every point, joins included, so by the definition of section 2 no point is "

@@ -63,7 +63,7 @@ def unstable() -> SignFinding:
 
 
 def attracted() -> SignFinding:
-    """The finding that a compact connected set attracts every orbit, and that its orbits off the joins are unstable."""
+    """The finding that a compact connected set attracts every orbit, and its orbits off the joins are unstable."""
     return by(
         "the map is continuous and takes the strip abs(phi) <= lam*pi/2 into itself; what its images have in common "
         "is "
@@ -98,19 +98,19 @@ def one_attractor(lams: tuple[str, ...]) -> Judgement:
 
 @judges("cuspless.global_near_one")
 def global_near_one(claim: Claim) -> Judgement:
-    """Near 1, a compact set whose orbits off the joins are unstable attracts all; it is sampled as one attractor."""
+    """Near 1 a compact set attracts all orbits; its orbits off the joins are unstable. One attractor is sampled."""
     return one_attractor(NEAR_ONE)
 
 
 @judges("cuspless.chaotic_above_tenth")
 def above_tenth(claim: Claim) -> Judgement:
-    """For every contraction from 1/10 to 1 a chaotic set attracts every orbit; that it is one attractor is sampled."""
+    """From 1/10 to 1 a chaotic set is proved to attract every orbit; that it is one attractor is sampled."""
     return one_attractor(ABOVE)
 
 
 @judges("cuspless.only_attractor")
 def only_attractor(claim: Claim) -> Judgement:
-    """From 1/10 on no cycle off the joins attracts; that there is only one chaotic attractor is sampled."""
+    """No cycle off the joins attracts for `lam >= 1/10`; that there is one chaotic attractor is only sampled."""
     said = (
         f"proved for {LOWEST} <= lam < 1: every orbit that misses the joins is unstable, so no cycle off the joins "
         f"attracts; {one_set(ABOVE)}; a share below {3 / STARTS:.0%} of others is not excluded"
@@ -125,7 +125,7 @@ def only_attractor(claim: Claim) -> Judgement:
 
 @cache
 def almost_every() -> AlmostEveryOrbitBelowLambdaStar:
-    """The theorem that almost every orbit below `lambda*` converges, from three graphs of boxes."""
+    """The theorem that almost every orbit below `lambda*` converges, proved with three graphs of boxes."""
     scene = Scene("cuspless")
     middle = AlmostEveryOrbit(scene, (NEAR_ZERO, NEXT), (4096, 512), 8, (HORIZONTAL,), 30)
     last = AlmostEveryOrbitBesideLambdaStar(scene, (NEXT, TOP), (4096, 512), 8, (HORIZONTAL,), 60)
@@ -172,7 +172,7 @@ def persists_above_star(claim: Claim) -> Judgement:
 def below() -> ConvergenceBelowLambdaStar:
     """The theorem on orbits from the upper join at small angles below `lambda*`.
 
-    Its tubes surround the horizontal orbit; those of the graphs are small, and the last one almost reaches the joins.
+    Its tubes surround the horizontal orbit; tubes for the graphs are small, the last tube almost reaches the joins.
     """
     cuts, grids = (NEAR_ZERO, Fraction("0.06"), NEXT), ((2048, 128), (4096, 256))
     parts, scene = zip(pairwise(cuts), grids, strict=True), Scene("cuspless")
@@ -204,7 +204,7 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.chaotic_above_star")
 def chaotic_above_star(claim: Claim) -> Judgement:
-    """Chaos is proved by a polygon up to 1/10 and by a cone of beams above; not that the attractor is the same."""
+    """Chaos is proved up to 1/10 and above; that both belong to one attractor is not proved."""
     return Judgement(
         by(
             "from lambda* to 1/10, and from there to 1, almost every start of an open set stretches, and "

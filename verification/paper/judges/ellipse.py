@@ -42,7 +42,7 @@ def explicit_map() -> SignFinding:
 
 
 def settles() -> SignFinding:
-    """The finding that every orbit of the circle converges to a diameter, by a closed form of the state."""
+    """The finding that every orbit of the circle converges to a diameter, by a closed form of its bounces."""
     position, angle = after(n)
     even, small = after(2 * n)
     return conjunction(
@@ -61,7 +61,7 @@ def settles() -> SignFinding:
 
 
 def after(bounces: Expr) -> tuple[Expr, Expr]:
-    """The state of the circle after `bounces` bounces, in closed form."""
+    """Arc length and angle of a particle in the circle after `bounces` bounces, in closed form."""
     return s + pi * bounces - 2 * phi * (1 - lam**bounces) / (1 - lam), lam**bounces * phi
 
 
@@ -82,14 +82,14 @@ def exit_angle_of_circle(claim: Claim) -> Judgement:
 
 @judges("circle.nearer_diameter")
 def nearer(claim: Claim) -> Judgement:
-    """The angle from the diameter shrinks by the factor `lam` at each bounce."""
+    """The angle from the diameter is multiplied by `lam` at each bounce."""
     shrinks = positive(1 - lam, {lam: Interval.Ropen(0, 1)})
     return Judgement(by("|phi1| = lam*|phi| < |phi| for phi != 0", explicit_map(), shrinks), "|phi1| = lam*|phi|")
 
 
 @judges("circle.converges", "circle.limit_set")
 def converges(claim: Claim) -> Judgement:
-    """Every orbit converges to the printed limit, by the explicit map."""
+    """Every orbit in the circle converges to the printed limit, as the explicit map shows."""
     return Judgement(
         by(
             "phi_n tends to 0 and s_2n to s - 2*phi/(1 - lam); a state with phi = 0 has period 2",
@@ -102,7 +102,7 @@ def converges(claim: Claim) -> Judgement:
 
 @judges("circle.every_diameter", "circle.slap_period2")
 def diameters(claim: Claim) -> Judgement:
-    """Every state with `phi = 0` has period 2."""
+    """Every orbit of the circle that starts with `phi = 0` has period 2."""
     twice = Matrix(iterate(2)).subs(phi, 0)
     return Judgement(
         by("T^2(s, 0) = (s + 2*pi, 0)", explicit_map(), zero("", twice[0] - s - 2 * pi, twice[1])),
@@ -297,7 +297,7 @@ def ellipse_evolute(claim: Claim) -> Judgement:
 
 
 def axis_slope(P: Expr, shape: Expr) -> Expr:
-    """The slope `(T0^2)'` on a double normal at the half axis `a = shape`: its stability number `P(a)`."""
+    """The slope `(T0^2)'` on a double normal of the ellipse `a = shape`, which is its stability number `P(a)`."""
     return P.subs(a, shape)
 
 

@@ -17,18 +17,18 @@ w = Symbol("w", positive=True)  # sqrt(a**2 - 1)
 
 
 def critical_factor() -> Expr:
-    """The factor of the paper's P_2 that changes sign: `a**4*(trace - 2*det**(1/2))` on the minor axis."""
+    """The factor of the paper's P_2 that changes its sign: `a**4*(trace - 2*det**(1/2))` on the minor axis."""
     trace, _ = minor()
     return (a**4 * (trace - 2 * lam)).expand()
 
 
 def both_sides_of_sqrt2(prove: Callable[[Box], SignFinding], box: Box) -> SignFinding:
-    """The finding that a statement holds for every `a > 1` except `sqrt(2)`, proved in `w = sqrt(a**2 - 1)`."""
+    """The finding that a statement holds for all `a > 1` except `sqrt(2)`; the variable is `w = sqrt(a**2 - 1)`."""
     return conjunction(prove({**box, w: Interval.open(0, 1)}), prove({**box, w: Interval.open(1, oo)}))
 
 
 def in_w(expression: Expr) -> Expr:
-    """The expression, an even function of `a`, in the variable `w = sqrt(a**2 - 1)`."""
+    """The expression, which is even in `a`, as a function of `w = sqrt(a**2 - 1)`."""
     return cancel(expression.subs(a, sqrt(1 + w**2)))
 
 
@@ -40,7 +40,7 @@ def minor_monodromy(claim: Claim) -> Judgement:
 
 @judges("ellipse.mu")
 def minor_multipliers(claim: Claim) -> Judgement:
-    """Judges the printed roots, with the derived P_1 and P_2 inserted."""
+    """Judges the printed multipliers as roots, with the derived P_1 and P_2 inserted."""
     trace, det = minor()
     derived = {Symbol("P1", real=True): a**4 * trace, Symbol("P2", real=True): a**8 * discriminant(trace, det)}
     finding = equal(claim.formula.subs(derived), Matrix(multipliers(trace, det)), claim.box)
@@ -106,7 +106,7 @@ def elastic_elliptic(claim: Claim) -> Judgement:
 
 @judges("ellipse.P2_crossing")
 def crossing(claim: Claim) -> Judgement:
-    """`P_2` has the sign of the discriminant, as it is a positive multiple of it."""
+    """`P_2` has the sign of the discriminant, of which it is a positive multiple."""
     return Judgement(
         by("P_2 = a^8*(trace^2 - 4*det) and a^8 > 0", positive(a**8, {a: claim.box[a]})),
         "real where P_2 > 0, complex where P_2 < 0",
@@ -164,7 +164,7 @@ def upper_outside(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_minus_range")
 def lower_range(claim: Claim) -> Judgement:
-    """`lambda_-` lies in [0, 1], since it is a square and at most 1."""
+    """`lambda_-` lies in [0, 1], as it is a square that is at most 1."""
     inside = nonnegative((w + 1) ** 2 - (w - 1) ** 2, {w: Interval(0, oo)})
     return Judgement(by("lambda_- = ((w-1)/(w+1))^2 is a square and at most 1", inside), "0 <= lambda_- <= 1")
 
@@ -235,7 +235,7 @@ def splitting_nonreal(claim: Claim) -> Judgement:
 
 
 def eigenline_defects() -> list[Expr]:
-    """Expressions that vanish if `B*A*v = mu*v` makes `A*v` an eigenvector of `A*B`, for `v = (1, 0)`."""
+    """Expressions whose vanishing shows that `A*v` is an eigenvector of `A*B` if `v = (1, 0)` is one of `B*A`."""
     a11, a12, a21, a22, b12, b22, mu = symbols("a11 a12 a21 a22 b12 b22 mu", real=True)
     A = Matrix([[a11, a12], [a21, a22]])
     B = Matrix([[mu, b12], [0, b22]]) * A.inv()  # every B with B*A*(1, 0) = mu*(1, 0)
@@ -271,7 +271,7 @@ def splitting_hyperbolic(claim: Claim) -> Judgement:
 
 @judges("ellipse.dominated_splitting")
 def dominated_splitting(claim: Claim) -> Judgement:
-    """Multipliers are real and distinct below `lambda_-`, form a Jordan block at it, and are complex above."""
+    """The multipliers are real and distinct below `lambda_-`, have a Jordan block at it, and are complex above."""
     corner = monodromy(minor_axis())[0, 1]
     off = both_sides_of_sqrt2(lambda box: positive(in_w(corner**2), box), {lam: Interval(0, 1)})
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())

@@ -47,7 +47,7 @@ def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float
 
 @judges("egg.period3_end_caption")
 def end_of_period_3(claim: Claim) -> Judgement:
-    """Judges the digits of the fold, by a closed form; samples see it late, since the basins have size 0 at first."""
+    """Judges the digits of the fold, by a closed form; plots show it late, since the basins start with size 0."""
     shares = ", ".join(f"{share_of_period_3(lam):.1%} at {lam}" for lam in ("0.3785", "0.38", "0.39", "0.42"))
     found = digits(claim, saddle_node().subs(alpha, SHAPE), ("0.39", "0.378"))
     return replace(found, derived=f"{found.derived}; random starts that reach period 3: {shares}, so plots see it late")
@@ -60,7 +60,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """The exponents of single orbits at several contractions; the last axis of the arrays counts the orbits."""
+    """The exponents of single orbits at several contractions; the last axis of each array counts the orbits."""
 
     lams: Array
     plus: Array
@@ -68,12 +68,12 @@ class Spectrum:
 
     @property
     def total(self) -> Array:
-        """The sum of both exponents."""
+        """The sum of both exponents of each orbit."""
         return self.plus + self.minus
 
     @staticmethod
     def error(values: Array) -> Array:
-        """The standard errors of means over the orbits, the last axis of `values`."""
+        """The standard errors of means over orbits, which are counted by the last axis of `values`."""
         return np.asarray(np.std(values, axis=-1, ddof=1) / np.sqrt(values.shape[-1]))
 
 
@@ -88,7 +88,7 @@ def spectrum(table: str, lams: tuple[float, ...], particles: int = BALLS, bounce
 
 
 def settled(table: str, lams: Array, particles: int) -> Growth:
-    """The same starts, as in the paper's appendix, at each contraction, after a transient."""
+    """The same random particles at each contraction, started as in the paper's appendix, after a transient."""
     map = PinballMap(table, lam=np.repeat(lams, particles))
     starts = interior_starts(map.at(1), particles, SPECTRA_SEED)
     growth = Growth(map, *(np.tile(field, len(lams)) for field in (starts.theta, starts.phi, starts.component)))
@@ -97,7 +97,7 @@ def settled(table: str, lams: Array, particles: int) -> Growth:
 
 
 def visited(table: str, lams: tuple[float, ...], particles: int, bounces: int) -> Array:
-    """How often each ball visits each cell of `(s, sin(phi))`, as an array (contractions, balls, cells)."""
+    """How often each particle visits each cell of `(s, sin(phi))`: an array (contractions, particles, cells)."""
     growth = settled(table, np.array(lams), particles)
     map = growth.map
     orbit = map.orbit(growth.theta, growth.phi, bounces, growth.component)
@@ -116,7 +116,7 @@ def coverage(table: str, lams: tuple[float, ...]) -> Array:
 
 
 def uneven(counts: Array) -> float:
-    """The relative standard deviation of the counts of cells, beyond that of random counting."""
+    """The relative standard deviation of the counts in cells, in excess of that of random counting."""
     whole = counts.sum(axis=0)
     mean = float(np.mean(whole))
     return float(np.sqrt(max(np.var(whole) / mean - 1, 0.0) / mean))
@@ -127,13 +127,13 @@ DISCRETE = ("exists", "unique", "admissible", "minimal_period")
 
 
 def proved(proof: AttractingCycle) -> bool:
-    """True if the cycle is proved to exist, to be admissible and to have this minimal period."""
+    """True if the cycle is proved to exist, to be admissible, and to have the stated minimal period."""
     return all(proof.checks[name] is True for name in DISCRETE)
 
 
 @judges("cuspless.lyapunov_signs")
 def cuspless_signs(claim: Claim) -> Judgement:
-    """Samples show that `nu_plus > 0 > nu_minus` on the chaotic attractor; on period 2 both are negative."""
+    """Samples show `nu_plus > 0 > nu_minus` on the chaotic attractor; in the basin of period 2, both are negative."""
     lams = tuple(k / 10 for k in range(1, 11))
     found = spectrum("cuspless", lams)
     least, most = float(np.min(found.plus)), float(np.max(found.minus))
@@ -157,7 +157,7 @@ def averaged(contraction: str, orbits: int = 1500) -> tuple[float, float, float]
 
 
 def listed(contractions: tuple[str, ...]) -> str:
-    """The means at the given contractions, as text."""
+    """The means of `nu_plus` at the given contractions, as text."""
     rows = [(x, *averaged(x)) for x in contractions]
     return "; ".join(f"{m:+.4f} +- {e:.0e} at {x} ({c:.1%} chaotic)" for x, m, e, c in rows)
 
@@ -223,7 +223,7 @@ def period3(claim: Claim) -> Judgement:
 
 @cache
 def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
-    """The cycle of period 32 at a fraction of its window: whether it is proved, `lam`, and `nu_plus`."""
+    """The cycle of period 32 inside its window, at the fraction `share`: True if proved, `lam`, and `nu_plus`."""
     table = tables.egg(3).at(alpha=SHAPE)
     _, _, born, dies = proved_doublings()
     theta, contraction = doubled(born.problem, born.start, (dies.lam - born.lam) / 50)
@@ -239,13 +239,13 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
 
 @cache
 def proved_doublings() -> list:  # type: ignore[type-arg]
-    """The doublings `lambda_3` to `lambda_6` in float64."""
+    """The period doublings `lambda_3` to `lambda_6` of the egg's cascade, in float64."""
     return list(islice(cascade(SHAPE), 4))
 
 
 @judges("egg.exponent_period32")
 def period32(claim: Claim) -> Judgement:
-    """The exponent of period 32 is 0 at both ends of its window; it is proved for five cycles in between."""
+    """The exponent of the cycle of period 32 is 0 at both ends of its window; between, five values are certified."""
     shares = [Fraction(k, 20) for k in (1, 3, 10, 17, 19)]
     rows = [period_32(share) for share in shares]
     fits = next(row for row in rows if row[0] and round(float(row[2].mid()), 2) == -0.01)
@@ -279,7 +279,7 @@ def chaos_by(claim: Claim) -> Judgement:
 
 @judges("egg.weak_dissipation_attracts")
 def weak_dissipation_attracts(claim: Claim) -> Judgement:
-    """A counterexample: an elliptic hexagon of the egg becomes repelling, as its bounces are oblique."""
+    """A counterexample: a hexagon of the egg that is elliptic at `lam = 1` repels at `lam = 99/100`."""
     table = tables.egg(3).at(alpha=Rational(1, 20))
     six = [-3.0849, -2.0728, -0.9905, 0.0216, 1.1038, 2.1160]
     damped, elastic = (certificate(table, x, phase_points(six, 0.0), 20) for x in (Rational(99, 100), S.One))

@@ -52,7 +52,7 @@ def cones() -> SignFinding:
 
 @judges("cuspless.dominated_splitting", "cardioid.dominated_splitting")
 def dominated(claim: Claim) -> Judgement:
-    """Dominated splitting holds, by a cone field; only the cuspless cardioid has bounded curvature."""
+    """Both tables have dominated splitting, by a cone field; only the cuspless cardioid has bounded curvature."""
     here = Rational(1, 2)
     scope = "with one C and one nu for every invariant set of orbits that miss the two joins, where DT does not exist"
     if claim.id.startswith("cardioid"):
@@ -66,7 +66,7 @@ def dominated(claim: Claim) -> Judgement:
 
 
 def elastic_growth() -> SignFinding:
-    """The finding that at `lam = 1` beams of the cone widen at every return to the arc, so `nu_plus > 0`."""
+    """The finding that at `lam = 1` the beams of a cone widen at every return to the arc, so that `nu_plus > 0`."""
     return by(
         "at lam = 1 the width of a beam in units of D grows at every return to the arc: by a gain above 1 along it, "
         "by 38/27 or more by way of the wall. The map preserves a finite measure, so almost every start comes back to "
@@ -97,7 +97,7 @@ def by_exponents(claim: Claim) -> Judgement:
 
 @judges("cuspless.unfolded_defocusing")
 def unfolded(claim: Claim) -> Judgement:
-    """Wojtkowski's condition holds in both cases: on an arc, and from an arc to its mirror image."""
+    """Wojtkowski's condition holds for both kinds of chords: on an arc, and from an arc to its mirror image."""
     return Judgement(
         by(
             "d^2 rho/ds^2 < 0 on the arc, and t >= D0 + d1 on every chord of the unfolded table: along an arc as in "
@@ -112,7 +112,7 @@ def unfolded(claim: Claim) -> Judgement:
 
 @judges("cuspless.elastic_hyperbolic", "cardioid.elastic_hyperbolic")
 def hyperbolic(claim: Claim) -> Judgement:
-    """The elastic tables are hyperbolic, by their cones at `lam = 1`."""
+    """The elastic tables are hyperbolic: at `lam = 1` they have invariant cones."""
     finding = by("every bounce widens the beams of a cone, by a gain above 1", expands())
     if claim.id.startswith("cuspless"):
         finding = elastic_growth()
@@ -122,8 +122,8 @@ def hyperbolic(claim: Claim) -> Judgement:
 def averages(table: str, law: str = "1") -> tuple[Array, Array, Array]:
     """Averages of three functions along orbits, their errors, and the correlations after `LAG` bounces.
 
-    The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`, `S` the perimeter, with
-    mean 0 in the elastic measure `cos(phi) ds dphi`.
+    The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`, where `S` is the perimeter;
+    their means in the elastic measure `cos(phi) ds dphi` are 0.
     """
     map = PinballMap(table, lam=law)
     start = phase_starts(map, BALLS, SEED)
@@ -190,9 +190,9 @@ def ends_of_period(
     bounces: int,
     apart: float,
 ) -> list[Array]:
-    """For each tolerance the contractions at which an orbit does not return within `apart` after `period` bounces.
+    """For each tolerance, the contractions at which an orbit is not back within `apart` after `period` bounces.
 
-    The return is tested after a transient of `bounces` bounces.
+    This is tested after a transient of `bounces` bounces.
     """
     least = np.array(tolerances)[:, None]
     theta, phi = (np.full((least.size, lams.size), x) for x in start)
@@ -222,7 +222,7 @@ ANGLE = 0.04  # the meaning given to "phi close to 0"; phi-star is -0.029
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof; if the proof fails, the finding is unknown and not refuted."""
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
@@ -250,13 +250,13 @@ def chaos() -> SignFinding:
 
 @cache
 def sizes() -> list[ScaledAttractor]:
-    """The attractor at several small `lam - lambda-star`, measured in float64 and scaled."""
+    """The attractor at several small distances `lam - lambda-star`, measured in units of the distance."""
     return measured([1e-5, 1e-3, 8.8e-3, 0.0288], 20_000)
 
 
 @judges("cuspless.corner_orbit_unstable")
 def corner_orbit_unstable(claim: Claim) -> Judgement:
-    """Orbits leave the corner orbit along a direction that is stretched and remains on one side of the join."""
+    """Orbits leave the corner orbit along a direction that is stretched, and that stays on one side of the join."""
     arc = border().pieces[ARC]
     return Judgement(
         by(
@@ -270,7 +270,7 @@ def corner_orbit_unstable(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_below")
 def fourth_collision_below(claim: Claim) -> Judgement:
-    """Proved by boxes up to `lam = 0.06`; above, the minimum is at a kink and falls to the join at `lambda*`."""
+    """Up to `lam = 0.06` boxes prove the claim; above, the minimum is at a kink and reaches the join at `lambda*`."""
     far = fourth_on_wall(ANGLE, 0.0, 0.06, tick=telling("boxes of phi and lam"))
     near = minimum_at_kink(ANGLE, 0.06, 0.0713, tick=telling("slopes of s_4"))
     return Judgement(
@@ -288,7 +288,7 @@ def fourth_collision_below(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_above")
 def fourth_collision_above(claim: Claim) -> Judgement:
-    """A counterexample: at a larger contraction all small angles land beyond the upper join again."""
+    """A counterexample: at a larger contraction, all small angles land beyond the upper join again."""
     far = fourth_on_wall(0.05, 0.9, 0.9, or_lower=True)
     return Judgement(
         counterexample(
@@ -309,7 +309,7 @@ def fourth_collision_above(claim: Claim) -> Judgement:
 
 @judges("cuspless.coexistence")
 def coexistence(claim: Claim) -> Judgement:
-    """At the upper end `lambda_c` the orbit repels, by the sign of its flip; at the lower end chaos begins."""
+    """At the upper end of the range, `lambda_c`, the period-2 orbit repels; at the lower end chaos begins."""
     repels = subcritical("lambda-c")
     end = answer(bool(enclose(lambda_c()).real < PROVED_TO), f"lambda_c < {PROVED_TO}")
     return Judgement(

@@ -25,12 +25,12 @@ SHAPE = Rational(2, 25)
 
 @cache
 def located(name: str, wanted: int = 20, **given: Expr) -> Located:
-    """A certified value by its name, computed once per run."""
+    """The certified value of the bifurcation `name`, computed once per run."""
     return locate(name, wanted, **given)
 
 
 def value(name: str, **given: Expr) -> Callable[[int], arb]:
-    """A function from a number of digits to a ball of the certified value."""
+    """A function that maps a number of digits to a ball around the certified value."""
     return lambda wanted: located(name, max(wanted, 20), **given).ball
 
 
@@ -43,7 +43,7 @@ def certified(name: str, **given: Expr) -> SignFinding:
 
 
 def supercritical(name: str, **given: Expr) -> bool | None:
-    """True if the cycle born at a flip is proved stable, False if it is proved unstable, None if neither is proved."""
+    """True if the cycle born at a flip is proved stable, False if proved unstable, None if neither."""
     found = located(name, **given)
     return found.proof.supercritical if found.certified and isinstance(found.proof, UniqueCycle) else None
 
@@ -54,7 +54,7 @@ def subcritical(name: str, **given: Expr) -> SignFinding:
 
 
 def settled(claim: Claim, name: str, mend: tuple[str, str] | None = None, **given: Expr) -> Judgement:
-    """The judgement on printed digits by a certified value."""
+    """The judgement on printed digits, by comparison with a certified value."""
     judgement = digits(claim, value(name, **given), mend)
     proof = certified(name, **given)
     weakest = conjunction(proof, judgement.printed)
@@ -81,7 +81,7 @@ def phi_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.corner_orbit")
 def corner_orbit(claim: Claim) -> Judgement:
-    """The orbit through both corners exists, is unique in a box, and has proved first hits and minimal period."""
+    """The orbit through both corners exists, is unique in a box, and has this minimal period: all proved."""
     return Judgement(
         by("exactly one such orbit in a box around the printed values", certified("lambda-star")),
         "the orbit through both joins at lambda*",
@@ -91,7 +91,7 @@ def corner_orbit(claim: Claim) -> Judgement:
 
 @judges("cuspless.unstable_period4", "cuspless.no_stable_period4")
 def unstable_period4(claim: Claim) -> Judgement:
-    """The period-4 orbits are unstable, by the sign of the flip's normal-form coefficient."""
+    """The period-4 orbits are unstable, by the sign of the normal-form coefficient at the flip."""
     return Judgement(
         by("the flip at lambda_c is subcritical", certified("lambda-c"), subcritical("lambda-c")),
         "an unstable cycle of twice the period is born, on the side where the period-2 orbit is stable",
@@ -100,25 +100,25 @@ def unstable_period4(claim: Claim) -> Judgement:
 
 @judges("egg.doubling.3")
 def doubling_3(claim: Claim) -> Judgement:
-    """Judges the printed contraction at which period 4 doubles to 8."""
+    """Judges the printed contraction at which the cycle of period 4 doubles its period."""
     return settled(claim, "doubling", ("0.372", "0.371"), alpha=SHAPE, n=Integer(3))
 
 
 @judges("egg.doubling.4")
 def doubling_4(claim: Claim) -> Judgement:
-    """Judges the printed contraction at which period 8 doubles to 16."""
+    """Judges the printed contraction at which the cycle of period 8 doubles its period."""
     return settled(claim, "doubling", alpha=SHAPE, n=Integer(4))
 
 
 @judges("egg.doubling.5")
 def doubling_5(claim: Claim) -> Judgement:
-    """Judges the printed contraction at which period 16 doubles to 32."""
+    """Judges the printed contraction at which the cycle of period 16 doubles its period."""
     return settled(claim, "doubling", alpha=SHAPE, n=Integer(5))
 
 
 @judges("egg.doubling.6")
 def doubling_6(claim: Claim) -> Judgement:
-    """Judges the printed contraction at which period 32 doubles to 64."""
+    """Judges the printed contraction at which the cycle of period 32 doubles its period."""
     return settled(claim, "doubling", ("0.3935", "0.3933"), alpha=SHAPE, n=Integer(6))
 
 
@@ -153,7 +153,7 @@ def at_least_log() -> SignFinding:
 
 @cache
 def expanding_cycle() -> tuple[bool, arb]:
-    """A cycle of period 9 at `lam = 9/10`: whether it is proved, and its determinant."""
+    """A cycle of period 9 at `lam = 9/10`: True if it is proved, and its determinant."""
     proof = certificate(tables.cardioid, Rational(9, 10), phase_points(NINE, 0.0), 20)
     wanted = ("exists", "unique", "admissible", "minimal_period")
     return all(proof.checks[name] is True for name in wanted), proof.determinant
@@ -161,7 +161,7 @@ def expanding_cycle() -> tuple[bool, arb]:
 
 @judges("cardioid.contraction_implies")
 def contraction_implies(claim: Claim) -> Judgement:
-    """If phase space as a whole contracts, this bounds the exponents of almost every orbit, but not of every orbit."""
+    """If phase space contracts as a whole, this bounds the exponents of almost every orbit, but not of each orbit."""
     proved, determinant = expanding_cycle()
     rate = determinant.log() / 9
     return Judgement(
@@ -211,7 +211,7 @@ def sum_one(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_sum_zero")
 def sum_zero(claim: Claim) -> Judgement:
-    """At `lam = 0` the sum of exponents is minus infinity, as it lies between `log(lam)` and `log(2*lam)`."""
+    """At `lam = 0` the sum of exponents is minus infinity, since it is bounded above by `log(2*lam)`."""
     return Judgement(
         by(
             "log(lam) <= nu_+ + nu_- on every orbit; a bounce multiplies areas in |K|*ds and dphi by at most "

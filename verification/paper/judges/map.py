@@ -52,7 +52,7 @@ def focusing_beam(claim: Claim) -> Judgement:
 
 @judges("map.birkhoff", "map.elastic_measure")
 def elastic_area(claim: Claim) -> Judgement:
-    """The elastic map preserves area: the Jacobian in `(s, sin phi)` is `lam*cos(phi1)/cos(eta1)`."""
+    """The elastic map preserves area: at `lam = 1` the Jacobian in `(s, sin phi)`, `lam*cos(phi1)/cos(eta1)`, is 1."""
     jacobian = birkhoff_matrix(derivative_matrix(), cos_phi0, cos_eta1).det().subs(lam, 1)
     return Judgement(
         by("at lam = 1, |phi1| = |eta1| and d(sin phi) ds = cos(phi) ds dphi", zero("Jacobian 1", jacobian - 1)),
@@ -62,7 +62,7 @@ def elastic_area(claim: Claim) -> Judgement:
 
 @judges("map.reflection_rule")
 def reflection_rule(claim: Claim) -> Judgement:
-    """The printed reflection rule is `phi = -eta + f(eta)` with `f(eta) = (1 - lam)*eta`."""
+    """The printed reflection rule is a case of `phi = -eta + f(eta)`, with `f(eta) = (1 - lam)*eta`."""
     return identity(claim, exit_angle())
 
 
@@ -138,7 +138,7 @@ def slap_circle_map(claim: Claim) -> Judgement:
 
 
 def turnings() -> list[SignFinding]:
-    """The findings that `turning >= 0`, that is `kappa <= 0`, one for each component."""
+    """The findings that each component has `turning >= 0`, which means `kappa <= 0`."""
     egg = in_cosine(turning(tables.egg(3).components[0]))
     cosine = {alpha: Interval(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
     return [
@@ -159,7 +159,7 @@ def curvature_nonpositive(claim: Claim) -> Judgement:
 
 @judges("map.zero_curvature_excluded", "map.focusing_and_flat")
 def zero_curvature(claim: Claim) -> Judgement:
-    """A counterexample: the flat points of the egg have curvature 0 at the last shape of the range."""
+    """A counterexample: at the last shape in the range, the egg's flat points have curvature 0."""
     flat = in_cosine(turning(tables.egg(3).components[0]))
     end = {COSINE: -1, alpha: Rational(1, 10)}
     inside = {alpha: Interval.Ropen(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
@@ -198,7 +198,7 @@ def slap_evolute(claim: Claim) -> Judgement:
 
 
 def curved() -> list[SignFinding]:
-    """The findings that `turning > 0` on each component except the wall, away from the cusp and for `alpha < 1/10`."""
+    """The findings that each component except the wall has `turning > 0`, away from the cusp and for `alpha < 1/10`."""
     egg = in_cosine(turning(tables.egg(3).components[0]))
     rounds = turning(tables.cardioid.components[0]).subs(cos(theta), COSINE)
     return [

@@ -26,7 +26,7 @@ def law(formula: str) -> SignFinding:
 
 @judges("law.non_hamiltonian")
 def non_hamiltonian(claim: Claim) -> Judgement:
-    """A law `phi = F(eta)` changes areas by minus the derivative of `sin(F)` with respect to `sin(eta)`."""
+    """The factor by which a law `phi = F(eta)` changes areas is minus the derivative of `sin(F)` by `sin(eta)`."""
     along = diff(sin(F(eta)), eta) / diff(sin(eta), eta)
     example = Law(CONTRACTING).phi
     return Judgement(
@@ -51,7 +51,7 @@ def double_normal(sigma: Expr) -> Matrix:
 
 @judges("law.stability")
 def stability(claim: Claim) -> Judgement:
-    """An elliptic double normal is neutral under the elastic law, and attracts or repels under laws close to it."""
+    """Near the elastic law, laws exist under which an elliptic double normal attracts, and others where it repels."""
     a, sigma = tables.ellipse.shapes[0].symbol, Symbol("sigma", positive=True)
     matrix = double_normal(sigma).subs(a, Rational(3, 2))
     trace, determinant = matrix.trace().expand(), matrix.det().expand()
@@ -72,7 +72,7 @@ def stability(claim: Claim) -> Judgement:
 
 
 def landing(formula: Expr) -> tuple[SignFinding, Expr]:
-    """The finding that in the unit circle a flight turns by `pi - 2*phi` with `eta1 = -phi`; the next exit angle."""
+    """The finding on a flight in the unit circle (it turns by `pi - 2*phi`, `eta1 = -phi`), and the next exit angle."""
     direction, length = s + pi - phi, 2 * cos(phi)
     start, end = (Matrix([cos(angle), sin(angle)]) for angle in (s, s + pi - 2 * phi))
     flown = start + length * Matrix([cos(direction), sin(direction)]) - end
@@ -82,7 +82,7 @@ def landing(formula: Expr) -> tuple[SignFinding, Expr]:
 
 @judges("law.rotation")
 def rotation(claim: Claim) -> Judgement:
-    """In the circle, a law with `F(-p) = p` and `|F'(-p)| < 1` has the attracting line `phi = p`, a rotation."""
+    """In the circle, if `F(-p) = p` and `|F'(-p)| < 1`, the line `phi = p` attracts, and the map rotates it."""
     p, mu, sigma = Symbol("p", real=True), Symbol("mu"), Symbol("sigma", real=True)
     circle = {"K0": -1, "K1": -1, "t": 2 * cos(phi), "cos_phi0": cos(phi), "cos_eta1": cos(phi)}
     spectrum = derivative_matrix(**circle, lam=sigma).charpoly(mu).as_expr()

@@ -1,8 +1,8 @@
 """Judges of claims on pinball billiards in polygons: the equilateral triangle, the square, slap maps.
 
 Between straight sides the angle changes by an affine map that does not depend on the position, and the position is
-stretched by `cos(phi0)/cos(eta1)`. So the triangle's map consists of two affine maps of the angle; for each angle, each
-of them applies on an interval of positions whose rays meet one side.
+stretched by `cos(phi0)/cos(eta1)`. So the triangle's map consists of two affine maps of the angle, one for each of the
+two sides that can be hit; at each angle, the rays that hit a side start from an interval of positions.
 """
 
 from functools import cache
@@ -58,7 +58,7 @@ def hull() -> Expr:
 
 
 def two_maps() -> SignFinding:
-    """The finding that angles on the attractor satisfy `|phi| <= hull()`, as two affine contractions by `lam` imply."""
+    """The finding that angles change by two affine contractions by `lam`, and tend to `|phi| <= hull()`."""
     return by(
         "a flight changes the angle to lam*(pi/3 - phi) or lam*(-pi/3 - phi), which keep |phi| <= m, m = "
         "lam*pi/(3*(1 - lam)), and draw every angle towards it",
@@ -70,13 +70,13 @@ def two_maps() -> SignFinding:
 
 
 def disjoint(box: Box) -> SignFinding:
-    """The finding that the two maps have disjoint images for a range of `lam`, so the angles form a Cantor set."""
+    """The finding that the two maps have disjoint images for a range of `lam`, so that the angles form a Cantor set."""
     return by("their images are apart", positive(simplify(next_exit_angle(RIGHT, hull()) / pi), box))
 
 
 @judges("triangle.measure_zero")
 def measure_zero(claim: Claim) -> Judgement:
-    """The claim is proved for `lam < 1/2`, where the angles have measure 0; above, the sum of exponents is sampled."""
+    """For `lam < 1/2` the angles are proved to have measure 0; for larger `lam` the sum of exponents is sampled."""
     below = by(
         "n bounces leave 2^n intervals of the length lam^n*2*m", two_maps(), disjoint({lam: Interval.open(0, HALF)})
     )
@@ -102,7 +102,7 @@ def _starts(count: int, sides: int = 3) -> tuple[NDArray[np.float64], NDArray[np
 
 @judges("triangle.expansion")
 def expansion(claim: Claim) -> Judgement:
-    """Of two consecutive bounces, one lands at 30 degrees or more and stretches at least as much as at 30 degrees."""
+    """Of two consecutive bounces, one lands at 30 degrees or more; so two bounces stretch by at least a factor."""
     x = Symbol("x", positive=True)
     box = {lam: Interval.open(0, 1), x: Interval.Ropen(0, Rational(1, 6))}  # x in units of pi
     stretch = cos(lam * x) / cos(x)
@@ -125,7 +125,7 @@ def expansion(claim: Claim) -> Judgement:
 
 @judges("triangle.cantor")
 def cantor(claim: Claim) -> Judgement:
-    """For `lam < 1/3`, the rays at each angle of the attractor reach both other sides, and fill each of them."""
+    """For `lam < 1/3`, the rays at each angle on the attractor reach both other sides, and each of them completely."""
     box = claim.box
     return Judgement(
         by(
@@ -145,7 +145,7 @@ def cantor(claim: Claim) -> Judgement:
 
 @judges("triangle.nonaccessible")
 def nonaccessible(claim: Claim) -> Judgement:
-    """Rays above 30 degrees reach only the lower part of the next side; no other rays leave at the same angles."""
+    """Rays above 30 degrees reach only the lower part of the next side, and no other rays leave it at these angles."""
     box = claim.box
     steep, other = next_exit_angle(RIGHT, lam * pi / 2), next_exit_angle(LEFT, -lam * pi / 2)
     top = next_exit_angle(RIGHT, pi / 6)
@@ -176,7 +176,7 @@ def _cell(component: Array, place: NDArray[np.float64], angle: NDArray[np.float6
 
 @cache
 def components() -> tuple[Array, list[int]]:
-    """For each cell the index of the triangle's attractor that visits it, or -1; and the number of orbits on each."""
+    """For each cell the index of the triangle's attractor that visits it (or -1), and the number of orbits on each."""
     map = PinballMap(tables.triangle(), lam=NEAR)
     settled = map.exponents(*_starts(ORBITS), 1, SETTLE)
     orbit = map.orbit(settled.theta, settled.phi, FOLLOW, component=settled.component)
@@ -194,7 +194,7 @@ def components() -> tuple[Array, list[int]]:
 
 @judges("triangle.three_components")
 def three_components(claim: Claim) -> Judgement:
-    """A sample gives three attractors: orbits that visit a common cell count as on one attractor."""
+    """A sample gives three attractors; orbits that visit a common cell count as being on the same one."""
     owner, orbits = components()
     said = (
         f"at lam = {NEAR} {sum(orbits)} random starts, after {SETTLE} bounces, visit {len(orbits)} sets of cells in "
@@ -206,7 +206,7 @@ def three_components(claim: Claim) -> Judgement:
 
 @judges("triangle.fractal_boundaries")
 def fractal_boundaries(claim: Claim) -> Judgement:
-    """Measures the fraction of close starts that end apart; it is proportional to distance for a smooth boundary."""
+    """Measures the fraction of close pairs of starts that end apart; smooth boundaries make it linear in distance."""
     map, owner = PinballMap(tables.triangle(), lam=NEAR), components()[0]
     place, angle = _starts(160, 1)
     ends = []
@@ -229,7 +229,7 @@ FACING = pi  # rotation of the normal to the facing side
 
 @judges("square.parabolic")
 def parabolic(claim: Claim) -> Judgement:
-    """Between opposite sides the angle shrinks by `lam` at each bounce, and the drift is a convergent sum."""
+    """Between opposite sides each bounce multiplies the angle by `lam`, and the total drift is a convergent sum."""
     shrinking, place = straight_multipliers([S.Zero, S.Zero])
     return Judgement(
         by(
@@ -271,7 +271,7 @@ def ends_in_the_square(value: str, count: int = 200, bounces: int = 3000) -> tup
 
 @judges("square.chaotic", "square.coexistence")
 def coexistence(claim: Claim) -> Judgement:
-    """Judges coexistence by the fraction of starts that keep moving, and their exponents, at sampled contractions."""
+    """Samples the fraction of starts that keep moving, and their exponents, at some contractions."""
     found = {value: ends_in_the_square(value) for value in ("0.5", "0.7", "0.9")}
     said = "; ".join(
         f"at lam = {value} {share:.0%}" + (f" with nu_+ from {low:.4f} to {high:.4f}" if share else "")

@@ -103,7 +103,7 @@ def font_style() -> Markup:
 
 @lru_cache(maxsize=4096)
 def mathml(latex: str, display: bool = False) -> Markup:
-    """LaTeX with the paper's macros as MathML, which has the LaTeX as alternative text.
+    """LaTeX that may use the paper's macros, as MathML; the LaTeX is its alternative text.
 
     >>> "<mi>&#x003BB;</mi>" in mathml(r"\\lambda")
     True
@@ -182,7 +182,7 @@ def _greek(found: re.Match[str]) -> str:
 
 
 def formulas(text: str) -> list[tuple[int, int, str]]:
-    r"""The start and end of each formula in a sentence, and its LaTeX; no formula extends over an error bar `+-`.
+    r"""The start, the end and the LaTeX of each formula in a sentence; no formula extends across an error bar `+-`.
 
     >>> [text for *_, text in formulas("nu_+ = 0.5 +- 7e-05 there")]
     ['\\nu_{+} = 0.5', '7 \\cdot 10^{-5}']
@@ -215,7 +215,7 @@ def _runs(text: str) -> list[list[re.Match[str]]]:
 
 
 def _set(piece: str, text: str, start: int) -> str | None:
-    """A piece of a sentence as LaTeX; None if it is not a formula, or only a word or a number."""
+    """A piece of a sentence as LaTeX; None if it is no formula, or merely a word or a number."""
     if (
         piece != piece.strip()
         or piece.startswith("- ")
@@ -267,7 +267,7 @@ class _Source:
         self.code = code
 
     def latex(self, node: ast.expr, within: int = 0) -> str:
-        """The syntax tree as LaTeX, in parentheses if `within` has a higher precedence."""
+        """The syntax tree as LaTeX, in parentheses if the surrounding operator `within` has a higher precedence."""
         text, binding = self._printed(node)
         return rf"\left({text}\right)" if binding < within else text
 
@@ -303,7 +303,7 @@ class _Source:
         return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else typed
 
     def _exponent(self, node: ast.expr) -> str:
-        """An exponent as LaTeX; a quotient of two numbers or symbols is set on one line."""
+        """An exponent as LaTeX; a quotient of two numbers or symbols is written on one line."""
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
             sides = node.left, node.right
             if all(isinstance(side, ast.Constant | ast.Name) for side in sides):

@@ -57,7 +57,7 @@ class ReportFigure:
 
     @classmethod
     def of(cls, drawing: "Figure | WorkDiagram", image: bytes) -> "ReportFigure":
-        """The figure of the report made of a drawing and its image, with the captions."""
+        """The report's figure from a drawing and its image, with the captions."""
         return cls(drawing.name, drawing.caption, drawing.section, image, drawing.shows)
 
     @property
@@ -68,7 +68,7 @@ class ReportFigure:
 
     @property
     def words(self) -> Markup:
-        """Our caption, or else the paper's, as HTML."""
+        """Our caption as HTML, or the paper's caption if there is none."""
         return prose(self.shows or self.caption)
 
     @property
@@ -77,7 +77,7 @@ class ReportFigure:
         return plain((self.shows or self.caption).partition(". ")[0])
 
     def stands_by(self, claims: "Sequence[Result]") -> str:
-        """The id of the first claim that quotes the caption, or of the first claim in the section, or an empty text."""
+        """The id of the first claim that quotes the caption; else of the first claim in its section; else empty."""
         caption = _plain(self.caption)
         quoting = (c.id for c in claims if c.section == self.section and _plain(c.quote) in caption)
         return next(quoting, next((c.id for c in claims if c.section == self.section), ""))
@@ -191,12 +191,12 @@ def sentence(text: str) -> Markup:
 
 
 def opening(text: str) -> Markup:
-    """The first words of a long text, as HTML."""
+    """The first words of a text, as HTML, if it is long."""
     return sentence(text[: text.rindex(" ", 0, OPENING)].rstrip(".,:;") + ".")[:-1]
 
 
 def _plain(text: str) -> str:
-    """The text without markup characters and spaces."""
+    """The text without markup characters and spaces, for comparisons."""
     return "".join(letter for letter in text if letter not in "${}\\ \n")
 
 
@@ -204,7 +204,7 @@ WANTED = "accepted: what `pinball work --json FILE` writes"
 
 
 def diagrams(path: Path) -> "list[WorkDiagram]":
-    """The diagrams of the questions in the file, with the machine in the footer; `ValueError` for another file."""
+    """The diagrams of the questions in a file of `pinball work`; `ValueError` if it is another file."""
     from verification.measure.work.row import MethodResult, WorkDiagram
 
     try:

@@ -45,7 +45,7 @@ QUOTED = re.compile(rf"[\"']({OURS}(?:\.\w+)+)[\"'.]")  # a module or package na
 
 @dataclass(frozen=True)
 class Result:
-    """A judged claim, as all forms of the report show it."""
+    """A judged claim, in the form that all versions of the report use."""
 
     id: str
     section: str
@@ -121,7 +121,8 @@ def answered(
 ) -> Generator[Result | DrawnPicture, None, None]:
     """Yields results of claims and images of pictures when they are finished, from one pool of processes.
 
-    The most expensive ones start first. As in `judged`, but a picture whose process dies repeatedly raises an error.
+    The most expensive ones start first. In contrast to `judged`, a picture whose process dies repeatedly raises an
+    error.
     """
     for claim in claims:
         if claim.home.endswith(".py"):
@@ -203,7 +204,7 @@ def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> 
 
 
 def method(judgement: Judgement) -> str:
-    """The reason of the verdict, in a sentence or two."""
+    """The reason for the verdict, in a sentence or two."""
     if judgement.verdict is Verdict.SUPPORTED:
         return judgement.evidence
     if judgement.verdict is Verdict.CORRECTED and judgement.mended is not None:
@@ -238,7 +239,7 @@ def summary(results: Sequence["Result"]) -> str:
 
 
 def made_with() -> dict[str, str]:
-    """The versions of the packages that a result depends on, the type of machine, and the seed."""
+    """The versions of the packages on which results depend, the type of machine, and the seed."""
     found = {"python": platform.python_version()}
     for package in ("sympy", "mpmath", "gmpy2", "python-flint", "numpy"):
         try:
@@ -249,7 +250,7 @@ def made_with() -> dict[str, str]:
 
 
 def by_section(results: Iterable["Result"], sections: Iterable[str] = ()) -> list[tuple[str, list["Result"]]]:
-    """The results by section, in the order of `sections`, then other sections by their numbers."""
+    """The results by section: first the given `sections` in order, then other sections by number."""
     order = {name: (-1, n) for n, name in enumerate(sections)}
     ordered = sorted(results, key=lambda each: (order.get(each.section, section_order(each.section)), each.section))
     return [(name, list(claims)) for name, claims in groupby(ordered, key=lambda result: result.section)]
@@ -262,7 +263,7 @@ def errata(results: Iterable["Result"], sections: Iterable[str] = ()) -> list["R
 
 
 def place(result: "Result") -> str:
-    """The section of a claim, as text."""
+    """The claim's section, as text."""
     return f"Section {result.section}" if section_order(result.section) > (0,) else result.section
 
 
@@ -299,7 +300,7 @@ def _gather(folder: Traversable, name: str, found: dict[str, str]) -> None:
 
 @cache
 def exports(room: str) -> Mapping[str, str]:
-    """The modules from which a package exports its names.
+    """For each name that a package exports, the module that defines it.
 
     >>> exports("verification")["verify"]
     'verification.paper.report.report'

@@ -127,7 +127,9 @@ def proved(scene: Scene, contact: Contact, digits: int) -> Tangency | str:
 def near(
     scene: Scene, ends: tuple[float, float], period: int, seed: int = 1, heard: Tick = lambda said: None
 ) -> Iterator[tuple[Touch, PeriodicOrbit]]:
-    """The tangencies between two contractions that Newton's method finds from the scene's own, each with its saddle."""
+    """The tangencies between two contractions that Newton's method finds, started at the scene's; with their
+    saddles.
+    """
     mirror = scene.law.odd and reflected(scene.table)
     map, known = pinball(scene.table, scene.law), set[tuple[complex, ...]]()
     for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):

@@ -313,7 +313,7 @@ def label(name: str) -> str:
 
 
 def matching(only: str, ids: Sequence[str]) -> list[str]:
-    """The ids that match the glob `only`; `ValueError` with the nearest ones when none does.
+    """The ids that match the glob `only`; `ValueError` with the most similar ids if none does.
 
     >>> matching("egg.*", ["egg.mu", "ellipse.mu"])
     ['egg.mu']

@@ -259,7 +259,7 @@ def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
 
 
 def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
-    """The particles at `starts`, with the direction of flight `away + off` (angle to the x axis), if it is possible."""
+    """The particles at `starts` that can fly at the angle `away + off` to the x axis, with their exit angles."""
     frame = map.family.frame(starts.component, starts.theta)
     phi = frame.angle(map.states.ops, np.cos(away), np.sin(away)) + off
     good = np.abs(phi) < STRAIGHT  # false also where there is no such direction

@@ -242,7 +242,7 @@ def cheapest(
 def crossovers(
     question: str, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
 ) -> list[tuple[int, ArithmeticChoice]]:
-    """The cheapest methods, as pairs: a method, and before it the number of digits from which on it is the cheapest."""
+    """Pairs of a number of digits, and the method that is the cheapest from this number of digits on."""
     known = tuple(_known(question) if measured is None else measured)
     edges = sorted({1, *(entry.digits + 1 for entry in known)})
     most, found = max(entry.digits for entry in known), list[tuple[int, ArithmeticChoice]]()

@@ -205,7 +205,7 @@ def no_period3_caption(claim: Claim) -> Judgement:
 
 @judges("egg.projection_misses")
 def projection_misses(claim: Claim) -> Judgement:
-    """Gives two counterexamples: orbits that return to their first position, but not angle, after three bounces."""
+    """Two counterexamples: orbits that return after three bounces to their first position, but at another angle."""
     free, produced = witness(EXACT_SHAPE, Rational(0), *SLAP), witness(EXACT_SHAPE, Rational(3, 10), *PRODUCED)
     proved = bool(free.exists and produced.exists and produced.produced)
     met = answer(proved, "both orbits proved by interval Newton")

@@ -196,7 +196,7 @@ def period4_doubles(claim: Claim) -> Judgement:
 
 @judges("egg.negative_exponents")
 def negative_exponents(claim: Claim) -> Judgement:
-    """Gives a counterexample: a cycle that attracts at its period doubling has a multiplier -1 and the exponent 0."""
+    """A counterexample: a cycle that attracts at its period doubling has a multiplier -1 and the exponent 0."""
     doubles = located("doubling", alpha=SHAPE, n=Integer(3))
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]  # a cycle's proof
     return Judgement(

@@ -150,7 +150,7 @@ def alternates() -> SignFinding:
 
 @judges("egg.windows_above")
 def windows(claim: Claim) -> Judgement:
-    """Attracting cycles and strange attractors alternate, proved; samples suggest that those are the observed ones."""
+    """Attracting cycles and strange attractors are proved to alternate; that these are the observed ones is sampled."""
     (first, one), (second, other) = ALONG
     calm = [proved_at(x, period, starts=STARTS) for x, period, _ in BEYOND]
     wild = [strange(SHAPE, kind) for *_, kind in BEYOND]
@@ -218,7 +218,7 @@ def parts_join(claim: Claim) -> Judgement:
 
 @judges("egg.merging_crisis")
 def merging_crisis(claim: Claim) -> Judgement:
-    """That the three regions are lost is proved; that this is a crisis of one attractor is sampled."""
+    """It is proved that the three regions are lost; only samples show that this is a crisis of one attractor."""
     found, (_, tangency) = merges(), strange(SHAPE, "merging")
     gap = Fraction(str(claim.printed)) - Fraction(tangency.str(9, radius=False))
     counts = [len(chaotic(egg(x))) for x in ("0.442", "0.445")]

@@ -100,7 +100,7 @@ def settles() -> SignFinding:
 
 @judges("egg.periodic_only_near_zero")
 def periodic_only(claim: Claim) -> Judgement:
-    """Every orbit becomes periodic for `lam` up to a bound below 1 and small `alpha`; one `alpha` for all is open."""
+    """Orbits converge to cycles for `lam` up to a bound below 1 and small `alpha`; one `alpha` for all is open."""
     found = {(a, x): periods_at(a, x, 60) for a in SHAPES for x in LAMS}
     seen = sorted({period for periods in found.values() for period in periods})
     return sampled(

@@ -93,7 +93,7 @@ def third_power(at_flat: bool) -> SignFinding:
 
 @judges("egg.two_period3")
 def two_period3(claim: Claim) -> Judgement:
-    """The triangle at the flat points can be travelled in two directions."""
+    """The triangle at the flat points can be travelled in two directions, which gives two orbits."""
     return Judgement(
         counterexample(
             "at alpha = 0 every equilateral triangle is an orbit",

@@ -198,7 +198,7 @@ def exponents_sum(claim: Claim) -> Judgement:
 
 @judges("appendix.elastic_start")
 def elastic_start(claim: Claim) -> Judgement:
-    """After an elastic first bounce every exit angle in (-pi/2, pi/2) is possible; after a bounce `-lam*eta`, not."""
+    """An elastic first bounce makes every exit angle in (-pi/2, pi/2) possible; a bounce with `-lam*eta` does not."""
     return Judgement(
         by(
             "phi = -eta runs over all exit angles, -lam*eta over a fraction lam of them",

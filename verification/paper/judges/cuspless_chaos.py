@@ -98,7 +98,7 @@ def one_attractor(lams: tuple[str, ...]) -> Judgement:
 
 @judges("cuspless.global_near_one")
 def global_near_one(claim: Claim) -> Judgement:
-    """Near 1 a compact set attracts all orbits; its orbits off the joins are unstable. One attractor is sampled."""
+    """Near 1, a compact set of orbits that are unstable off the joins attracts all; samples show one attractor."""
     return one_attractor(NEAR_ONE)
 
 

@@ -312,7 +312,7 @@ def slap_unstable(claim: Claim) -> Judgement:
 
 @judges("ellipse.slap_stable_orbits")
 def slap_stable(claim: Claim) -> Judgement:
-    """The two stable points belong to one orbit, along the minor axis."""
+    """The two stable points of the slap map belong to one orbit, along the minor axis."""
     slope = axis_slope(stability_number(minor_axis()), Rational(6, 5))
     stable = positive(1 - slope**2, {})
     return Judgement(

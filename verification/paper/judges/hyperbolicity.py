@@ -270,7 +270,7 @@ def corner_orbit_unstable(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_below")
 def fourth_collision_below(claim: Claim) -> Judgement:
-    """Up to `lam = 0.06` boxes prove the claim; above, the minimum is at a kink and reaches the join at `lambda*`."""
+    """Boxes prove the claim up to `lam = 0.06`; above, the minimum is at a kink and reaches the join at `lambda*`."""
     far = fourth_on_wall(ANGLE, 0.0, 0.06, tick=telling("boxes of phi and lam"))
     near = minimum_at_kink(ANGLE, 0.06, 0.0713, tick=telling("slopes of s_4"))
     return Judgement(

@@ -39,7 +39,7 @@ def law(claim: Claim) -> Judgement:
 
 @judges("triangle.contraction")
 def contraction(claim: Claim) -> Judgement:
-    """A counterexample: a flight along a normal lands at 60 degrees, and at `lam = 9/10` both area elements grow."""
+    """Refutes area contraction: for a flight from a normal to 60 degrees at `lam = 9/10`, the area element grows."""
     here = {cos_phi0: S.One, cos_eta1: cos(pi - RIGHT), lam: Rational(9, 10)}
     areas = [between_sides(), birkhoff_matrix(between_sides(), cos_phi0, cos(here[lam] * (pi - RIGHT)))]
     grown = [greater(area.det().subs(here), S.One) for area in areas]

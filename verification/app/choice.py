@@ -163,7 +163,7 @@ def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float
 
 
 def placed(map: PinballMap, choice: Choice) -> Choice:
-    """The choice; a `theta` outside the range of its component is replaced by the middle of that range.
+    """The choice, in which a `theta` outside the range of its component is replaced by the middle of the range.
 
     >>> from symbolic.tables.gallery import GALLERY
     >>> placed(PinballMap(GALLERY["diamond"]()), Choice("diamond")).theta == 3 * np.pi / 4
@@ -184,7 +184,7 @@ def tip(map: PinballMap, particle: BoundaryParticle, length: float) -> tuple[flo
 
 
 def phase(map: PinballMap, orbit: Orbit) -> Curve:
-    """The phase points `(s, sin(phi))` of all bounces until the particle stops; `s` is from `-L/2` to `L/2`."""
+    """The phase points `(s, sin(phi))` of all bounces until the particle stops; `s` is 0 in the middle of its range."""
     made = orbit.code == 0
     return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
 

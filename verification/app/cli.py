@@ -199,7 +199,7 @@ json_option = click.option(
 
 
 def plot_option(kind: str, about: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Decorator that adds the option `--plot FILE` to a command, whose results the function `kind` draws."""
+    """Decorator that adds the option `--plot FILE` to a command; the function `kind` draws the command's results."""
 
     def given(command: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(command)

@@ -122,7 +122,7 @@ def of_svg(path: str, text: str) -> Drawing:
 
 
 def _page_scale(path: str, root: ElementTree.Element, box: list[float]) -> Fraction | None:
-    """The number of page units per unit of the view box: the smaller of both directions, or the larger for `slice`."""
+    """Page units per unit of the view box: the smaller of the factors in x and y, or the larger one for `slice`."""
     sizes = [LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height")]
     if len(box) != 4 or not (box[2] and box[3]):
         return None

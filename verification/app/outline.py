@@ -230,7 +230,7 @@ def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
 
 
 def _cubics(side: "Side") -> "list[Side]":
-    """The cubic curves, each over at most 11.25 degrees, that replace an arc; another piece stays as it is."""
+    """The cubic curves that replace an arc, each over at most 11.25 degrees; a piece that is not an arc is kept."""
     from symbolic.tables.outlines import ConicArc
 
     if not isinstance(side, ConicArc):

@@ -216,7 +216,7 @@ def curves_along(
     steps: Steps | None = None,
     tick: PointTick | None = None,
 ) -> Iterator[EventCurve]:
-    """The curves in a plane of events on a branch, and on the branches born on it, up to `SWITCHES` generations.
+    """The curves, in a plane, of events on a branch and on the branches born on it, up to `SWITCHES` generations.
 
     `other` is the value of the plane's other parameter, fixed on the branch. Curves in `known` are not repeated.
     """

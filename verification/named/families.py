@@ -317,7 +317,7 @@ class Continuation:
                 )
 
     def _descend(self, number: int) -> None:
-        """Adds families, if they attract: those born on family `number`, its parent, recursively those of new ones."""
+        """Adds the attracting families born on family `number`, its parent, and recursively those of new families."""
         family = self.families[number]
         for event in family.branch.along:
             if not self._leads_on(family, event):

@@ -303,7 +303,7 @@ def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> Se
 
 
 def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: Law = PAPERS_LAW) -> dict[str, str]:
-    """The notes on a tangency at a shape or law where the attractor was not examined: its name, what particles do.
+    """The notes on a tangency at a shape or law where the attractor was not examined: its name, and what particles do.
 
     The exponent of transients is left out if no orbit is chaotic, as it belongs to an attractor that is destroyed.
     """

@@ -211,7 +211,7 @@ class FollowedOrbit:
         return self._of("border collision")
 
     def plot(self, axes: "Axes | None" = None) -> "Figure":
-        """A figure of the bounces along the branch, dashed where unstable, with its events; on `axes` or alone."""
+        """A figure of the bounces along the branch, dashed where unstable, with its events; new, or on `axes`."""
         from numeric.pinball.states import plotted
 
         made: Figure = plotted("dynamics.plotted", (self.branch,), None, axes=axes)

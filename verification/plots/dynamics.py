@@ -220,7 +220,7 @@ class Sample(NamedTuple):
 
 
 def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed: int = 1) -> Sample:
-    """The fraction of chaotic starts on a `side` by `side` grid; exponents are over `bounces`, after as many discarded.
+    """The fraction of chaotic starts on a `side` by `side` grid; exponents are over `bounces`, after a transient.
 
     >>> found = sampled(3, 3, 4, 200)
     >>> found.share.shape, float(found.share[0].max())

@@ -178,7 +178,7 @@ def plane(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def regions(asked: Asked, parts: Parts, level: int) -> Found:
-    """Computes, by second parameter and contraction, on which attractors random starts end; kept as arrays."""
+    """Computes on which attractors random starts end, by second parameter and contraction."""
     assert asked.second is not None
     name, low, high = asked.second
     first, last = (float(exact(name, end)) for end in (low, high))

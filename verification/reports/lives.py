@@ -53,7 +53,7 @@ OTHER = ("chaotic", "neutral", "stopped", "other")  # of the shares, after those
 
 
 def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continuation:
-    """Follows the families known so far further, and returns them; raises `TimeoutError` if `heard` does."""
+    """Continues to follow the families known so far, and returns them; raises `TimeoutError` if `heard` does."""
     found: Continuation = parts.memory.get("families") or Continuation(
         asked.scene, asked.parameter, (asked.low, asked.high), seed=asked.seed
     )

@@ -344,7 +344,7 @@ def _work(asked: Asked, parts: Parts) -> Made:
 
 
 def _families(asked: Asked, parts: Parts, level: int, within: Callable[[float], Tick]) -> Iterator[Step]:
-    """The steps that find the families, at as many parameter values as the level has, and prove their events."""
+    """The steps that find the families and prove their events; each level samples more parameter values."""
 
     def work(name: str, section: str, made: Callable[..., Made]) -> Step:
         before = parts.read(f"{name}-{level - 1}")

@@ -380,7 +380,7 @@ def worth(solution: "Solution") -> dict[str, Any]:
 
 
 def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[str, Any]]:
-    """For each period n, as JSON: the number of fixed points of `T**n` by a count on cells, and in the catalogue."""
+    """For each period n, as JSON: the number of fixed points of `T**n`, as counted on cells and as in the catalogue."""
     from numeric import PinballMap
     from verification.cycles.cells import fixed_points
     from verification.maps.first_hit import closes_smoothly, convex

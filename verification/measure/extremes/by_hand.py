@@ -148,7 +148,7 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
 
 
 def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float) -> Any:
-    """True for lines that may meet a piece, or come within `ROUGHLY` times the table's size; computed in doubles."""
+    """True for lines that meet a piece or come close to it (`ROUGHLY` times the table's size); computed in doubles."""
     least = ROUGHLY * table
     if piece.kind == LINE:  # both ends on one side
         one, two = (_cross(v, [float(end[i]) - z[i] for i in (0, 1)]) for end in (piece.start, start))
@@ -183,7 +183,7 @@ def _cross(v: Any, w: Any) -> Any:
 
 
 def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
-    """The intersections of lines with a curve: length, coordinates `p`, `q`, cos(incidence), True if on the piece."""
+    """Intersections of lines with a curve: length, coordinates `p`, `q`, cos(incidence), and True if on the piece."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     if piece.kind == LINE:
@@ -212,7 +212,7 @@ def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
 
 
 def _tangent(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
-    """Distance to a piece's tangent parallel to the line, along and across it (infinite if none), and `size`."""
+    """Where the tangent parallel to a line touches a piece: distance along and across the line (or inf), and `size`."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     root = np.hypot(a, b)

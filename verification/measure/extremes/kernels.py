@@ -118,7 +118,7 @@ def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
 
 
 def made_unit(family: Family, state: list[Any]) -> list[Any]:
-    """An 80-bit state whose pairs of numbers are scaled to length one, which they have to 53 bits only as doubles.
+    """An 80-bit state, with pairs of numbers scaled to length one; as doubles they have this length to 53 bits only.
 
     >>> from numeric import PinballMap
     >>> u, v = made_unit(PinballMap("cardioid").family, [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])

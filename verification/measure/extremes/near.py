@@ -49,7 +49,7 @@ UNIT, DIGITS = 2.0**-52, 15  # of a float64
 
 
 class StabilityVerdict(Enum):
-    """The verdict on a computed answer; the enum value explains it to a user."""
+    """The verdict on a computed answer; the value of a member is its explanation for a user."""
 
     STABLE = "as right as rounded data allow"
     SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
@@ -133,7 +133,7 @@ class ChordSystem:
 
 
 def nearly_round(gap: Expr) -> Sought:
-    """The short axis of the ellipse `a = 1 + gap`; its multipliers are near 1, those of a circle's diameters."""
+    """The short axis of the ellipse `a = 1 + gap`; its multipliers are near 1, their value for a circle."""
     return Problem(tables.ellipse.at(a=1 + gap), (0, 0), lam=Rational(1, 3)), [1.5707963, -1.5707964]
 
 

@@ -125,7 +125,7 @@ def momenta(map: PinballMap, rows: list[Any]) -> Any:
 
 
 def turning(asked: Long) -> list[Finding]:
-    """Error of the engine's `theta` after `n` bounces in the elastic circle; `theta + n*(pi - 2*phi)` is exact."""
+    """Error of `theta` after `n` bounces in the elastic circle, where `theta + n*(pi - 2*phi)` is the exact value."""
     map = PinballMap("circle", lam=1)
     rows = entered(map, *starts(asked.particles))
     (theta, phi), said = advanced(map, rows, asked.bounces)

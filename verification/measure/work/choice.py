@@ -173,7 +173,9 @@ class ArithmeticChoice:
 
 
 def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
-    """The methods that may be chosen, from some rows: none from textbooks, and only those compared with the truth."""
+    """The methods in some rows that may be chosen: no textbook methods, and none that was not compared with the
+    truth.
+    """
     made = []
     for row in rows:
         if row.kept and row.promise and not row.textbook and row.method != "mpmath, no gmpy2":
@@ -183,7 +185,7 @@ def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
 
 
 def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
-    """The text of a JSON file with the methods, from some rows, that may be chosen."""
+    """The methods in some rows that may be chosen, as the text of a JSON file."""
     kept: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
         kept.setdefault(row.question, []).extend(
@@ -270,7 +272,7 @@ HOPELESS = 400.0  # digits: an orbit that loses more counts as losing all
 def for_orbit(
     map: PinballMap, start: tuple[float, float, int], bounces: int, digits: int, proof: bool = False
 ) -> ArithmeticChoice:
-    """The method that follows a particle from `start` (parameter, exit angle, component) to `digits` final digits.
+    """A method to follow a particle from `start` (parameter, exit angle, component) that leaves `digits` at the end.
 
     >>> circle = PinballMap("circle", lam="0.5")
     >>> for_orbit(circle, (0.3, 0.2, 0), 10, 10).arithmetic, for_orbit(circle, (0.3, 0.2, 0), 10, 20).arithmetic

@@ -39,7 +39,7 @@ STRIDE = 0.2  # step, over the distance in the contraction from its birth
 def cycle(
     name: str, title: str, table: Table, at: Rational, start: tuple[float, ...], own: PinballMap, settles: bool
 ) -> Question:
-    """Benchmark on the bounces of a cycle at `lam = at`, for the map `own`; `settles` tells that particles reach it."""
+    """Benchmark on the bounces of a cycle at `lam = at`, for the map `own`; `settles` says if particles reach it."""
     problem = Problem(table, (0,) * len(start), lam=at)
     usual = textbook_cycle(own, (start[0], first_exit(problem, start)), len(start), settles)
     what = f"a cycle of period {len(start)} of the {table.name}, lam = {at}"
@@ -55,7 +55,7 @@ def cycle_question(
     usual: Sequence[Method],
     here: bool = False,
 ) -> Question:
-    """Benchmark on the bounces of a cycle, in every arithmetic, against `usual` methods; `here`: in this process."""
+    """Benchmark on the bounces of a cycle, in every arithmetic, against `usual` methods; if `here`, in this process."""
 
     def certified(digits: int) -> list[arb]:
         return list(whole(proof_near(problem, list(start), digits)).enclosure.zero)

@@ -220,7 +220,7 @@ def running(map: PinballMap, bound: float) -> Method:
 
 
 def stepped(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """Parameter and exit angle of the first few particles after one step; the step moves all particles."""
+    """Parameter and exit angle of the first few particles after one step, which is made for all particles."""
     landed = map.step(theta, phi)
     return [float(x) for pair in zip(landed.theta[: len(PARTICLES)], landed.phi, strict=False) for x in pair]
 

@@ -63,7 +63,7 @@ def egg(alpha: str, lam: str) -> PinballMap:
 
 
 def landing(bounces: int, digits: int) -> str:
-    """The last landing of a benchmark particle in the egg, with guard digits: a bounce loses under 1/5 of a digit."""
+    """The last landing of a benchmark particle in the egg, as text; a bounce loses less than 1/5 of a digit."""
     last, _ = egg_orbit(("0.3", "0.2"), bounces, digits + bounces // 5, "0.08", "0.5")[-1]
     own = last.context
     return str(own.nstr((last + own.pi) % (2 * own.pi) - own.pi, digits))

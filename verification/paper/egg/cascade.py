@@ -91,7 +91,7 @@ def tongue(claim: Claim) -> Judgement:
 
 @judges("egg.small_basins")
 def small_basins(claim: Claim) -> Judgement:
-    """If 100 independent starts miss a basin, how likely is this? The probability is computed exactly."""
+    """Computes exactly the probability that 100 independent random starts all miss a basin."""
     missed = Rational(999, 1000) ** 100
     return Judgement(
         by(
@@ -124,7 +124,7 @@ def representative(claim: Claim) -> Judgement:
 
 @cache
 def cycles_for_small_lam() -> SignFinding:
-    """The finding that, for every contraction up to `PROVED`, at most three cycles are not unstable."""
+    """The finding that, for every contraction up to `PROVED`, all cycles but at most three are unstable."""
     ends, scene = [PROVED * k / 3 for k in range(4)], Scene("egg", alpha=SHAPE)
     return answer(
         all(FewAttractingCycles(scene, band, (12288, 256), 32, 3).proved for band in pairwise(ends)),

@@ -198,7 +198,7 @@ def near(theta: arb, x: float) -> float:
 
 @judges("map.weak_chaos")
 def weak_chaos(claim: Claim) -> Judgement:
-    """No cycle is an attracting set, and every orbit on an attracting set that misses cusp and joins is unstable."""
+    """No cycle is an attracting set; on any attracting set, orbits that miss cusp and joins are unstable."""
     return Judgement(
         by(
             "in the cardioid, for every lam < 1, every orbit that misses the cusp stretches in one direction and "

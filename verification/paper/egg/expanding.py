@@ -95,7 +95,7 @@ def before(lam: str) -> tuple[str, float]:
 
 @cache
 def expands() -> SignFinding:
-    """The finding that the extent at each listed contraction is larger than on a range of smaller ones from `FIRST`."""
+    """The finding that, at each listed contraction, the extent is larger than on a range of smaller contractions."""
     steps = []
     for lam, low in reach().items():
         stop, most = before(lam)

@@ -110,7 +110,7 @@ def apart() -> SignFinding:
 
 @judges("egg.three_attractors")
 def three(claim: Claim) -> Judgement:
-    """Each contraction has at least three attractors; in a window, two cycles attract near each diameter."""
+    """At each contraction there are at least three attractors; in a window, two cycles attract near each diameter."""
     near = [sorted(vertices(a)) for a in cycles(egg(WINDOW), PERIOD)]
     six = by(
         f"six cycles of period {PERIOD} attract at lam = {WINDOW}, in three regions",
@@ -188,7 +188,7 @@ def goes_over(lam: str, start: tuple[float, float]) -> bool:
 
 @cache
 def merges() -> SignFinding:
-    """The finding that, between two contractions, the three regions stop existing and a tangency lies there."""
+    """The finding that the three regions exist at one contraction but not at a larger one; a tangency is in between."""
     chaos, tangency = strange(SHAPE, "merging")
     inside = bool(ball(LAST) < tangency) and bool(tangency < ball(MERGED))
     return by(

@@ -123,7 +123,7 @@ def edge() -> BasinEdge:
 
 @judges("map.smooth_basin_boundaries")
 def smooth_boundaries(claim: Claim) -> Judgement:
-    """Basins have smooth boundaries near the contraction of the paper's figure, and in nearly round eggs."""
+    """The basins have smooth boundaries near the contraction of the paper's figure, and in nearly round eggs."""
     return Judgement(
         by(
             "stable manifolds of saddles bound the basins: in the figure of the crisis and in nearly round eggs",

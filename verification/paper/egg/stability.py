@@ -216,7 +216,7 @@ def cut() -> tuple[np.ndarray, np.ndarray]:
 def chaotic_interval(claim: Claim) -> Judgement:
     """A search gives the first contraction at which most particles are chaotic, and the last at which some are.
 
-    Strange attractors that are proved near a tangency may be too small for a search, so they do not refute the claim.
+    The claim is about a search, so it is not refuted by strange attractors that are proved but too small to be found.
     """
     lams, chaotic = cut()
     first, last = lams[chaotic >= 20][0], lams[chaotic >= 4][-1]

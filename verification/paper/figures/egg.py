@@ -145,7 +145,7 @@ def perturbed_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_perturbed_slap(panels: Panels) -> "Figure":
-    """Draws the curve for contraction 0, the points for others with a mark for each, and the diagonal."""
+    """Draws the curve for contraction 0, points with a different mark for each other contraction, and the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot([-np.pi, np.pi], [-np.pi, np.pi], **(FAINT | {"color": "0.3"}))

@@ -186,7 +186,7 @@ def existence(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_signs")
 def signs(claim: Claim) -> Judgement:
-    """The signs are proved: the lower limit of one growth rate is positive, the upper limit of the other negative."""
+    """The lower limit of one growth rate is proved to be positive, the upper limit of the other to be negative."""
     return Judgement(
         both_signs(),
         f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "

@@ -204,7 +204,7 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.chaotic_above_star")
 def chaotic_above_star(claim: Claim) -> Judgement:
-    """Chaos is proved up to 1/10 and above; that both belong to one attractor is not proved."""
+    """Chaos is proved up to 1/10 by a polygon, and above by a cone of beams; not that it is on one attractor."""
     return Judgement(
         by(
             "from lambda* to 1/10, and from there to 1, almost every start of an open set stretches, and "

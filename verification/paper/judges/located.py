@@ -81,7 +81,7 @@ def phi_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.corner_orbit")
 def corner_orbit(claim: Claim) -> Judgement:
-    """The orbit through both corners exists, is unique in a box, and has this minimal period: all proved."""
+    """The orbit through both corners is proved to exist, to be unique in a box, and to have minimal period 4."""
     return Judgement(
         by("exactly one such orbit in a box around the printed values", certified("lambda-star")),
         "the orbit through both joins at lambda*",

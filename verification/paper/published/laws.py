@@ -51,7 +51,7 @@ def double_normal(sigma: Expr) -> Matrix:
 
 @judges("law.stability")
 def stability(claim: Claim) -> Judgement:
-    """Near the elastic law, laws exist under which an elliptic double normal attracts, and others where it repels."""
+    """An elliptic double normal attracts under some laws close to the elastic law, and repels under others."""
     a, sigma = tables.ellipse.shapes[0].symbol, Symbol("sigma", positive=True)
     matrix = double_normal(sigma).subs(a, Rational(3, 2))
     trace, determinant = matrix.trace().expand(), matrix.det().expand()
@@ -82,7 +82,7 @@ def landing(formula: Expr) -> tuple[SignFinding, Expr]:
 
 @judges("law.rotation")
 def rotation(claim: Claim) -> Judgement:
-    """In the circle, if `F(-p) = p` and `|F'(-p)| < 1`, the line `phi = p` attracts, and the map rotates it."""
+    """In the circle, if `F(-p) = p` and `|F'(-p)| < 1`, the line `phi = p` attracts; on it the map is a rotation."""
     p, mu, sigma = Symbol("p", real=True), Symbol("mu"), Symbol("sigma", real=True)
     circle = {"K0": -1, "K1": -1, "t": 2 * cos(phi), "cos_phi0": cos(phi), "cos_eta1": cos(phi)}
     spectrum = derivative_matrix(**circle, lam=sigma).charpoly(mu).as_expr()

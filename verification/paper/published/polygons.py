@@ -102,7 +102,7 @@ def _starts(count: int, sides: int = 3) -> tuple[NDArray[np.float64], NDArray[np
 
 @judges("triangle.expansion")
 def expansion(claim: Claim) -> Judgement:
-    """Of two consecutive bounces, one lands at 30 degrees or more; so two bounces stretch by at least a factor."""
+    """Of two consecutive bounces, one lands at 30 degrees or more, so any two bounces stretch by a factor above 1."""
     x = Symbol("x", positive=True)
     box = {lam: Interval.open(0, 1), x: Interval.Ropen(0, Rational(1, 6))}  # x in units of pi
     stretch = cos(lam * x) / cos(x)

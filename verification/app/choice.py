@@ -33,9 +33,9 @@ MOST = 500  # bounces drawn
 
 @dataclass(frozen=True)
 class Choice:
-    """A table by name or formula, its shape and contraction as text, where the particle starts and how far it flies.
+    """The table (name or formula), its shape and contraction as text, the particle's start and its number of bounces.
 
-    The default particle ends on the triangle, a cycle of period 3.
+    The default particle ends on an attracting cycle of period 3.
     """
 
     table: str = "egg"
@@ -54,7 +54,7 @@ class Choice:
         return next(iter(PAPER.get(self.table, ())), None)
 
     def scene(self) -> Scene:
-        """The scene of the choice; `ValueError` with one sentence where its texts give none."""
+        """The scene of the choice; `ValueError` with a one-sentence message if its texts do not describe one."""
         given = {name: self.shape if name == self.parameter else None for name in DEFAULTS}
         law = None if self.law == UNIFORM else self.law
         if self.table == OWN:
@@ -143,7 +143,7 @@ class BoundaryParticle:
 
 
 def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float]) -> BoundaryParticle:
-    """The particle on the boundary point nearest to `(x, y)` that flies towards a point.
+    """The particle that starts at the boundary point nearest to `(x, y)` and flies towards the point `towards`.
 
     >>> particle = particle_at(PinballMap("circle", lam=1), 0.0, 2.0, (0.0, 0.0))
     >>> round(particle.theta, 6), round(particle.phi, 6) + 0.0
@@ -163,7 +163,7 @@ def particle_at(map: PinballMap, x: float, y: float, towards: tuple[float, float
 
 
 def placed(map: PinballMap, choice: Choice) -> Choice:
-    """The choice with `theta` moved to the middle of its component where it is outside its range.
+    """The choice, in which a `theta` outside the range of its component is replaced by the middle of the range.
 
     >>> from symbolic.tables.gallery import GALLERY
     >>> placed(PinballMap(GALLERY["diamond"]()), Choice("diamond")).theta == 3 * np.pi / 4
@@ -184,7 +184,7 @@ def tip(map: PinballMap, particle: BoundaryParticle, length: float) -> tuple[flo
 
 
 def phase(map: PinballMap, orbit: Orbit) -> Curve:
-    """`s` from `-L/2` to `L/2`, with `L` the perimeter, and `sin(phi)`, at every bounce until the particle stops."""
+    """The phase points `(s, sin(phi))` of all bounces until the particle stops; `s` is 0 in the middle of its range."""
     made = orbit.code == 0
     return Curve(arc_length(map, orbit.component[made], orbit.theta[made]), np.sin(orbit.phi[made]))
 
@@ -197,7 +197,7 @@ def particle_in_phase(map: PinballMap, s: float, sin_phi: float) -> BoundaryPart
 
 
 def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int = 1) -> Iterator[Curve]:
-    """Endless portions of phase space `(s, sin(phi))`: random particles, each portion a few bounces further."""
+    """Yields the phase points of random particles without end, a few bounces of all particles at a time."""
     starts = interior_starts(map, particles, seed)
     component, theta, phi = starts.component, starts.theta, starts.phi
     while True:
@@ -207,7 +207,7 @@ def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int =
 
 
 def cycle_near(map: PinballMap, particle: BoundaryParticle) -> Cycle | None:
-    """The attracting cycle on which the particle's orbit ends, or another one near its nearest return; None if none.
+    """The attracting cycle on which the particle's orbit ends; otherwise a cycle near one of its returns, or None.
 
     >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), BoundaryParticle(0, 1.5, 0.01))
     >>> axis.period
@@ -228,7 +228,7 @@ SETTLED = 1e-4  # in lengths and radians: an orbit that has settled returns to w
 
 
 def _returning(map: PinballMap, particle: BoundaryParticle, within: float) -> Cycle | None:
-    """The cycle that Newton's method finds from one of the particle's returns, nearest first; None without one."""
+    """The cycle that Newton's method finds from the particle's returns closer than `within`, nearest first, or None."""
     orbit = map.orbit(particle.theta, particle.phi, LONGEST, particle.component)
     if orbit.code[-1]:
         return None
@@ -245,9 +245,9 @@ LAMS, EACH, SHOWN = 201, 6, 48  # contractions of the strip, particles of each, 
 
 
 def strip(choice: Choice, seed: int = 1) -> tuple[Curve, Array, Array]:
-    """Points `(lam, s)` of orbits after a long time; the contractions; the largest exponent at each of them.
+    """Points `(lam, s)` of orbits after a long time; the contractions; the largest exponent at each contraction.
 
-    `ValueError` where the formula is no law at some contraction.
+    `ValueError` if the formula is not a law at some contraction.
     """
     map = replace(choice, lam="1").map()
     lams = np.linspace(0, 1, LAMS)

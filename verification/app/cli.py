@@ -1,7 +1,7 @@
 """`pinball`: the command line, with the output and the errors that all commands share.
 
-A command is imported when it is called, so `pinball --help` loads no mathematics. People read text and a bar,
-programs read JSON. Whatever goes wrong is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
+A command is imported when it is called, so `pinball --help` loads no mathematics. Output is text with a progress bar
+for people, or JSON for programs. An error is one sentence on standard error; `PINBALL_DEBUG=1` adds the traceback.
 """
 
 import gc
@@ -42,7 +42,7 @@ PATIENCE = 2.0  # seconds before a progress bar appears
 
 
 def columns() -> int:
-    """The width of the terminal, or COLUMNS where it is set, within bounds."""
+    """The width of the terminal, or COLUMNS if it is set, clipped to a fixed range."""
     return min(max(shutil.get_terminal_size().columns, NARROWEST), WIDEST)
 
 
@@ -68,7 +68,7 @@ class Output:
 
     @property
     def wanted(self) -> bool:
-        """Is a document or a picture asked for?"""
+        """True if a JSON document or a picture was asked for."""
         return self.path is not None or self.plot is not None
 
     def write(self, document: Mapping[str, Any], *results: Any) -> None:
@@ -145,7 +145,7 @@ def _writable(context: click.Context, option: click.Parameter, value: str | None
 
 
 def _refuse(value: str, accepted: str) -> Path:
-    """The path of a file that may be written; any other is refused."""
+    """The path, if a file can be written there; otherwise raises click's error."""
     path = Path(value)
     try:
         path.exists()
@@ -162,7 +162,7 @@ def _refuse(value: str, accepted: str) -> Path:
 
 
 def _drawable(context: click.Context, option: click.Parameter, value: str | None) -> Path | None:
-    """The path of a picture; one of unknown format, or that cannot be drawn or written, is refused before any work."""
+    """The path of the picture; a file that cannot be drawn or written is refused before any work."""
     if value is None:
         return None
     from verification.plots.sheet import FORMATS
@@ -183,7 +183,7 @@ class Whole(click.IntRange):
     """
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number; click's error, with what is accepted, for anything else."""
+        """The number; raises click's error, which says what is accepted, for anything else."""
         if isinstance(value, str) and len(value) > DIGITS:
             self.fail(f"{value[:DIGITS]!r}... has {len(value)} digits", param, ctx)
         return super().convert(value, param, ctx)
@@ -199,7 +199,7 @@ json_option = click.option(
 
 
 def plot_option(kind: str, about: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Decorator that gives a command `--plot FILE`, where `Output.write` draws its results by the function `kind`."""
+    """Decorator that adds the option `--plot FILE` to a command; the function `kind` draws the command's results."""
 
     def given(command: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(command)
@@ -269,7 +269,7 @@ LONGEST = 600  # characters of an error; of a longer one the middle is left out
 
 
 class Questions(click.Group):
-    """A command group with its commands' names and one-line helps, which imports a command only when it is called."""
+    """A command group that knows its commands' names and short helps, and imports a command only when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -343,14 +343,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _no_streams() -> int:
-    """Prints that standard output is closed, unless standard error is too; the status of bad input."""
+    """Prints that standard output is closed, unless standard error is closed too; returns the status of bad input."""
     if sys.stderr is not None:
         sys.stderr.write("pinball: standard output is closed; accepted: an open one, or > FILE\n")
     return BAD_INPUT
 
 
 def _discard_output() -> None:
-    """Discards what is left to be written, since the last flush would fail."""
+    """Discards the output that is still buffered, since flushing it at exit would fail."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -434,14 +434,14 @@ def document(found: "xr.Dataset", store: Path | None) -> dict[str, Any]:
 
 
 def _read(value: Any) -> Any:
-    """The value of an attribute; JSON text is read."""
+    """The value of an attribute; a text that holds a JSON object is parsed."""
     return json.loads(value) if isinstance(value, str) and value.startswith("{") else value
 
 
 async def refusal(words: Sequence[str], seconds: float) -> str | None:
     """Runs a command in another process; returns the error that it prints, or None if it succeeds.
 
-    The process is ended after `seconds`. What it reads, proves and compiles stays in the cache on disk.
+    The process is ended after `seconds`. What it reads, proves and compiles is kept in the cache on disk.
     """
     import asyncio
 

@@ -1,6 +1,6 @@
-"""Curves of drawings: what SVG and DXF files show, as straight sides, Bezier curves and arcs of conics.
+"""Reads SVG and DXF files: their curves as straight sides, Bezier curves and arcs of conics.
 
-What is not drawn (hidden layers, dimensions, texts) is left out. Numbers are the decimals that the file shows.
+Hidden layers, dimensions and texts are left out. Numbers are exactly the decimals in the file.
 """
 
 import io
@@ -33,7 +33,7 @@ LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
 class DrawnRun(NamedTuple):
-    """A chain of pieces, its layer, and whether it is a page's background, white or unfilled."""
+    """A chain of pieces, its layer, and whether it is the background of a page (white or unfilled)."""
 
     sides: Run
     layer: str
@@ -49,12 +49,12 @@ class Drawing(NamedTuple):
 
 
 def shown(value: float) -> Fraction:
-    """The shortest decimal that rounds to this float: the number in the file, if nothing moved it."""
+    """The shortest decimal that rounds to this float: the number in the file, if nothing has transformed it."""
     return Fraction(repr(float(value)))
 
 
 def arc_between(p: Point, q: Point, v: tuple[float, float] | None, sweep: float) -> ConicArc:
-    """The arc from `p` to `q` that turns by an angle `sweep`: of a circle, or of an ellipse with velocity `v` there."""
+    """The arc from `p` to `q` that turns by `sweep`, of a circle, or of an ellipse with velocity `v` at `p`."""
     quarters = floor(abs(sweep) / (pi / 2) + NEAR)
     rest = shown(tan(max(abs(sweep) - quarters * pi / 2, 0.0) / 2))
     rest = Fraction(0) if rest < NEAR else rest
@@ -79,7 +79,7 @@ def whole(centre: Any, u: Any, v: Any) -> ConicArc:
 
 
 def of_svg(path: str, text: str) -> Drawing:
-    """The shapes of an SVG file, with `y`, which points down there, turned round so that the table looks as drawn."""
+    """The shapes of an SVG file; `y`, which points down in SVG, is reversed so that the table looks as drawn."""
     import svgelements as svg
 
     try:
@@ -122,7 +122,7 @@ def of_svg(path: str, text: str) -> Drawing:
 
 
 def _page_scale(path: str, root: ElementTree.Element, box: list[float]) -> Fraction | None:
-    """Factor from the view box to the page: the smaller one of both directions, or the larger for `slice`."""
+    """Page units per unit of the view box: the smaller of the factors in x and y, or the larger one for `slice`."""
     sizes = [LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height")]
     if len(box) != 4 or not (box[2] and box[3]):
         return None
@@ -144,7 +144,7 @@ def _pixels(given: str | None) -> float:
 
 
 def _shapes(path: str, root: ElementTree.Element) -> int:
-    """How many elements are drawn when every `use` is replaced by what it names."""
+    """The number of elements that are drawn, each `use` counted as the elements it refers to."""
     named = {e.get("id"): e for e in root.iter() if e.get("id")}
     known: dict[int, int] = {}
 
@@ -162,7 +162,7 @@ def _shapes(path: str, root: ElementTree.Element) -> int:
 
 
 def _label(element: ElementTree.Element, layer: str, page: list[float]) -> None:
-    """Writes the name of its group into every shape, and replaces percentages by lengths of the page."""
+    """Writes into every shape the name of its group, and replaces percentages by lengths on the page."""
     if element.tag in UNDRAWN:
         inner = ElementTree.Element(element.tag, element.attrib)
         inner.extend(list(element))
@@ -180,7 +180,7 @@ def _label(element: ElementTree.Element, layer: str, page: list[float]) -> None:
 
 
 def _of_shape(svg: Any, path: str, element: Any) -> Iterator[Run]:
-    """The closed curves of a shape, with its transformations carried out."""
+    """The curves of a shape, after its transformations have been applied."""
     drawn = svg.Path(element).reify()  # which carries out rotations and skews
     if isinstance(element, svg.Circle | svg.Ellipse):
         arcs = [segment for segment in drawn if isinstance(segment, svg.Arc)]
@@ -265,7 +265,7 @@ def moved(side: Side, p: Point, q: Point) -> Side:
 
 
 def _chained(sides: Iterable[Side]) -> Iterator[Side]:
-    """The pieces, each moved to start where the one before ends; those of no length are left out."""
+    """The pieces, without those of zero length; small gaps between one and the next are closed."""
     last = None
     for side in sides:
         p, q = ends(side)
@@ -353,7 +353,7 @@ def _of_entity(entity: Any) -> Iterator[Run]:
 
 
 def _of_round(entity: Any, kind: str) -> ConicArc:
-    """A circle, an ellipse, or an arc of one, seen along the z axis."""
+    """The circle, ellipse or arc of either that a DXF entity describes, as seen along the z axis."""
     dxf = entity.dxf
     if kind == "ELLIPSE":
         c, u, v = dxf.center, dxf.major_axis, entity.minor_axis

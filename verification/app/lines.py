@@ -14,7 +14,7 @@ PLACES = range(6, 1, -1)  # decimals of float64, as many as fit
 
 
 def console(stderr: bool = False, width: int | None = None) -> "Console":
-    """A console for people: on a terminal lines break at words, in a file each sentence is one line."""
+    """A console for people: a terminal breaks lines at words, a file has each sentence on one line."""
     from rich.console import Console
 
     class Lines(Console):
@@ -27,12 +27,12 @@ def console(stderr: bool = False, width: int | None = None) -> "Console":
 
 
 def on_terminal(text: str, stream: TextIO, width: int) -> str:
-    """The text, broken into lines of `width` letters if the stream is a terminal."""
+    """The text; if the stream is a terminal, it is broken into lines of `width` letters."""
     return wrapped(text, width) if stream.isatty() else text
 
 
 def wrapped(text: str, width: int) -> str:
-    """The text with long lines broken at words; continuation lines start at the last column, or are indented.
+    """The text with long lines broken at words; continuation lines are indented, in a table to its last column.
 
     >>> print(wrapped("egg   a table with three points that is convex", 30))
     egg   a table with three
@@ -76,10 +76,10 @@ def widest(lines: Sequence[str]) -> int:
 
 
 def of_bounces(entries: Sequence[Mapping[str, Any]], keys: Sequence[str], width: int) -> list[str]:
-    """Lines of text for bounces, one each with all digits where these fit `width` letters.
+    """Lines of text for bounces: one line per bounce with all digits, if that fits `width` letters.
 
-    Elsewhere float64 numbers are rounded, and a component or status that all bounces share is printed once; numbers of
-    more digits have a line each.
+    Otherwise float64 numbers are rounded, and a component or status that all bounces share is printed once; numbers
+    with more digits get a line each.
 
     >>> rows = [{"component": "egg", "theta": x, "status": "regular"} for x in (0.1, -2.25)]
     >>> of_bounces(rows, ("component", "theta", "status"), 80)[1:]
@@ -110,7 +110,7 @@ def of_bounces(entries: Sequence[Mapping[str, Any]], keys: Sequence[str], width:
 
 
 def _one(index: int, entry: Mapping[str, Any], keys: Sequence[str]) -> list[str]:
-    """The lines of a bounce whose numbers have a line each."""
+    """The lines for a bounce whose numbers are printed on one line each."""
     words = [str(entry[key]) for key in ("component", "status") if key in keys]
     numbers = [key for key in keys if key not in ("component", "status") and entry[key] is not None]
     wide = max(len(key) for key in numbers)
@@ -128,9 +128,9 @@ def _exact(value: Any) -> str:
 
 
 def short(value: Any, places: int = 6, size: float | None = None) -> str:
-    """A number with `places` decimals, or with a power of ten where it is too small or large for them; text unchanged.
+    """A number with `places` decimals, or in scientific notation if too small or large; other values as text.
 
-    `size` is the largest number of its column, where that is not the number itself.
+    `size` is the number that decides on the notation, such as the largest of a column; by default the number itself.
 
     >>> short(0.25), short(-1.5e-9), short(2.5e12), short(0.0), short(None)
     ('0.250000', '-1.50e-09', '2.50e+12', '0.000000', '-')

@@ -143,7 +143,7 @@ class LiveTable:
             each.on_event(Tap, self._picked)
 
     def view(self) -> Any:
-        """The page; on a narrow window the table comes before the controls, and the texts to copy come last."""
+        """The page; on a narrow window the table comes before the controls, and texts that can be copied come last."""
         controls = (self.table, self.formula, self.shape, self.law, self.lam, self.bounces)
         texts = (self.command, self.copies[0], self.python, self.copies[1])
         narrow = {"flex": "1 1 300px", "max-width": "360px"}
@@ -165,7 +165,7 @@ class LiveTable:
     # ---- what changes
 
     def rebuild(self) -> None:
-        """Takes another table, shape or contraction; for bad input shows a sentence and keeps the old scene."""
+        """Takes another table, shape or contraction from the widgets; bad input shows an error, and nothing changes."""
         if self.table.value != self.choice.table:
             self._other_table()
             return
@@ -179,7 +179,7 @@ class LiveTable:
             self._take(wanted)
 
     async def _try(self, wanted: Choice) -> None:
-        """Reads a new formula in another process, so that no other visitor waits for it."""
+        """Tries a new formula in another process, so that other visitors need not wait for it."""
         why = await refusal(shlex.split(wanted.command())[1:], PATIENCE)
         same = self.formula.value == wanted.formula and self.law.value == wanted.law
         if same and self.table.value == wanted.table:  # the visitor has not typed on
@@ -207,7 +207,7 @@ class LiveTable:
         self.portions, self.left = filling(self.map), PORTIONS
 
     def _strip(self) -> None:
-        """Draws the bifurcation diagram anew for another table or law, and moves the line at the contraction."""
+        """Moves the line at the contraction, and draws the bifurcation diagram anew if the table or the law changed."""
         for mark in self.marks:
             mark.location = self.lam.value
         family = str(self.choice.scene().at(lam=0))
@@ -222,7 +222,7 @@ class LiveTable:
         self.diagram.data, self.growth.data = dict(zip("xy", points, strict=True)), {"x": lams, "y": nu}
 
     def _restored(self, choice: Choice) -> None:
-        """Sets the page to a choice, such as an address gives; formulas in it are read as if they had been typed."""
+        """Sets the page to a choice, such as that of an address; its formulas are read as if they had been typed."""
         self.choice = replace(choice, law=self.choice.law)
         self.table.value, self.formula.visible = choice.table, choice.table == OWN
         self.formula.value, self.shape.value, self.law.value = choice.formula, choice.shape, choice.law
@@ -265,7 +265,7 @@ class LiveTable:
         self.python.value = self.choice.python()
 
     def fill(self) -> None:
-        """Draws one more portion of phase space."""
+        """Draws the next points of phase space."""
         if self.left > 0:
             self.left -= 1
             self.cloud.stream(dict(zip("xy", next(self.portions), strict=True)))
@@ -302,11 +302,11 @@ class LiveTable:
     # ---- what the visitor does
 
     def _picked(self, event: Any) -> None:
-        """Sets the contraction to the place of a click on the diagram."""
+        """Sets the contraction to the one at which the diagram was clicked."""
         self.lam.value = round(float(np.clip(event.x, 0, 1)), 3)
 
     def start(self, particle: BoundaryParticle) -> None:
-        """Starts the orbit anew from `particle`."""
+        """Starts a new orbit from `particle`."""
         before = self.choice
         self.choice = replace(before, component=particle.component, theta=particle.theta, phi=particle.phi)
         try:
@@ -333,7 +333,7 @@ class LiveTable:
 
 
 def in_turn(change: Callable[[], None]) -> None:
-    """Makes a change when this page's lock is held; Panel calls a widget's watchers without it."""
+    """Schedules a change to run with this page's lock held; Panel calls the watchers of widgets without it."""
     pn.state.execute(change, schedule=True)
 
 
@@ -343,13 +343,13 @@ def _pane(picture: Any) -> Any:
 
 
 def _column(parts: Sequence[Any], styles: dict[str, str], phone: int = 0) -> Any:
-    """Parts below each other; on a narrow window columns are ordered by `phone`."""
+    """`parts` in a column; `phone` is the position of the column on a narrow window."""
     order = f"@media (max-width: {PHONE}px) {{ :host {{ order: {phone}; }} }}"
     return pn.Column(*parts, sizing_mode="stretch_width", styles=styles, stylesheets=[order])
 
 
 def page() -> Any:
-    """A new page for a visitor, showing the choice in its address."""
+    """A new page for a visitor, which shows the choice that its address describes."""
     location = pn.state.location
     said = dict(parse_qsl(location.search.lstrip("?"))) if location is not None and location.search else {}
     if pn.state.curdoc is not None:
@@ -364,8 +364,7 @@ FORGOTTEN = 15_000  # milliseconds after which the table of a visitor who left i
 def serve(port: int, show: bool, **more: Any) -> Any:
     """Serves the page on this machine only, until it is interrupted.
 
-    Pages of other addresses cannot talk to it: only its own origin is allowed, and the variables of the environment
-    that would allow others are removed.
+    Only the page's own origin may connect; environment variables that would allow others are removed.
     """
     pn.config.raw_css = [STYLE]
     for name in FROM_OUTSIDE:

@@ -1,9 +1,8 @@
 """Tables from files of data: points, polygons of GIS programs (GeoJSON, WKT), drawings in SVG or DXF.
 
-The exact table is what the file says: a decimal is the decimal it shows. SVG files are read by svgelements, DXF files
-by ezdxf, both optional packages. Pieces that end where others begin are joined; arcs of circles and ellipses stay what
-they are, unless the outline has Bezier curves as well: then they become cubic curves that miss them by less than 1e-7
-of their radius.
+The table is exact: each decimal in the file is taken as the number it shows. SVG files are read by svgelements, DXF
+files by ezdxf, both optional packages. Pieces are joined end to end. Arcs of circles and ellipses are kept; only if the
+outline has Bezier curves as well, they are replaced by cubic curves within 1e-7 of their radius.
 """
 
 from collections.abc import Iterable
@@ -42,14 +41,14 @@ class Data(NamedTuple):
 
 
 class Outline(NamedTuple):
-    """A table, and sentences about what was read, left out and closed."""
+    """A table, and sentences about how the file was read: what was left out, what was closed."""
 
     table: "Table"
     notes: list[str]
 
 
 def read(data: Data) -> Outline:
-    """The table of the option --data, with notes; `ValueError` with a sentence where the file holds none."""
+    """The table of the option --data, with notes; `ValueError` if the file holds no table."""
     ending = Path(data.path).suffix.lower()
     drawing = ending in (".svg", ".dxf")
     text = _text("--data", data.path, "latin-1" if ending == ".dxf" else "utf-8-sig")
@@ -78,7 +77,7 @@ def _of_text(data: Data, text: str) -> Outline:
 
 
 def _fitted(data: Data, rings: "list[list[Point]]", smoothness: int | None) -> Outline:
-    """The table from points: a curve fitted to one ring, or a polygon with holes from several."""
+    """The table from points: a curve or a polygon through one ring, or a polygon with holes through several rings."""
     from symbolic import tables
     from symbolic.tables.measured import unclosed
 
@@ -198,7 +197,7 @@ def _bounded(data: Data, curves: "list[Run]", unit: str | None, notes: list[str]
 
 
 def _aligned(curve: "Run", tolerance: Fraction) -> "Run":
-    """The curve, its tangents made equal at each join where they agree up to rounding or the tolerance."""
+    """The curve; at each join whose tangents differ only by rounding or the tolerance, they are made equal."""
     from symbolic.tables.outlines import ConicArc, aligned_arcs
     from symbolic.tables.polynomial import aligned, elevated
 
@@ -210,7 +209,7 @@ def _aligned(curve: "Run", tolerance: Fraction) -> "Run":
 
 
 def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
-    """A sentence about joins with a curved piece that bend so little that they may be meant to be smooth, if any."""
+    """Yields a sentence about joins of curved pieces whose angle is so small that they may be meant as smooth."""
     from symbolic.tables.outlines import ConicArc, directions, shorter
     from symbolic.tables.polynomial import elevated
 
@@ -231,7 +230,7 @@ def _nearly_smooth(curves: "list[Run]") -> Iterable[str]:
 
 
 def _cubics(side: "Side") -> "list[Side]":
-    """An arc as cubic curves of at most 11.25 degrees each; any other piece alone."""
+    """The cubic curves that replace an arc, each over at most 11.25 degrees; a piece that is not an arc is kept."""
     from symbolic.tables.outlines import ConicArc
 
     if not isinstance(side, ConicArc):
@@ -259,7 +258,7 @@ def _cubics(side: "Side") -> "list[Side]":
 
 
 def _joined(data: Data, runs: "list[Run]", notes: list[str]) -> "list[Run]":
-    """The closed curves formed by chains of pieces end to end, in whichever direction each was drawn."""
+    """The closed curves formed by joining pieces end to end, whatever the direction in which each was drawn."""
     from symbolic.tables.outlines import ConicArc
     from verification.app.drawings import ends, moved
 
@@ -307,7 +306,7 @@ def _joined(data: Data, runs: "list[Run]", notes: list[str]) -> "list[Run]":
 
 
 def _open(end: "Point", curve: "Run", left: "dict[int, Run]", near: Fraction, branches: int) -> str:
-    """The sentence of an error: an outline stays open at a point, or branches there."""
+    """An error message: an outline is open at the point `end`, or branches there."""
     x, y = map(float, end)
     where = f"an outline {'branches' if branches else 'is open'} at ({x:.12g}, {y:.12g})"
     others = [p for run in (*left.values(), curve) for p in _both(run) if p != end]
@@ -323,7 +322,7 @@ def _open(end: "Point", curve: "Run", left: "dict[int, Run]", near: Fraction, br
 
 
 def _different(curves: "list[Run]") -> "tuple[list[Run], int]":
-    """The curves without those drawn a second time, and the number of these."""
+    """The curves without duplicates, and the number of duplicates."""
     known: dict[frozenset[Any], Run] = {}
     for curve in curves:
         sides = [_unordered(side) for side in curve]
@@ -353,7 +352,7 @@ def _both(run: "Run") -> "tuple[Point, Point]":
 
 
 def _hull(run: "Run") -> "list[Point]":
-    """The ends of the pieces and their points furthest along the axes, so that the extent is that of the run."""
+    """The end points of a run's pieces and their extreme points in x and y; their extent is that of the run."""
     from symbolic.tables.outlines import ConicArc
     from symbolic.tables.polynomial import elevated
     from verification.app.drawings import ends
@@ -378,7 +377,7 @@ def _hull(run: "Run") -> "list[Point]":
 
 
 def _stops(a: float, b: float, c: float) -> list[float]:
-    """Parameters in (0, 1) where a cubic's coordinate is stationary; `a`, `b`, `c` are steps of its control points."""
+    """Parameters in (0, 1) at which a cubic is stationary; `a`, `b`, `c` are differences of its control points."""
     square, middle = a - 2 * b + c, a - b
     if abs(square) <= 1e-12 * (abs(a) + abs(b) + abs(c)):
         times = [a / (2 * middle)] if middle else []
@@ -389,7 +388,7 @@ def _stops(a: float, b: float, c: float) -> list[float]:
 
 
 def _near(data: Data, points: "list[Point]") -> Fraction:
-    """The widest gap between points that is still closed: the tolerance given, or a share of the drawing's extent."""
+    """The largest gap between points that is closed: the tolerance given, or a small fraction of their extent."""
     if data.tolerance is None:
         return JOINED * Fraction(max(_extent(points)))
     try:

@@ -19,7 +19,7 @@ RING = re.compile(r"\(([^()]*)\)")
 
 
 def rings(text: str) -> "tuple[list[list[Point]], bool]":
-    """The rings of points in a text, and whether they are those of a polygon of a GIS program.
+    """The rings of points in a text, and True if they come from a GIS polygon (GeoJSON or WKT).
 
     >>> rings("0 0\\n4 0\\n0 3")
     ([[(Fraction(0, 1), Fraction(0, 1)), (Fraction(4, 1), Fraction(0, 1)), (Fraction(0, 1), Fraction(3, 1))]], False)
@@ -103,7 +103,7 @@ def _ring(rows: Any) -> "list[Point]":
 
 
 def polygon_of(text: str) -> "Table":
-    """The polygon with corners `X,Y X,Y ...`, exact numbers in either order; the first may be repeated at the end.
+    """The polygon with corners `X,Y X,Y ...` (exact numbers), clockwise or not; the first may be repeated at the end.
 
     >>> [side.at(0) for side in polygon_of("0,0 0,1/2 2,0").components]
     [(2, 0), (0, 1/2), (0, 0)]

@@ -1,7 +1,7 @@
 """Scenes from the options of a command line, and the options that commands share.
 
-Table, shape and contraction are exact all the way: a decimal is the decimal it shows. None of the paper's tables
-imports SymPy. From the options come the scene, a starting point as exact numbers, and the axes of a sweep.
+Table, shape and contraction are exact: a decimal stands for the number it shows. SymPy is not imported for the paper's
+own tables. The options also give a starting point as exact numbers, and the axes of a sweep.
 """
 
 import json
@@ -45,7 +45,7 @@ def scene(
     /,
     **shape: str | None,
 ) -> Scene:
-    """The scene that the options describe; `ValueError` when they contradict each other.
+    """The scene that the options describe; `ValueError` if they contradict each other.
 
     >>> scene("ellipse", None, None, None, "0.5", a="sqrt(2)")
     Scene('ellipse', a='sqrt(2)', lam='1/2')
@@ -106,7 +106,7 @@ def scene(
 
 
 def _known(table: str | None, *others: Any, **shape: str | None) -> Scene:
-    """The scene of the options; one that needs SymPy is kept on disk between runs, and then read without it."""
+    """The scene of the options; a scene that needs SymPy is kept on disk, and later runs read it without SymPy."""
     *said, file, given, data, formula, corners = others
     if data is None and corners is None and table in PAPER and formula is None:
         return scene(table, *others, **shape)
@@ -154,7 +154,7 @@ def _shape_value(text: str) -> tuple[str, str]:
 
 
 def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
-    """The texts of --shape that set a parameter, and the one that varies one: `LOW:HIGH`, or `LOW:HIGH:N` in a sweep.
+    """The texts of --shape that set a parameter, and the text that varies one: `LOW:HIGH`, or `LOW:HIGH:N` in a sweep.
 
     >>> parted(("b=0.1:0..1/4", "c=0:1/8"))
     (('b=0.1:0..1/4',), 'c=0:1/8')
@@ -166,9 +166,9 @@ def parted(given: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
 
 
 def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool) -> tuple[str, ...]:
-    """The texts of --shape, with the lower end of `axis` for the parameter that it varies, if no number is given.
+    """The texts of --shape; the parameter that `axis` varies gets the lower end of its interval, if it has no number.
 
-    A length of a table `by_name` becomes a parameter by this: it is given the ends as its range.
+    With `by_name`, the parameter is a length of a table of the gallery; it also gets the interval as its range.
 
     >>> _starting(("straight=2",), "straight=1:3:9", set(), True)
     ('straight=2:1..3',)
@@ -188,7 +188,7 @@ def _starting(given: tuple[str, ...], axis: str, known: set[str], by_name: bool)
 def _from_file(
     file: str, lam: str | None, values: dict[str, str], K: int | None, shape: dict[str, Any], formula: str | None
 ) -> Scene:
-    """The scene of a file; a law, a contraction and shape parameters on the command line replace its own."""
+    """The scene in a file; a law, contraction or shape parameter on the command line replaces the file's."""
     for key, text in {"K": K, **shape}.items():
         if text is not None:
             raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
@@ -202,12 +202,12 @@ def _from_file(
 
 
 def _lengths(name: str) -> tuple[str, ...]:
-    """The names of a table's shape parameters, which for tables of the gallery are lengths."""
+    """The names of a table's shape parameters; those of tables in the gallery are lengths."""
     return tuple(signature(tables.GALLERY[name]).parameters) if name in GALLERY else PAPER.get(name, ())
 
 
 def _of_gallery(name: str, values: dict[str, str]) -> "tuple[Table, dict[str, str]]":
-    """One of the gallery's tables with the lengths given, and the texts of those with a range, which stay free."""
+    """The gallery's table with the given lengths, and the texts of the lengths that have a range and stay free."""
     from sympy import Interval, Symbol
 
     from symbolic.tables.table import Shape
@@ -284,7 +284,7 @@ CONTRACTION = click.option("--lam", metavar="NUMBER", help="Contraction of the a
 def table_options(command: Command, varies: bool = False, optional: bool = False, contracted: bool = False) -> Command:
     """Decorator that gives a command the arguments of a table as a keyword `scene`; its `lam` is 0 unless `contracted`.
 
-    With `varies`, a keyword `axis` has the text of --shape for the parameter that varies, None where lambda varies.
+    With `varies`, a keyword `axis` has the text of --shape for the parameter that varies, or None if lambda varies.
     With `optional`, the scene is None without a table, and a keyword `bare` has --K, --alpha, --lam, --law.
     """
 
@@ -413,7 +413,7 @@ def span(label: str, text: str, low: Fraction | None = Fraction(0), high: Fracti
 
 
 class Varied(NamedTuple):
-    """What a sweep varies: the scene as text, the parameter's name, its values, and the one contraction."""
+    """What a sweep varies: the scene as text, the parameter's name and values, and the contraction (if it is fixed)."""
 
     text: str
     parameter: str
@@ -422,7 +422,7 @@ class Varied(NamedTuple):
 
 
 def over(scene: Scene, lams: str, axis: str | None) -> Varied:
-    """What a sweep varies, by --lams or by `NAME=LOW:HIGH:N`; a bad shape is refused before anything runs."""
+    """The parameter that a sweep varies, by --lams or `NAME=LOW:HIGH:N`; a bad shape is refused before any work."""
     import numpy as np
 
     from numeric.sweeps.sweep import map_of, text_of
@@ -441,7 +441,7 @@ def over(scene: Scene, lams: str, axis: str | None) -> Varied:
 
 
 def along(scene: Scene, axis: str) -> "tuple[Scene, str, NDArray[np.float64]]":
-    """The scene with the range of `NAME=LOW:HIGH:N`, the parameter's name, and its N values."""
+    """The scene with the range in `axis`, the text `NAME=LOW:HIGH:N`; the parameter's name; its N values."""
     import numpy as np
 
     name, equals, ends = axis.partition("=")

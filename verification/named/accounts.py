@@ -1,4 +1,4 @@
-"""The account of a continuation: cycles that could not be followed, ranges without cycles, starts at unused values."""
+"""What a continuation has missed: cycles it could not follow, parameter ranges without cycles, checks at new values."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -8,7 +8,7 @@ from verification.cycles.family import Interval
 
 @dataclass(frozen=True)
 class Unfollowed:
-    """A cycle on which a share of the starts ends but which could not be followed, with the reason."""
+    """A cycle that a fraction `share` of the starts reach, but which could not be followed, and the reason."""
 
     value: float
     period: int
@@ -18,20 +18,20 @@ class Unfollowed:
 
 @dataclass(frozen=True)
 class Range:
-    """A range of the parameter in which starts end on no cycle: chaotic or neutral; its ends lie between values."""
+    """A parameter range in which starts end on chaotic or neutral orbits; each end is an interval that contains it."""
 
     kind: int
     low: Interval
     high: Interval
 
     def holds(self, value: float) -> bool:
-        """Does the range contain a value?"""
+        """True if the range contains the value."""
         return self.low[0] <= value <= self.high[1]
 
 
 @dataclass(frozen=True)
 class Check:
-    """Starts at values that were not used: how many end on a known attractor, and what the others end on."""
+    """A check by starts at new parameter values: how many reach a known attractor, and which attractors are missing."""
 
     values: tuple[float, ...]
     starts: int
@@ -42,7 +42,7 @@ class Check:
 
     @property
     def words(self) -> str:
-        """The counts of known and unsettled starts in a sentence, and what is missing."""
+        """The counts of known and unsettled starts as a sentence, with the attractors that are missing."""
         total = len(self.values) * self.starts
         said = f"{self.accounted} of {total} random starts at {len(self.values)} other values end on what is known"
         said += f"; {self.unsettled} did not settle" if self.unsettled else ""
@@ -53,5 +53,5 @@ class Check:
         return f"{said} (seed {self.seed})." + (f" NOT ACCOUNTED FOR: {each}." if each else "")
 
     def document(self) -> dict[str, Any]:
-        """The counts as JSON."""
+        """The result of the check as JSON."""
         return asdict(self)

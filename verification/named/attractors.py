@@ -1,8 +1,8 @@
-"""Attractors: a proof that one exists, its proved exponents, and which of them coexist at each contraction.
+"""Attractors: a proof that a cycle attracts, its proved exponents, and which attractors coexist at a contraction.
 
-For a cycle found in float64, balls prove that it exists, is admissible, of least period, and attracts; its exponents
-come from its certified multipliers. Such a proof says nothing about other attractors, nor about the size of a basin.
-For a chaotic attractor, the exponent of the cardioid's slap map is proved.
+For a cycle found in float64, it is proved in balls that it exists, is admissible, has this least period, and attracts;
+its exponents come from its certified multipliers. Such a proof says nothing about other attractors, nor about the size
+of a basin. The only chaotic exponent that is proved is that of the cardioid's slap map.
 
 Which attractors coexist at a contraction is found by random starts: a basin below about `3/starts` of the table is
 likely to be missed. Families of cycles over a range of contractions are those of `verification.named.families`.
@@ -48,8 +48,8 @@ def certificate(
 def exponents(trace: arb, determinant: arb, period: int) -> tuple[arb, arb]:
     """Both exponents per bounce from trace and determinant of the monodromy matrix, in balls of the current precision.
 
-    Complex multipliers have the modulus `sqrt(det)`; where it is not decided whether they are complex, the ball holds
-    the exponents of both cases.
+    Complex multipliers have the modulus `sqrt(det)`. If it is undecided whether they are complex, the balls hold the
+    exponents of both cases.
 
     >>> plus, minus = exponents(arb(5) / 2, arb(1), 2)  # multipliers 2 and 1/2
     >>> abs(plus - arb(2).log() / 2) < 1e-14, abs(plus + minus) < 1e-14
@@ -67,7 +67,7 @@ def exponents(trace: arb, determinant: arb, period: int) -> tuple[arb, arb]:
 def certified_exponents(
     table: Table, lam: Expr, near: PhasePoints, digits: int = DIGITS, law: Law = PAPERS_LAW
 ) -> dict[str, Any] | None:
-    """The exponents of the cycle near some points as decimals with a radius, and the checklist; None if not proved.
+    """The exponents of the cycle near some points as decimals with radius, and the checklist; None if not proved.
 
     At `lam = 0` the lower exponent is minus infinity, given as None.
 
@@ -94,7 +94,7 @@ def certified_exponents(
 
 
 def chaotic_exponents(table: Table, lam: Expr) -> dict[str, Any] | None:
-    """The exponents of almost every start, where they are proved for chaos: on the cardioid at `lam = 0`; else None.
+    """The exponents of almost every start if chaos is proved (only on the cardioid at `lam = 0`), otherwise None.
 
     The lower exponent is minus infinity, given as None.
 
@@ -115,7 +115,7 @@ def chaotic_exponents(table: Table, lam: Expr) -> dict[str, Any] | None:
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """The attractors of one family at one contraction: `copies` images of each other, and their joint share."""
+    """The attractors of one symmetry class at one contraction: `copies` images of each other, and their total share."""
 
     kind: Kind
     period: int
@@ -128,7 +128,7 @@ class Member:
 
 @dataclass(frozen=True, eq=False)
 class AttractorCounts:
-    """The attractors that starts reached at one contraction; `unsettled` of the starts reached none in time."""
+    """The attractors that starts reached at one contraction; `unsettled` starts had reached none when the run ended."""
 
     lam: float
     members: tuple[Member, ...]
@@ -136,12 +136,12 @@ class AttractorCounts:
 
     @property
     def attractors(self) -> int:
-        """The number of attractors that the starts found."""
+        """The number of different attractors that the starts reached."""
         return sum(member.copies for member in self.members)
 
 
 def joined(found: Sequence[Attractor], starts: int, lam: float) -> AttractorCounts:
-    """The row of attractors that were found; those that are images of each other make one member.
+    """The attractors found at one contraction; those that are symmetric images of each other make one member.
 
     >>> from numeric import PinballMap
     >>> from numeric.dynamics.attractors import find

@@ -1,4 +1,4 @@
-"""Bifurcations over an interval: of every family that attracts, or of cycles of one period, with proofs."""
+"""Bifurcations over a parameter interval, of all attracting families or, with proofs, of cycles of one period."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -33,7 +33,7 @@ def bifurcations(
     tick: Tick | None = None,
     **interval: Any,
 ) -> tuple[Located, ...]:
-    """The events of one kind of the cycles of one period, each with its proof."""
+    """The events of one kind on cycles of one period, each with its proof."""
 
 
 def bifurcations(
@@ -49,16 +49,16 @@ def bifurcations(
     tick: Tick | None = None,
     **interval: Any,
 ) -> Continuation | tuple[Located, ...]:
-    """Every family of cycles that attracts random starts as one parameter varies, with its events; or events of a kind.
+    """Every family of cycles that attracts random starts as a parameter varies, with its events; or events of one kind.
 
     The interval is given as for `follow`. `starts` random starts at each of some `values` of the parameter find the
-    families, which are followed from birth to death: `.families`, `.events`, `.check()`, `.document(digits)`. What
-    attracts fewer than a hundredth of the starts at each value, or lives between two of the values alone, is missed;
+    families, which are followed from birth to death: `.families`, `.events`, `.check()`, `.document(digits)`. A family
+    is missed if it attracts fewer than a hundredth of the starts at each value, or exists only between two values;
     within chaos, where windows are narrow, the values lie eight times closer.
 
-    With a `kind`, `saddle-node`, `doubling` or `symmetry-breaking`, what comes back are the events of cycles of one
-    `period`, with proofs: those of the families, and of cycles that a search finds at some values (`searches`), which
-    need not attract. Each value that comes back is proved; that there are no others is not.
+    With a `kind` (`saddle-node`, `doubling` or `symmetry-breaking`), the result is the events of cycles of one
+    `period`, with proofs: events of the families, and of cycles, attracting or not, that a search finds at `searches`
+    values. Each value returned is proved; that there are no others is not.
 
     >>> found = bifurcations("ellipse", a="3/2", lam=("1/10", "1"), values=10, starts=20)
     >>> [(one["period"], one["symmetry"]) for one in found.document()["branches"]]
@@ -97,7 +97,7 @@ def bifurcations(
 def _searched(
     scene: Scene, period: int, searches: int, parameter: str, ends: Any, say: Tick
 ) -> list[tuple[PeriodicOrbit, Branch]]:
-    """Cycles found at some values, closer together near the ends of the interval, and their branches."""
+    """Cycles found at `searches` values, which are denser near the ends of the interval, and their branches."""
     low, high = (exact(parameter, end) for end in ends)
     found: list[tuple[PeriodicOrbit, Branch]] = []
     for i in range(searches):
@@ -114,5 +114,5 @@ def _searched(
 
 
 def same_multipliers(orbit: PeriodicOrbit) -> tuple[complex, ...]:
-    """The multipliers, rounded: images under a symmetry share them."""
+    """The multipliers, rounded so that cycles which are symmetric images of each other have equal ones."""
     return tuple(complex(round(mu.real, ALIKE), round(abs(mu.imag), ALIKE)) for mu in orbit.multipliers)

@@ -1,4 +1,4 @@
-"""Cascades of doublings from any attracting cycle that random particles reach, proved flip by flip.
+"""Cascades of period doublings from any attracting cycle that random particles reach; each doubling is proved.
 
 Section 6.6 of the paper ascribes isolated chaotic regions to such cascades of higher period.
 """
@@ -23,7 +23,7 @@ STAGES = (1000, 4000, 35_000)  # bounces, after each of which particles are test
 
 @dataclass(frozen=True)
 class Cascade:
-    """The periods that double and the contractions at which they do; `proved`: each is a supercritical flip."""
+    """The periods that double and the contractions at which they do; `proved` if each is a supercritical flip."""
 
     periods: tuple[int, ...]
     lams: tuple[float, ...]
@@ -31,19 +31,19 @@ class Cascade:
 
     @property
     def ratios(self) -> list[float]:
-        """Ratios of successive distances; they tend to Feigenbaum's 4.669."""
+        """Ratios of successive distances between doublings; they tend to Feigenbaum's 4.669."""
         gaps = np.diff(self.lams)
         return [float(ratio) for ratio in gaps[:-1] / gaps[1:]]
 
     @property
     def limit(self) -> float:
-        """Where the cascade accumulates if further distances shrink by Feigenbaum's number: an estimate."""
+        """The contraction at which the cascade accumulates, estimated with Feigenbaum's ratio of distances."""
         return self.lams[-1] + (self.lams[-1] - self.lams[-2]) / (FEIGENBAUM - 1)
 
 
 @cache
 def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int = 3) -> Cascade:
-    """The first doublings of an attracting cycle of this period that exists at `lam`, followed in steps of `step`.
+    """The first period doublings of an attracting cycle of this period that exists at `lam`, in steps of `step`.
 
     >>> found = cascade(Rational(2, 25), Rational(3, 10), 4, 0.005, count=1)  # the paper's lambda_3, section 6.6
     >>> found.periods, round(found.lams[0], 6), found.proved
@@ -57,7 +57,7 @@ def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int
 
 
 def reached(alpha: Rational, lam: Rational, period: int) -> list[float]:
-    """The bounces of a cycle of this period on which a random particle ends; `ValueError` when none does."""
+    """The bounces of a cycle of this period that attracts a random particle; `ValueError` if there is none."""
     map = PinballMap("egg", lam=str(lam), alpha=str(alpha))
     starts = interior_starts(map, PARTICLES, SEED)
     for bounces in STAGES:

@@ -1,15 +1,15 @@
-"""The crises of the egg's chaotic attractor by sampling: estimates of where, and the transient. Paper: section 6.7.
+"""Estimates, by sampling, of the egg's crises: contraction and length of transients. Paper: section 6.7.
 
-`verification.proofs.manifolds` has the same crises as tangencies, to many digits; here particles are sampled.
+`verification.proofs.manifolds` computes the same crises as tangencies of manifolds, to many digits.
 
-Below a crisis no particle leaves the attractor; above it each bounce has a chance to, which grows from 0
-like a power of the distance. So many particles are started on the attractor, and the contractions at
-which some leave are bracketed. Just above a crisis a budget of bounces sees none leave; the error
-reaches up to the contraction at which it saw ten.
+Below a crisis no particle leaves the attractor; above it, each bounce has a probability to leave that grows from 0 like
+a power of the distance from the crisis. Particles are started on the attractor, and the contractions at which some
+leave are bracketed. As a budget of bounces may see none leave just above a crisis, the error reaches up to the
+contraction at which ten left.
 
-A crisis after which no particle leaves for good shows in how far the attractor extends: `extent` is its largest exit
-angle, its reach at either end of the diameter and its area, and `widenings` the steps of a scan in which a length
-grows at once.
+At some crises the attractor grows, but no particle leaves it for good. They are found by its extent: `extent` gives its
+largest exit angle, how far it reaches from either end of the diameter, and its area; `widenings` finds the steps of a
+scan in which one of these lengths grows suddenly.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ Left = Callable[[Exponents], NDArray[np.bool_]]
 
 @dataclass(frozen=True)
 class Scaling:
-    """The law `stay ~ distance**-exponent`; the error is a jackknife over blocks, as points oscillate about it."""
+    """The power law `stay ~ distance**-exponent`, with a jackknife error over blocks, as the points oscillate."""
 
     exponent: float
     error: float
@@ -46,7 +46,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Crisis:
-    """A crisis at `lam +- error`, with the mean number of bounces before leaving at some contractions above."""
+    """A crisis at `lam +- error`, and the mean number of bounces before leaving, at some contractions above it."""
 
     lam: float
     error: float
@@ -55,12 +55,12 @@ class Crisis:
 
 
 def changed_axis(ball: Exponents) -> NDArray[np.bool_]:
-    """Is the particle away from the diameter on the x axis, near which it started?"""
+    """True where the particle is away from the diameter on the x axis, near which it started."""
     return np.asarray(np.round(ball.theta / (np.pi / 3)).astype(int) % 3 != 0)
 
 
 def settled(ball: Exponents) -> NDArray[np.bool_]:
-    """Is the growth exponent of the particle clearly negative, as only near a periodic attractor?"""
+    """True where the particle's growth exponent is below -0.1, as happens only near a periodic attractor."""
     return np.asarray(ball.nu_plus < -0.1)
 
 
@@ -71,7 +71,7 @@ KINDS: dict[str, tuple[Left, tuple[float, float]]] = {
 
 
 def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) -> Crisis:
-    """The `merging` crisis (three pieces become one) or the `boundary` crisis (the attractor vanishes).
+    """The egg's `merging` crisis (three pieces become one) or `boundary` crisis (the attractor vanishes).
 
     >>> found = crisis("merging", "0.08", tolerance=1e-3, budget=10**6)
     >>> abs(found.lam - 0.4434) < 1e-3
@@ -96,9 +96,9 @@ def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) 
 
 
 def stay(left: Left, alpha: str, lam: float, budget: int, enough: int = MANY) -> float:
-    """The mean number of bounces on the attractor before a particle leaves; infinite when none leaves.
+    """The mean number of bounces on the attractor before a particle leaves; infinite if none leaves.
 
-    The budget is spent, unless `enough` have left before.
+    All of `budget` is spent, unless `enough` particles have left before.
     """
     map = PinballMap("egg", lam=lam, alpha=alpha)
     rng = np.random.default_rng(SEED)
@@ -121,7 +121,7 @@ def stay(left: Left, alpha: str, lam: float, budget: int, enough: int = MANY) ->
 
 
 def spread(stays: list[tuple[float, float]], low: float, high: float, budget: int) -> float:
-    """Error of a crisis: from the bracket's middle to the least contraction at which ten left within the budget.
+    """The error of a crisis: from the middle of its bracket to the least contraction at which ten particles left.
 
     >>> spread([(0.5, 10.0), (0.4, 1e7)], 0.38, 0.4, 10**7)
     0.11
@@ -131,14 +131,14 @@ def spread(stays: list[tuple[float, float]], low: float, high: float, budget: in
 
 
 def scaling(kind: str, alpha: str, at: float, distances: Array, budget: int = 10**9) -> Scaling:
-    """The power law of the mean stay above a crisis at `at`, from its values at `distances` above it."""
+    """The power law of the mean stay above a crisis at `at`, fitted to contractions at `distances` above it."""
     left, _ = KINDS[kind]
     stays = [(float(d), stay(left, alpha, at + float(d), budget)) for d in distances]
     return power(tuple((d, mean) for d, mean in stays if np.isfinite(mean)))
 
 
 def power(points: tuple[tuple[float, float], ...]) -> Scaling:
-    """The least-squares power law through points in order, with a jackknife over `BLOCKS` blocks of neighbours.
+    """The least-squares power law through ordered points, with a jackknife over `BLOCKS` blocks of neighbours.
 
     >>> power(tuple((x, x**-2) for x in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6))).exponent
     2.0
@@ -158,9 +158,9 @@ def _slope(x: Array, y: Array) -> float:
 
 @dataclass(frozen=True)
 class OrbitExtent:
-    """How far the chaotic orbits from near one end of a diameter extend, and the number of cells that they visit.
+    """The extent of the chaotic orbits that start near one end of a diameter, and the number of cells they visit.
 
-    `near` and `far` are the largest distances in `theta` from that end, at every second bounce, and from the other end.
+    `near` is the largest distance in `theta` from this end, at every second bounce; `far` is that from the other end.
     """
 
     lam: float
@@ -171,12 +171,12 @@ class OrbitExtent:
 
     @property
     def lengths(self) -> tuple[float, float, float]:
-        """`angle`, `near` and `far`; not the area, which grows with every fold of the attractor and proves little."""
+        """The lengths `angle`, `near` and `far`, without the area, which grows with every fold of the attractor."""
         return self.angle, self.near, self.far
 
 
 def extent(map: PinballMap) -> OrbitExtent | None:
-    """The extent at the map's contraction; None where no orbit is chaotic.
+    """The extent of the chaotic orbits at the map's contraction; None if no orbit is chaotic.
 
     >>> found = extent(PinballMap("egg", lam="0.42", alpha="0.08"))
     >>> found is None  # inside the window of period 20
@@ -196,11 +196,11 @@ def extent(map: PinballMap) -> OrbitExtent | None:
 
 
 def widenings(alpha: str, lams: Array) -> list[tuple[OrbitExtent, OrbitExtent]]:
-    """Quarter steps of an upward scan in which an attractor suddenly reaches farther than ever: extents on both sides.
+    """The quarter steps of an upward scan in which the attractor suddenly grows: the extents on both sides of each.
 
-    The comparison is with the farthest reach at any smaller contraction, so that the end of a window, where it is as
-    wide again as before, is no widening. In the quarter step it must grow by half of `AT_ONCE`; steady growth by
-    `AT_ONCE` over a whole step gives only a quarter.
+    A length is compared with its maximum over all smaller contractions, so that a return to the old size at the end of
+    a window does not count. In the quarter step it must grow by half of `AT_ONCE`; steady growth by `AT_ONCE` over a
+    whole step gives only a quarter.
     """
     found: list[tuple[OrbitExtent, OrbitExtent]] = []
     before: OrbitExtent | None = None
@@ -219,14 +219,15 @@ def widenings(alpha: str, lams: Array) -> list[tuple[OrbitExtent, OrbitExtent]]:
 
 
 def _beyond(here: OrbitExtent, farthest: Array, part: float) -> bool:
-    """Is one of the lengths longer than the farthest before, by more than this part?"""
+    """True if one of the lengths is longer than its maximum before, by more than the fraction `part` of it."""
     return bool(np.any(np.array(here.lengths) > (1 + part) * farthest))
 
 
 def narrowed(alpha: str, step: tuple[OrbitExtent, OrbitExtent], tolerance: float) -> tuple[OrbitExtent, OrbitExtent]:
-    """Extents on both sides of a widening, by bisection of a step around it.
+    """The extents on both sides of a sudden widening, after bisection of the step around it.
 
-    Just above a crisis the new part is visited so seldom that the orbits may miss it: the lower end may be too high.
+    Just above a crisis the new part of the attractor is visited so seldom that the orbits may miss it; the lower end
+    may then be too high.
     """
     low, high = step
     widest = int(np.argmax(np.array(high.lengths) / np.array(low.lengths)))

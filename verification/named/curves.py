@@ -4,19 +4,18 @@ For odd K the vertex-to-flat diameter doubles its period on `alpha-tilde`; the s
 born there breaks its symmetry (a pitchfork, on half the cycle), and the cycles born then double again and
 again, up to an accumulation curve. Every curve is followed in the two parameters from one start.
 
-A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and
-then Neimark-Sacker bifurcations are possible. Four facts about the paper's own egg, each proved in balls:
+A cycle may expand areas although `lam < 1`, as its determinant is not `lam**p` (`symbolic.cycles.thresholds`), and then
+Neimark-Sacker bifurcations are possible. Four facts about the paper's own egg are proved in balls:
 
-- `contracting_up_to`: below a contraction no cycle of the egg expands, so none bifurcates that way;
+- `contracting_up_to`: a contraction below which no cycle of the egg expands areas, so that none bifurcates that way;
 - `expanding_cycle`: a hexagon at `alpha = 0.08`, `lam = 0.95` whose determinant is above 1;
-- `double_one`: a cycle of period 17 with the double multiplier 1 at a `lam < 1`. The zero is regular, so
-  along `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1;
-- `invariant_circle`: on that side the cycle with trace 1/2, about which an attracting closed curve is born.
+- `double_one`: a cycle of period 17 with the double multiplier 1 at some `lam < 1`. It is a regular zero, so along
+  `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1;
+- `invariant_circle`: the cycle on that side with trace 1/2, around which an attracting closed curve is born.
 
-The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified, by two schemes that share no
-assumption but geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on what is
-left after the leading term has been removed with the universal constant of [Feigenbaum1979]. Their difference is the
-error that is stated.
+The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified, by two schemes that both assume
+only geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on the remainder after
+the leading term has been removed with the universal constant of [Feigenbaum1979]. Their difference is the stated error.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -59,7 +58,7 @@ Tick = Callable[[str], None]
 
 @dataclass(frozen=True)
 class BifurcationCurve:
-    """One curve of the cascade: a bifurcation of a cycle of `period` bounces."""
+    """A curve of the cascade: a bifurcation of a cycle of `period` bounces."""
 
     name: str
     period: int
@@ -72,18 +71,18 @@ class BifurcationCurve:
         return self.curve.special
 
     def lam(self, alpha: float) -> float | None:
-        """The contraction on the curve at a shape; None where the curve does not go."""
+        """The contraction on the curve at the shape `alpha`; None if the curve does not reach this shape."""
         found = self.curve.crossing(alpha)
         return float(found[0][-1]) if found else None
 
 
 def largest_shape(K: int) -> float:
-    """The largest `alpha` with a convex table, `1/(1 + K**2)`."""
+    """The largest `alpha` for which the table is convex, `1/(1 + K**2)`."""
     return 1 / (1 + K * K)
 
 
 def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> Iterator[BifurcationCurve]:
-    """The curves from the diameter's doubling up to the cycles of `highest` bounces; for odd K.
+    """The curves from the period doubling of the diameter to those of the cycles of `highest` bounces; K must be odd.
 
     >>> curves = cascade(3, 4)
     >>> [(c.name, [d.kind.value for d in c.special]) for c in curves]  # doctest: +NORMALIZE_WHITESPACE
@@ -111,7 +110,7 @@ def cascade(K: int = 3, highest: int = 64, tick: Tick = lambda name: None) -> It
 
 
 def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
-    """The fold curve of the egg's polygon that turns by `2*pi*p/q` at each bounce, by continuation."""
+    """The fold curve of the egg's polygon that turns by `2*pi*p/q` at each bounce, computed by continuation."""
     ring = polygon(K, p, q)
     top = largest_shape(K)
     at = {"alpha": 0.8 * top}
@@ -124,7 +123,7 @@ def fold(K: int = 3, p: int = 1, q: int = 3) -> BifurcationCurve:
 
 @dataclass(frozen=True)
 class AccumulationCurve:
-    """The limit of the doublings: a contraction with an error for each shape."""
+    """The curve at which the doublings accumulate: for each shape a contraction with its error."""
 
     alpha: Array
     lam: Array
@@ -132,9 +131,9 @@ class AccumulationCurve:
 
 
 def accumulation_curve(curves: list[BifurcationCurve], alphas: Array) -> AccumulationCurve:
-    """The end of the cascade at each shape that all the doublings of `curves` reach.
+    """The contraction at which the cascade ends, for each shape that all doublings in `curves` reach.
 
-    The error is the difference to a second extrapolation, or to the same one without the last curve if that is larger.
+    The error is the difference to a second extrapolation or, if larger, to the same one without the last curve.
     """
     doublings = [c for c in curves if c.kind is BifurcationKind.FLIP and c.period > 2]
     found = []
@@ -162,14 +161,14 @@ TURNING = 0.06873034020024987, 0.9637899755913615  # where its trace is 1/2
 
 @dataclass(frozen=True)
 class Expanding:
-    """A cycle, proved to exist, and its determinant as a ball."""
+    """A cycle that is proved to exist, and its determinant as a ball."""
 
     certified: bool
     determinant: arb
 
 
 def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
-    """The hexagon of the egg, proved to exist, and its determinant.
+    """A hexagon in the egg that is proved to exist, and its determinant.
 
     >>> found = expanding_cycle()
     >>> found.certified, bool(found.determinant > 1)
@@ -184,7 +183,7 @@ def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
 
 
 def resonance(period: int) -> Small:
-    """System for a cycle of the egg with the double multiplier 1: unknowns are its bounces, `alpha` and `lam`."""
+    """The system for a cycle of the egg with the double multiplier 1; unknowns are the bounces, `alpha` and `lam`."""
     both = BifurcationKind.FOLD, BifurcationKind.TORUS
     return critical(Chords(egg(3), (0,) * period), both, ("alpha", "lam"))
 
@@ -200,11 +199,11 @@ def double_one() -> Enclosure:
 
 @cache
 def invariant_circle() -> Torus:
-    """The torus bifurcation of the cycle of period 17, at trace 1/2, as the contraction varies.
+    """The cycle of period 17 with trace 1/2 and determinant 1, a torus bifurcation as the contraction varies.
 
     For each contraction above the enclosed one and near it, an attracting closed curve of the 17th iterate surrounds
-    each point of the cycle. As 1/2 is no integer, the rotation on it is irrational for some of them, as near as one
-    likes.
+    each point of the cycle. As the trace 1/2 is not an integer, contractions with an irrational rotation on the curve
+    come arbitrarily close.
 
     >>> found = invariant_circle()
     >>> found.certified, found.attracting, found.side, found.problem.irrational
@@ -215,7 +214,7 @@ def invariant_circle() -> Torus:
 
 
 def contracting_up_to(alpha: Expr, K: int = 3) -> float:
-    """A contraction up to which the determinant of every cycle of the egg is below 1, in steps of 1/64.
+    """A contraction, a multiple of 1/64, up to which the determinant of every cycle of the egg is below 1.
 
     With `d` the largest tilt of the normal and `r` the ratio of the largest and the smallest radius, the sine
     rule on the triangle of a chord and the centre gives `|eta| <= d + asin(r*sin(d + |phi|))`. If the largest
@@ -241,7 +240,7 @@ def contracting_up_to(alpha: Expr, K: int = 3) -> float:
 
 
 def _confined(tilt: arb, ratio: arb, lam: arb, pieces: int = 512) -> bool:
-    """Is `d + asin(r*sin(d + lam*E)) < E` for every `E` from the root of `x*tan(x) = 1` to `pi/2`?"""
+    """True if `d + asin(r*sin(d + lam*E)) < E` is proved for all `E` from the root of `x*tan(x) = 1` to `pi/2`."""
     low, high = arb("0.8603"), arb.pi() / 2
     for k in range(pieces):
         E = low + (high - low) * arb(2 * k + 1, 1) / (2 * pieces)
@@ -258,14 +257,14 @@ EACH = 50  # digits of each doubling
 
 @dataclass(frozen=True)
 class LimitEstimate:
-    """A limit, and its largest difference from other extrapolations, as mpmath numbers."""
+    """A limit, and the largest difference to other extrapolations, as mpmath numbers."""
 
     value: Any
     error: Any
 
 
 def limit(values: Sequence[str]) -> LimitEstimate:
-    """The limit of the contractions `lambda_n` of a cascade, given as decimals, with an error.
+    """The limit of the contractions `lambda_n` of a cascade, which are given as decimals, with an error.
 
     >>> found = limit([str(1 - mpmath.mpf(4.669201609) ** -n) for n in range(3, 12)])
     >>> abs(found.value - 1) < 1e-12
@@ -317,7 +316,7 @@ def wynn(values: Sequence[Any]) -> Any:
 
 
 def aitken(values: Sequence[Any]) -> Any:
-    """The limit of a sequence, by Aitken's process, repeated while three terms are left."""
+    """The limit of a sequence, by Aitken's process, which is repeated while three terms remain."""
     here = list(values)
     while len(here) >= 3:
         following = []
@@ -331,9 +330,9 @@ def aitken(values: Sequence[Any]) -> Any:
 
 @dataclass(frozen=True)
 class Accumulation:
-    """The certified doublings of a cascade as decimals, and the estimates of where and how it ends.
+    """The certified doublings of a cascade as decimals, and estimates of its limit and ratio.
 
-    `supercritical`: a stable cycle is born at each, by the sign of its normal form in balls.
+    `supercritical` says that a stable cycle is born at each doubling, by the sign of its normal form in balls.
     """
 
     lams: tuple[str, ...]
@@ -343,7 +342,7 @@ class Accumulation:
 
 
 def accumulation(alpha: Expr, highest: int = 10) -> Accumulation:
-    """The cascade of the egg up to `lambda_highest`, each doubling certified to 50 digits, and its estimated end.
+    """The cascade of the egg up to `lambda_highest`, each doubling certified to 50 digits, and its estimated limit.
 
     >>> from sympy import Rational
     >>> found = accumulation(Rational(2, 25), 8)

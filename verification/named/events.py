@@ -1,7 +1,7 @@
-"""Bifurcations met on a branch: each certified, and followed as a curve in two parameters.
+"""Bifurcations that are met on a branch: their proofs, and their curves in two parameters.
 
-The event in float64 is the start for a proof in balls. A fold and a period doubling are proved on the
-whole cycle, a pitchfork on the half that flips, turned so that the mirror is `theta -> -theta`. Other events have no
+The event in float64 is the start of a proof in balls. A fold and a period doubling are proved on the whole cycle; a
+pitchfork on the half cycle that flips, rotated so that the mirror is `theta -> -theta`. Other events have no
 certificate here.
 
 `survey` finds all cycles of the egg up to a period and follows each in `lam`, and every fold, doubling and pitchfork
@@ -41,9 +41,9 @@ from verification.proofs.periodic.cycle_in_box import UniqueCycle
 def proof_of(
     event: Event, digits: int, parameter: str = "lam", lam: Expr | Fraction | None = None
 ) -> UniqueCycle | None:
-    """The proof that the event happens at the enclosed `parameter`; None where there is no certificate for its kind.
+    """The proof that the event happens at the enclosed `parameter`; None if its kind has no certificate.
 
-    Where the parameter is a shape, `lam` is the contraction.
+    If the parameter is a shape, `lam` is the contraction.
 
     >>> from symbolic.tables import egg
     >>> from verification.cycles.branch import branch
@@ -68,7 +68,7 @@ def proof_of(
 
 
 def _centred(ring: Chords, x: Array) -> Array | None:
-    """The half cycle, turned by a symmetry of the table so that its mirror is `theta -> -theta`; None if impossible."""
+    """The half cycle, rotated by a symmetry of the table so that its mirror is `theta -> -theta`, or None."""
     if ring.closure.turn != -1:
         return None
     step = 2 * pi / rotations(ring.table)
@@ -88,7 +88,7 @@ PROVED_AT = (0.2, 0.4, 0.6, 0.8)  # places along the points of a curve where the
 
 @dataclass(frozen=True)
 class Surveyed:
-    """An event on the branch of a cycle of `period` bounces, and its curve; None where it could not be followed."""
+    """An event on the branch of a cycle of `period` bounces, and its curve (None if it could not be followed)."""
 
     period: int
     event: Event
@@ -98,7 +98,7 @@ class Surveyed:
 def survey(
     alpha: Expr, lam: Expr, longest: int, K: int = 3, tick: Tick = lambda said: None, steps: Steps | None = None
 ) -> Iterator[Surveyed]:
-    """The curves of the egg with K points through the events of the cycles at one shape and contraction.
+    """The curves of all events on the branches of the egg's cycles at one shape and contraction.
 
     >>> from sympy import Rational
     >>> [(one.period, one.event.kind.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
@@ -127,7 +127,7 @@ def survey(
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane of two parameters, the second `lam`: the table and the law with both free, and their ranges.
+    """A plane of two parameters, the second of which is `lam`: table and law with both free, and their ranges.
 
     >>> from symbolic import Scene
     >>> plane = Plane.of(Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}}), "b", ("0", "1/30"))
@@ -142,15 +142,15 @@ class Plane:
 
     @classmethod
     def of_egg(cls, K: int = 3) -> "Plane":
-        """The plane of the egg with `K` points: shapes from 1/100 of the largest up to it, contractions from 0 to 1."""
+        """The plane of the egg with `K` points: shapes from 1/100 to 1 times the largest, contractions from 0 to 1."""
         top = largest_shape(K)
         return cls(egg(K), PAPERS_LAW, TWO, ((top / 100, top), (0.0, 1.0)))
 
     @classmethod
     def of(cls, scene: Scene, parameter: str, ends: tuple[Any, Any], lams: tuple[Any, Any] = ("0", "1")) -> "Plane":
-        """The plane of a parameter of a scene's table or law and the contraction; `ValueError` where one has no range.
+        """The plane of a parameter of a scene's table or law and the contraction; `ValueError` if one has no range.
 
-        The ends are exact, or text; the formula is proved to be a law over all of the plane.
+        The ends are exact numbers or text; the formula is proved to be a law in the whole plane.
         """
         shapes, contractions = ([exact(name, end) for end in pair] for name, pair in ((parameter, ends), ("lam", lams)))
         table, law = scene.table, scene.law
@@ -171,9 +171,9 @@ class Plane:
 class EventCurve:
     """The curve of a bifurcation of a cycle of `period` bounces, and the point `near` of the plane where it was met.
 
-    Each point has the two parameters and `det M - 1`; those of codimension two stand in `special` by name. `depth` is
-    the number of doublings and pitchforks between the branch that was followed and the cycle of the curve. `proved` has
-    points of the curve where balls prove the event: an exact shape, the contraction and its radius.
+    Each point has the two parameters and `det M - 1`; those of codimension two are listed in `special` by name. `depth`
+    is the number of doublings and pitchforks between the branch that was followed and the cycle of the curve. `proved`
+    lists points of the curve at which the event is proved in balls: an exact shape, the contraction, its radius.
     """
 
     kind: str
@@ -191,9 +191,9 @@ class EventCurve:
         return dict(self.__dict__)
 
     def passes(self, at: tuple[float, float, float], box: Box) -> bool:
-        """Does the curve pass a point of the plane with the same `det M - 1`, up to `SAME` of the plane's size?
+        """True if the curve passes a point of the plane with the same `det M - 1`, up to `SAME` of the plane's size.
 
-        At a pitchfork the determinant is that of the part of the cycle that flips, and is not compared.
+        At a pitchfork the determinant is that of the half cycle that flips, and is not compared.
         """
         third = np.inf if self.kind == BifurcationKind.PITCHFORK.value else 1.0
         points = (np.array(self.points) - np.array(at)) / np.array([*(high - low for low, high in box), third])
@@ -203,7 +203,7 @@ class EventCurve:
         return bool(np.any(np.max(np.abs(before + share[:, None] * step), axis=1) < SAME))
 
     def runs_as(self, other: "EventCurve") -> bool:
-        """Has the curve the same ends as another one, in either order? Images of one cycle have equal curves."""
+        """True if both curves have the same ends, in either order. Symmetric images of a cycle have equal curves."""
         ends = np.array([self.points[0], self.points[-1]])
         return any(np.allclose(ends, other.points[::way][:: len(other.points) - 1], atol=ALIKE) for way in (1, -1))
 
@@ -216,9 +216,9 @@ def curves_along(
     steps: Steps | None = None,
     tick: PointTick | None = None,
 ) -> Iterator[EventCurve]:
-    """The curves in a plane through the events of a branch, and of the branches born on it, `SWITCHES` deep.
+    """The curves, in a plane, of events on a branch and on the branches born on it, up to `SWITCHES` generations.
 
-    `other` is the value of the plane's other parameter, fixed on the branch. `known` curves do not come again.
+    `other` is the value of the plane's other parameter, fixed on the branch. Curves in `known` are not repeated.
     """
     first = branch.system.parameter == plane.two[0]
     seen, interval = list(known), plane.box[0 if first else 1]
@@ -248,9 +248,9 @@ def curves_along(
 
 
 def proved_on(event: Event, found: CodimensionOneCurve, plane: Plane, digits: int = 12) -> list[tuple[str, str, str]]:
-    """Points spread over a curve where the event is proved: an exact shape, and the contraction with its radius.
+    """Points spread over a curve at which the event is proved: an exact shape, the contraction, and its radius.
 
-    At each the event is proved to exist there; between them the curve is in float64. Empty for a letter of the law.
+    Between these points the curve is known in float64 only. Empty if the parameter is one of the law.
     """
     (letter, _), ring, rows = plane.two, event.ring, list[tuple[str, str, str]]()
     if not isinstance(ring, Chords) or letter not in {p.symbol.name for p in plane.table.shapes}:
@@ -272,10 +272,10 @@ def proved_on(event: Event, found: CodimensionOneCurve, plane: Plane, digits: in
 def curve_of(
     event: Event, plane: Plane, near: tuple[float, float], steps: Steps | None = None, tick: PointTick | None = None
 ) -> CodimensionOneCurve | None:
-    """The curve through an event in a plane of two parameters, met at `near`; None when it has none or is lost.
+    """The curve through an event in a plane of two parameters, met at `near`; None if there is none or it is lost.
 
-    A pitchfork needs the symmetry that it breaks: where the table has it at one value of the parameter alone, there is
-    no curve. `tick` is called with each point.
+    A pitchfork needs the symmetry that it breaks; if the table has it at one value of the parameter only, there is no
+    curve. `tick` is called with each point.
     """
     ring = event.ring
     if event.kind.solved is None or not isinstance(ring, Chords):

@@ -1,13 +1,13 @@
 """Global continuation: every family of cycles that attracts random starts somewhere, followed from birth to death.
 
-At many values of a parameter random starts show the attractors (`numeric.sweeps.endings`). A cycle that is on no
-branch is followed both ways, once, with the branches that are born on it where it doubles its period or loses a
-symmetry, and all starts are compared with the new branches. For chaos and neutral orbits, which are no cycles, the
-ends of their ranges are bisected. The idea is that of `global_continuation` of Attractors.jl; here each branch
-ends in an event that can be proved.
+At many values of a parameter, random starts show the attractors (`numeric.sweeps.endings`). A cycle that is on no known
+branch is followed both ways, with the branches born on it where it doubles its period or loses a symmetry; all starts
+are then compared with the new branches. For chaotic and neutral orbits, which are not cycles, the ends of their
+parameter ranges are bisected. The idea is that of `global_continuation` of Attractors.jl; here each branch ends in an
+event that can be proved.
 
-A family is missed where fewer than `least` of the starts end on it at each value. `Continuation.check` samples values
-that were not used.
+A family is missed if fewer than `least` of the starts end on it at each value. `Continuation.check` samples values that
+were not used.
 """
 
 from collections.abc import Iterator
@@ -58,7 +58,7 @@ KINDS = {CHAOTIC: "chaotic", NEUTRAL: "neutral"}  # endings that are no cycles
 
 @dataclass(frozen=True)
 class FamilyEvent:
-    """An event next to which a family attracts, the family's number, and that of the family born there, if any."""
+    """An event next to which a family attracts, the family's index, and the index of the family born there, if any."""
 
     event: Event
     family: int
@@ -67,7 +67,7 @@ class FamilyEvent:
 
 @dataclass(eq=False, repr=False)
 class Continuation:
-    """The families of a scene over an interval of one parameter, as far as they are known; with `only`, of one period.
+    """The families of a scene over an interval of one parameter, as far as known; with `only`, those of one period.
 
     >>> found = Continuation(Scene("ellipse", a="3/2"), "lam", ("1/10", "9/10"), starts=20).run(values=8)
     >>> [(family.period, family.attracts) for family in found.families]
@@ -99,7 +99,7 @@ class Continuation:
         return self.interval[1] - self.interval[0]
 
     def run(self, values: int | None = None) -> "Continuation":
-        """Samples `values` values, follows the cycles seen, bisects the ends of chaotic ranges; returns itself."""
+        """Samples `values` values, follows the cycles found, and bisects the ends of chaotic ranges; returns `self`."""
         values = values or (VALUES if self.parameter == "lam" else SHAPES)
         known = {each.value for each in self.seen}
         grid = self.interval[0] + (np.arange(values) + 0.5) / values * self.width
@@ -122,14 +122,14 @@ class Continuation:
         return PeriodicOrbit(self.scene.at(**value), *bounces, (complex(one), complex(two)))
 
     def symmetry(self, family: CycleFamily) -> tuple[str, int]:
-        """The symmetry of the cycles of a family, and how many images of one there are."""
+        """The symmetry of the cycles of a family, and the number of symmetric images of one cycle."""
         component, theta, phi = family.orbit
         points = PhasePoints(np.array(component), theta, phi)
         images = with_images(self.map_at(float(family.start[-1])), [Attractor(Kind.CYCLE, family.period, points)])
         return images[0].symmetry, len(images)
 
     def proof(self, event: Event, digits: int) -> UniqueCycle | None:
-        """The proof of an event; None where its kind has no certificate, or where it cannot be proved."""
+        """The proof of an event; None if its kind has no certificate, or if it cannot be proved."""
         try:
             return proof_of(event, digits, self.parameter, None if self.parameter == "lam" else S(self.scene.lam))
         except (ValueError, ZeroDivisionError):
@@ -156,7 +156,7 @@ class Continuation:
         return [{"kind": KINDS[one.kind], "low": list(one.low), "high": list(one.high)} for one in found]
 
     def amid_chaos(self) -> list[float]:
-        """Some values at which starts end on chaos, spread over all that were sampled."""
+        """Some parameter values, well spread, at which a sufficient fraction of the starts is chaotic."""
         at = np.array(
             [seen.value for seen in self.seen if np.sum(seen.kind == CHAOTIC) >= max(2, self.least * seen.starts)]
         )
@@ -204,15 +204,15 @@ class Continuation:
 
     @cached_property
     def size(self) -> float:
-        """The size of the table, at the middle of the interval."""
+        """The unit of length for distances: a power of two near the size of the table in the middle of the interval."""
         return float(self.map_at(sum(self.interval) / 2).states.size)
 
     def endings(self, values: Array, starts: int, seed: int) -> list[Endings]:
-        """The attractors on which random starts end, at some values."""
+        """For each of some parameter values, the attractors on which random starts end."""
         return endings(text_of(self.scene), self.parameter, values, float(self.scene.lam), starts, seed)
 
     def sample(self, values: Array, starts: int | None = None) -> None:
-        """Adds the endings of random starts at some values."""
+        """Samples random starts at the given values, and adds the attractors on which they end."""
         if not len(values):
             return
         self.tick(f"{len(values)} values of {self.parameter}")
@@ -223,7 +223,7 @@ class Continuation:
         self.seen, self.labels = [row[0] for row in rows], [row[1] for row in rows]
 
     def labelled(self, seen: Endings, label: NDArray[np.int64] | None = None, first: int = 0) -> NDArray[np.int64]:
-        """The number of the family on which each start ends; with `label`, only families from `first` on are tried."""
+        """The index of the family on which each start ends; with `label`, only families from `first` on are tried."""
         label = np.where(seen.kind == CYCLE, UNKNOWN, NO_CYCLE) if label is None else label
         for number, family in enumerate(self.families[first:], first):
             rows = np.nonzero((label == UNKNOWN) & (seen.period == family.period))[0]
@@ -235,7 +235,7 @@ class Continuation:
         return label
 
     def clusters(self, seen: Endings, label: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
-        """Groups of starts (their indices) that end on one cycle, or its images, that no family contains."""
+        """Groups of starts, as indices, that end on the same cycle up to symmetry, if no known family contains it."""
         left = np.nonzero(label == UNKNOWN)[0]
         while left.size:
             apart = np.max(np.abs(seen.marks[left] - seen.marks[left[0]]), axis=1)
@@ -244,7 +244,7 @@ class Continuation:
             left = left[~alike]
 
     def follow_next(self) -> bool:
-        """Follows the cycle on which most starts end among those of no family; False where none is left."""
+        """Follows the cycle that most starts reach, among cycles on no known family; False if there is none."""
         clusters = [
             (rows.size, -int(seen.period[rows[0]]), i, rows)
             for i, (seen, label) in enumerate(zip(self.seen, self.labels, strict=True))
@@ -272,7 +272,7 @@ class Continuation:
         return True
 
     def _followed(self, seen: Endings, rows: NDArray[np.int64]) -> int:
-        """Follows the cycle on which the starts `rows` end, unless it is known; the number of its family."""
+        """Follows the cycle on which the starts `rows` end, unless it is known; returns the index of its family."""
         map, n = self.map_at(seen.value), int(seen.period[rows[0]])
         here = seen.points.only(rows[:1])
         orbit = map.orbit(here.theta, here.phi, n - 1, here.component)
@@ -298,17 +298,17 @@ class Continuation:
         return number
 
     def _marks(self, map: PinballMap, points: PhasePoints) -> Array:
-        """The marks of a cycle."""
+        """The marks of a cycle: numbers that identify it up to symmetry."""
         at = map.orbit(points.theta, points.phi, 1, points.component)
         return np.asarray(marks_of(np.stack([at.x[0], at.y[0]])[:, :, None])[0])
 
     def _known(self, period: int, value: float, marks: Array) -> int | None:
-        """The number of the family that has a cycle with these marks."""
+        """The index of the known family that has a cycle with these marks at the value; None if there is none."""
         alike = (i for i, family in enumerate(self.families) if family.period == period and family.holds(value, marks))
         return next(alike, None)
 
     def _give_up(self, seen: Endings, row: int) -> None:
-        """Marks as failed also the starts at nearby values that end on nearly the same cycle."""
+        """Marks the start `row` as failed, and all starts at nearby values that end on nearly the same cycle."""
         for other, label in zip(self.seen, self.labels, strict=True):
             if abs(other.value - seen.value) < 10 / VALUES * self.width:
                 apart = np.max(np.abs(other.marks - seen.marks[row]), axis=1)
@@ -317,7 +317,7 @@ class Continuation:
                 )
 
     def _descend(self, number: int) -> None:
-        """Adds the families born on family `number` and, recursively, on those; and the one on which it is born."""
+        """Adds the attracting families born on family `number`, its parent, and recursively those of new families."""
         family = self.families[number]
         for event in family.branch.along:
             if not self._leads_on(family, event):
@@ -335,13 +335,13 @@ class Continuation:
                 self._descend(len(self.families) - 1)
 
     def _children_at(self, family: CycleFamily, event: Event) -> list[Branch]:
-        """The branches that leave a family at an event, one of each set of images."""
+        """The branches that are born on a family at an event, one from each set of symmetric images."""
         n = family.period * (2 if event.kind is BifurcationKind.FLIP else 1)
         found = switched(family.branch, event, self.interval, STEPS, left(n))
         return found if event.kind is BifurcationKind.BORDER_COLLISION else found[:1]
 
     def _parent_at(self, family: CycleFamily, event: Event) -> list[Branch]:
-        """The branch on which a family is born, with that event added; empty where it is known."""
+        """The branch on which a family is born, with the event of its birth added; empty if the branch is known."""
         part = event.ring
         assert isinstance(part, Chords)
         steps = STEPS if part.closure == IDENTITY else replace(STEPS, most=6)
@@ -363,7 +363,7 @@ class Continuation:
         return [found]
 
     def _leads_on(self, family: CycleFamily, event: Event) -> bool:
-        """May an event lead to an attracting family that is not known, born there or the origin of this one?"""
+        """True if an attracting family that is not yet known may be born at an event, or be the parent of this one."""
         kind, n = event.kind, family.period
         if kind is BifurcationKind.FLIP and not event.birth:
             supercritical = event.form is None or event.form.supercritical is not False
@@ -382,7 +382,7 @@ class Continuation:
 
     @property
     def events(self) -> list[FamilyEvent]:
-        """The events next to which a family attracts, in order, each once, with the family that is born there."""
+        """The events next to which a family attracts, in order and without repetition, with the family born at each."""
         found: list[FamilyEvent] = []
         for number, family in enumerate(self.families):
             for event in family.branch.along:
@@ -399,7 +399,7 @@ class Continuation:
         return sorted(found, key=lambda each: each.event.value)
 
     def _born(self, number: int, event: Event) -> int | None:
-        """The number of the family that is born at this event of family `number`; None if it is not known."""
+        """The index of the family that is born at this event of family `number`; None if it is not known."""
         for other, family in enumerate(self.families):
             births = [*family.branch.births, *([family.birth] if family.birth and family.parent == number else [])]
             if other != number and any(same_event(event, each) for each in births):
@@ -407,16 +407,16 @@ class Continuation:
         return None
 
     def _parent(self, number: int, event: Event) -> int | None:
-        """The number of the family on which family `number` is born at this event; None if it is not known."""
+        """The index of the family on which family `number` is born at this event; None if it is not known."""
         for other, family in enumerate(self.families):
             if other != number and any(same_event(event, each) for each in family.branch.events):
                 return other
         return None
 
     def seen_without_cycle(self, kind: int) -> list[Range]:
-        """The ranges in which starts end on no cycle but on this kind; an end is between two values.
+        """The ranges in which starts end on chaotic or neutral orbits (`kind`); each end lies between two values.
 
-        A value with few starts does not end a range on which few starts end before it: they may have missed it.
+        A value with few starts, none of them of this kind, does not end a range if this could be by chance.
         """
         rows, share, found = list[tuple[float, bool]](), 0.0, list[Range]()
         for seen in self.seen:
@@ -433,7 +433,7 @@ class Continuation:
         return found
 
     def bisect(self) -> None:
-        """Samples repeatedly between the values next to the ends of chaotic and neutral ranges."""
+        """Samples repeatedly inside the intervals that hold the ends of chaotic and neutral ranges."""
         for _ in range(ROUNDS):
             gaps = {
                 end
@@ -448,7 +448,7 @@ class Continuation:
             self.sample(np.array(sorted(inner)))
 
     def refine(self, step: float) -> None:
-        """Samples parts of a step of the values wherever some start next to them is chaotic."""
+        """Samples values `step / FINER` apart between neighbouring values of which one has chaotic starts."""
         inner = list[float]()
         for one, two in pairwise(self.seen):
             parts = int(np.ceil(FINER * (two.value - one.value) / step - 0.5))
@@ -458,9 +458,10 @@ class Continuation:
             self.sample(np.array(inner[first : first + BATCH]), min(FEW, self.starts))
 
     def check(self, values: int = 8, starts: int = 400, seed: int = 2027) -> Check:
-        """Random starts at random values, one in each of some equal parts, and whether they end on known attractors.
+        """A check by random starts at random values, one in each of `values` equal parts of the interval.
 
-        An attractor of a few starts that was not followed is missing as well.
+        It counts the starts that end on known attractors. A new attractor is reported as missing even if only a few
+        starts reach it.
         """
         shares = (np.arange(values) + np.random.default_rng(seed).uniform(size=values)) / values
         at = self.interval[0] + self.width * shares

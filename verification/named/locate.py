@@ -1,7 +1,7 @@
 """Bifurcations by name: their parameters to N digits, with a proof.
 
-mpmath finds the approximation on the chord system, balls prove it (`verification.proofs`), and
-where there is a closed form it must agree. The true value lies within `radius` of `value`, both decimals.
+mpmath computes an approximate solution of the chord system, and `verification.proofs` proves it in balls; if there is a
+closed form, the two must agree. The true value lies within `radius` of `value`; both are decimals.
 """
 
 import time
@@ -47,7 +47,7 @@ WORDS = {True: "proved", False: "refuted", None: "unknown"}  # the three answers
 
 @dataclass(frozen=True, repr=False)
 class Located:
-    """A value in decimals with a radius, and the checklist of its proof."""
+    """A value in decimals with its radius, and the checklist of its proof."""
 
     name: str
     value: str
@@ -62,16 +62,16 @@ class Located:
 
     @property
     def certified(self) -> bool:
-        """True when the whole checklist is proved."""
+        """True if every item of the checklist is proved."""
         return all(value is True for value in self.checks.values())
 
     @property
     def title(self) -> str:
-        """The name of the result: the one asked for, or the event from which the tangency was continued."""
+        """The name of the result: the name asked for, or that of the event from which the tangency was continued."""
         return self.notes.get("called", self.name)
 
     def to_dict(self) -> dict[str, Any]:
-        """The value, its checks and notes, as `pinball locate --json` has them."""
+        """The value, its checks and notes as JSON, as printed by `pinball locate --json`."""
         return {
             "name": self.name,
             "title": self.title,
@@ -100,7 +100,7 @@ class Located:
 
 @dataclass(frozen=True)
 class SearchOutcome:
-    """Result of a search: the ball, its checklist, the proof if there is one, notes and Newton's steps."""
+    """The result of a search: ball, checklist, proof if there is one, notes, and the steps of Newton's method."""
 
     ball: arb
     checks: Checks
@@ -110,7 +110,7 @@ class SearchOutcome:
 
 
 def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) -> Located:
-    """The value of the bifurcation `name` (see `NAMES`) to `digits` decimal digits; tangencies under any `law`.
+    """The parameter value of the bifurcation `name` (see `NAMES`) to `digits` decimals; tangencies under any `law`.
 
     >>> locate("lambda-c", 20).value
     '0.0934003354313602414161'
@@ -134,9 +134,9 @@ def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) ->
 
 
 def proof_near(problem: Problem, start: list[float], digits: int, in_balls: bool = False) -> UniqueCycle:
-    """The proof for the solution near `start`: Newton's method to a few digits more, then balls around it.
+    """The proof for the solution near `start`: Newton's method to a few more digits, then a proof in balls.
 
-    With `in_balls` that method is quicker (`refined`), and the last bits of the centre differ.
+    With `in_balls`, Newton's method is faster (`refined`), and the last bits of the centre differ.
     """
     return _searched(problem, start, digits, in_balls)[0]
 
@@ -149,7 +149,7 @@ def _searched(problem: Problem, start: list[float], digits: int, in_balls: bool 
 def _box(
     system: System, start: list[float], digits: int, guard: int, sizes: tuple[int, int], in_balls: bool = False
 ) -> tuple[tuple[tuple[arb, ...], arb, int, int], Steps]:
-    """Centre, radius, bits and digits of a box, Newton's steps; `sizes`: digits of the radius, of Newton's method."""
+    """Centre, radius, bits, digits of a box, and Newton's steps; `sizes` are digits: of the radius, of the centre."""
     tick = telling(f"{digits} digits")
     solution = refined(system, start, sizes[1], in_balls)
     tick(MPMATH_SHARE)
@@ -160,7 +160,7 @@ def _box(
 
 
 def _agreeing(searched: tuple[SolutionInBox, Steps], ball: arb) -> SearchOutcome:
-    """A proof with a closed form of the value, given as `ball`: a further check is whether the two balls meet."""
+    """The result of a proof, with the further check that the value agrees with a closed form, the ball `ball`."""
     proof, steps = searched
     overlap = proof.found and bool(proof.value.overlaps(ball))
     return SearchOutcome(ball, proof.checks | {"closed_form_agrees": overlap or None}, proof, _direction(proof), steps)
@@ -194,7 +194,7 @@ def phi_star(digits: int) -> SearchOutcome:
 
 
 def lambda_c(digits: int) -> SearchOutcome:
-    """The period doubling of the cuspless cardioid's horizontal orbit. Paper: section 5.1."""
+    """The contraction at which the cuspless cardioid's horizontal orbit doubles its period. Paper: section 5.1."""
     exact = thresholds.lambda_c()
     problem = Problem(tables.cuspless, (1, 0), BifurcationKind.FLIP, "lam")
     return _agreeing(_searched(problem, [0, 0, float(N(exact))], digits), closed_form(exact, digits))
@@ -233,7 +233,7 @@ def saddle_node(digits: int, alpha: Expr) -> SearchOutcome:
 
 
 def doubling(digits: int, alpha: Expr, n: Expr) -> SearchOutcome:
-    """The contraction at which the egg's period `2**(n-1)` doubles. Paper: section 6.6."""
+    """The contraction at which the egg's cycle of period `2**(n-1)` doubles its period. Paper: section 6.6."""
     if (period := 2 ** max(int(n) - 1, 0)) * digits > BUDGET and n <= HIGHEST:
         raise ValueError(
             f"locate doubling: period {period} with {digits} digits is more work than the budget allows; "
@@ -245,7 +245,7 @@ def doubling(digits: int, alpha: Expr, n: Expr) -> SearchOutcome:
 
 
 def symmetry_breaking(digits: int, alpha: Expr) -> SearchOutcome:
-    """The contraction of the pitchfork of the egg's symmetric cycle of period 4."""
+    """The contraction at which the egg's symmetric cycle of period 4 has its pitchfork."""
     problem, start = first_symmetry_breaking(alpha)
     proof = proof_near(problem, start, digits)
     born = "two stable cycles" if proof.supercritical else "two unstable cycles"
@@ -253,9 +253,9 @@ def symmetry_breaking(digits: int, alpha: Expr) -> SearchOutcome:
 
 
 def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> SearchOutcome:
-    """A crisis of the egg's chaotic attractor: where a saddle's manifolds touch, which is proved. Paper: section 6.7.
+    """A crisis of the egg's chaotic attractor, as a proved tangency of a saddle's manifolds. Paper: section 6.7.
 
-    That no other contact ends the attractor before is not proved.
+    It is not proved that no other contact ends the attractor before.
     """
     from verification.proofs.manifolds.known import (  # NumPy, which no other name needs
         SEARCHED,
@@ -303,9 +303,9 @@ def egg_crisis(kind: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW) -> Se
 
 
 def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: Law = PAPERS_LAW) -> dict[str, str]:
-    """The notes of a tangency for a shape or law where the attractor was not examined: name, and what particles show.
+    """The notes on a tangency at a shape or law where the attractor was not examined: its name, and what particles do.
 
-    An exponent of transients belongs to an attractor that ends; where no orbit is chaotic, there is none.
+    The exponent of transients is left out if no orbit is chaotic, as it belongs to an attractor that is destroyed.
     """
     from numeric import PinballMap
     from verification.named.crises import ORBITS, extent
@@ -324,7 +324,7 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: L
 
 
 def one_of(kind: str, parameter: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW, **which: Expr) -> SearchOutcome:
-    """An event with a number: end or merging of a window or small family of a period, or the n-th interior crisis."""
+    """A numbered event: the end or merging of a window or small family of a given period, or an interior crisis."""
     from verification.proofs.manifolds.known import CONTACTS
 
     name = f"{kind}-{which[parameter]}"

@@ -1,7 +1,8 @@
 """Questions on a scene, one function each: cycles, their branches, their proofs, trapping regions, Morse graphs.
 
-A scene, a table, a map of `numeric` or the name of a table is taken; `lam`, `law` and the numbers of the shape are
-keywords. Numbers are exact, as text or fractions: `"1/10"`, `"0.1"`. A float is refused, as it is not what it shows.
+`table` is a scene, a table, a map of `numeric` or the name of a table; `lam`, `law` and the numbers of the shape are
+keywords. Numbers are exact, as text or fractions: `"1/10"`, `"0.1"`. Floats are refused: they differ from their
+decimals.
 
 >>> from symbolic import Scene, tables
 >>> egg = Scene(tables.egg(3), alpha="2/25", lam="1/2")
@@ -44,8 +45,8 @@ Tick = Callable[[str], None]
 class PeriodicOrbit:
     """A cycle of minimal period in a scene: its bounces, in radians, and its multipliers, the larger one first.
 
-    Where a bounce lies on a join at which the curvature jumps they are those of the component behind it, and
-    `one_sided` is what the derivatives on all sides say, in float64.
+    If a bounce lies on a join at which the curvature jumps, the multipliers use the component behind the join, and
+    `one_sided` has what the derivatives on all sides imply, in float64.
     """
 
     scene: Scene
@@ -74,7 +75,7 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """True when both multipliers lie inside the unit circle, in float64; never where areas are preserved."""
+        """True if both multipliers lie inside the unit circle, in float64; always False where areas are preserved."""
         return self.stability.value == "stable"
 
     def __repr__(self) -> str:
@@ -85,7 +86,7 @@ class PeriodicOrbit:
 
 
 class PeriodicOrbits(Sequence[PeriodicOrbit]):
-    """A sequence of cycles, each once, by period; `.stable`, `.unstable` and `.of(period)` select some."""
+    """A sequence of different cycles, sorted by period; `.stable`, `.unstable` and `.of(period)` select some."""
 
     def __init__(self, orbits: Iterable[PeriodicOrbit], searched: "Searched | None" = None) -> None:
         self.orbits = tuple(orbits)
@@ -149,9 +150,9 @@ def find_cycles(
     law: Law | str | None = None,
     **shape: Any,
 ) -> PeriodicOrbits:
-    """The cycles of one minimal period, or of all periods `up_to` one, found by search in float64.
+    """The cycles of one minimal period, or of all periods up to `up_to`, found by a search in float64.
 
-    A search does not prove that it found all; `pinball cycles --prove` does, for small periods.
+    A search does not prove that it found all cycles; `pinball cycles --prove` does, for small periods.
 
     >>> find_cycles("ellipse", a="3/2", lam="1/2", period=2)
     PeriodicOrbits(2: 1 stable)
@@ -178,7 +179,7 @@ def _orbit(scene: Scene, cycle: "Found") -> PeriodicOrbit:
 
 @dataclass(frozen=True)
 class FollowedOrbit:
-    """A branch of cycles in one parameter, with its events; `.folds`, `.flips` and so on choose among them."""
+    """A branch of cycles in one parameter, with its events; properties such as `.folds` and `.flips` select some."""
 
     orbit: PeriodicOrbit
     parameter: str
@@ -186,7 +187,7 @@ class FollowedOrbit:
 
     @cached_property
     def events(self) -> "tuple[BranchEvent, ...]":
-        """All events, in the order of the branch."""
+        """All events, in their order along the branch."""
         return tuple(BranchEvent(self.orbit, self.parameter, event) for event in self.branch.events)
 
     @property
@@ -210,7 +211,7 @@ class FollowedOrbit:
         return self._of("border collision")
 
     def plot(self, axes: "Axes | None" = None) -> "Figure":
-        """Figure of the bounces along the branch, dashed where the cycle is unstable, and events; on `axes` or new."""
+        """A figure of the bounces along the branch, dashed where unstable, with its events; new, or on `axes`."""
         from numeric.pinball.states import plotted
 
         made: Figure = plotted("dynamics.plotted", (self.branch,), None, axes=axes)
@@ -227,7 +228,7 @@ class FollowedOrbit:
 
 @dataclass(frozen=True)
 class BranchEvent:
-    """An event on a branch, at a value of its parameter in float64; `certify` gives digits and a proof."""
+    """An event on a branch, at a parameter value in float64; `certify` gives more digits and a proof."""
 
     orbit: PeriodicOrbit
     parameter: str
@@ -245,20 +246,20 @@ class BranchEvent:
 
     @property
     def collision(self) -> str:
-        """At a border collision on a smooth join, what becomes of the cycle: persistence, or a nonsmooth fold."""
+        """The fate of the cycle at a border collision on a smooth join: persistence or nonsmooth fold; else ''."""
         return self.event.collision.value if self.event.collision else ""
 
     @property
     def supercritical(self) -> bool | None:
-        """True when the cycle that is born is stable where the old one is not; None where no normal form decides."""
+        """True if the bifurcation is supercritical: the new cycle is stable where the old one is not; None if open."""
         return self.event.form.supercritical if self.event.form else None
 
 
 def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None, **interval: Any) -> FollowedOrbit:
     """The branch of a cycle as one parameter varies: `lam=(low, high)`, or a shape such as `alpha=(low, high)`.
 
-    The ends are exact numbers or text. The branch is followed both ways from the cycle, through folds, and over joins
-    at which the curvature jumps.
+    The ends are exact numbers or text. The branch is followed in both directions from the cycle, through folds, and
+    across joins at which the curvature jumps.
     """
     import numpy as np
 
@@ -281,7 +282,7 @@ def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None,
 
 
 def ring_over(orbit: PeriodicOrbit, parameter: str, ends: Any) -> "tuple[Chords, float, dict[str, float] | None]":
-    """The chord system of a cycle with `parameter` free, the parameter's value at the cycle, the fixed parameters."""
+    """The chord system of a cycle with `parameter` free, the parameter's value, and the values of fixed parameters."""
     from verification.cycles.chords import Chords
 
     ends_of(parameter, ends)
@@ -300,7 +301,7 @@ def ring_over(orbit: PeriodicOrbit, parameter: str, ends: Any) -> "tuple[Chords,
 
 
 def law_over(scene: Scene, parameter: str, ends: Sequence[Any]) -> Law:
-    """The scene's law, with `parameter` free where it is the law's own, proved to be a law over the interval `ends`."""
+    """The scene's law, proved to be a law over the interval `ends`; a parameter of the law itself becomes free."""
     law, lam = scene.law, (scene.lam, scene.lam)
     low, high = ends
     interval = exact(parameter, low), exact(parameter, high)
@@ -315,7 +316,7 @@ def law_over(scene: Scene, parameter: str, ends: Sequence[Any]) -> Law:
 
 
 def _over_shape(scene: Scene, parameter: str, interval: tuple[Any, Any]) -> None:
-    """Proves that a law in arc length, which changes with the shape, remains a law over an interval of the shape."""
+    """Proves that a law in arc length, which changes with the shape, is a law for all shapes in an interval."""
     table = scene.over(parameter, *interval)
     for index, part in enumerate(table.components):
         if part.start.free_symbols | part.end.free_symbols:
@@ -325,7 +326,7 @@ def _over_shape(scene: Scene, parameter: str, interval: tuple[Any, Any]) -> None
 
 
 def ends_of(parameter: str, given: Any) -> tuple[float, float]:
-    """The two ends of an interval of the parameter as floats; `ValueError` where they form no interval."""
+    """The two ends of an interval of the parameter as floats; `ValueError` if they do not form an interval."""
     if not isinstance(given, tuple | list) or len(given) != 2:
         raise ValueError(
             f"follow: {parameter} = {given!r} is no interval; give two numbers, as in {parameter}=('0.3', '1')"
@@ -340,10 +341,10 @@ def ends_of(parameter: str, given: Any) -> tuple[float, float]:
 
 
 def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Located":
-    """A proof in balls, to so many digits: of an event, with its parameter; of a cycle, with its first bounce.
+    """A proof in balls, to `digits` digits, of an event and its parameter, or of a cycle and its first bounce.
 
-    Folds, period doublings and pitchforks have certificates, and so have cycles. The checklist of what comes back says
-    what holds; `notes["stability"]` what the one-sided derivatives prove where the curvature jumps at a bounce.
+    Folds, period doublings, pitchforks and cycles have certificates. The checklist of the result says what holds;
+    `notes["stability"]` is what the one-sided derivatives prove where the curvature jumps at a bounce.
 
     >>> axis = find_cycles("ellipse", a="3/2", lam="1/2", period=2).stable[0]
     >>> certify(axis, digits=10).certified
@@ -378,7 +379,7 @@ def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Locat
 
 
 def _proof_of_cycle(orbit: PeriodicOrbit, digits: int) -> "UniqueCycle":
-    """The proof of a cycle; `ValueError` where it is on joins, and the law depends on the place."""
+    """The proof of a cycle; `ValueError` if a bounce lies on a join and the law depends on the position."""
     from sympy import S
 
     from verification.cycles.problem import Problem
@@ -403,10 +404,11 @@ def morse_graph(
     law: Law | str | None = None,
     **shape: Any,
 ) -> "MorseGraph":
-    """The Morse sets of the map and their order, proved for a contraction or for all of `lam=(low, high)` at once.
+    """The Morse sets of the map and their order, proved for a contraction, or for all of `lam=(low, high)` at once.
 
-    The strip where every particle is after one bounce is covered by `columns` times `rows` cells, blocks of `coarsest`
-    of them first. From some bounce on every orbit that meets no join is in one of the sets. Convex tables only.
+    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by `columns` times `rows` cells,
+    at first in blocks of `coarsest`. From some bounce on, every orbit that meets no join is in one of the sets. Convex
+    tables only.
 
     >>> len(morse_graph("ellipse", a="3/2", lam="1/2", columns=64, rows=32).attracting)
     1
@@ -424,9 +426,9 @@ def trapping_region(
     law: Law | str | None = None,
     **shape: Any,
 ) -> "Region":
-    """The smallest trapping region that is proved on a grid: a union of cells that the map takes inside itself.
+    """The smallest trapping region that is proved on a grid: a union of cells that the map sends into its interior.
 
-    `lam`, `columns` and `rows` as for `morse_graph`. `ValueError` where nothing smaller than the whole strip is proved.
+    `lam`, `columns` and `rows` are as for `morse_graph`. `ValueError` if only the whole strip is proved.
 
     >>> trapping_region("ellipse", a="3/2", lam="1/2", columns=64, rows=32).checks["images_inside"]
     True
@@ -447,7 +449,7 @@ def trapping_region(
 def _graph(
     table: Any, lam: Any, columns: int, rows: int, coarsest: int, law: Law | str | None, shape: dict[str, Any]
 ) -> "tuple[PinballImages, MorseGraph]":
-    """The map over a range of contractions, and its Morse graph on a grid."""
+    """The map for one contraction or a range of them, and its Morse graph on a grid."""
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.rigorous.graph import Grid, morse_graph, refined
 

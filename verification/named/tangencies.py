@@ -1,10 +1,10 @@
-"""Tangencies of the manifolds of a saddle, in any scene whose boundary is one smooth formula: sought, then proved.
+"""Tangencies of the manifolds of saddles, in scenes whose boundary is one smooth formula: found, then proved.
 
-Each tangency is sought in float64 and then proved in balls. A crisis is such a tangency; that an attractor changes
-there is not shown here. Where the boundary is not convex each flight is proved to meet nothing on its way.
+Each tangency is found in float64 and then proved in balls. A crisis is such a tangency; it is not shown here that an
+attractor changes there. If the boundary is not convex, each flight is proved to meet no other part of it.
 
-A boundary in pieces gives a map with kinks. A manifold that crosses one is bent there, or torn, and has no power series
-on both sides: none is followed, and no tangency is sought (`objection_of`).
+If the boundary has several pieces, the map has kinks. A manifold that crosses a kink is bent or torn there and has no
+power series across it; such manifolds are not followed, and no tangency is searched for (`objection_of`).
 """
 
 import math
@@ -40,7 +40,7 @@ SAME = 1e-6  # parameters of bounces that a symmetry exchanges, and of one tange
 
 
 def objection_of(scene: Scene) -> str:
-    """Reason why a scene has no search for tangencies; empty where boundary and law are one smooth formula each.
+    """The reason why a scene has no search for tangencies; empty if boundary and law are one smooth formula each.
 
     >>> from symbolic import tables
     >>> objection_of(Scene(tables.stadium()))
@@ -68,10 +68,10 @@ def tangencies(
     searches: int = FEW_SEARCHES,
     tick: Tick | None = None,
 ) -> tuple[Located, ...]:
-    """Tangencies of manifolds of saddles up to one period, as the contraction varies; each with its proof.
+    """Tangencies of the manifolds of saddles up to a period, as the contraction varies, each with its proof.
 
-    Cycles and their manifolds are looked at for some contractions: each tangency that comes back certified is proved,
-    and that there are no others is not. There are infinitely many near any of them.
+    Cycles and their manifolds are examined at `searches` contractions. Each tangency that is certified is proved, but
+    not that there are no others; there are infinitely many near any of them.
     """
     if why := objection_of(scene):
         raise ValueError(f"locate tangency: {scene.name}: {why}; accepted: a boundary of one smooth formula")
@@ -90,7 +90,7 @@ def tangencies(
 
 
 def located(scene: Scene, touch: Touch, cycle: PeriodicOrbit, digits: int) -> Located:
-    """A tangency that was found, with its proof or the reason why there is none."""
+    """A tangency that was found, with its proof, or with the reason why it is not proved."""
     begun, contact = time.perf_counter(), touch.contact
     unstable, stable = touch.multipliers[1], touch.multipliers[0]
     notes = {
@@ -127,7 +127,9 @@ def proved(scene: Scene, contact: Contact, digits: int) -> Tangency | str:
 def near(
     scene: Scene, ends: tuple[float, float], period: int, seed: int = 1, heard: Tick = lambda said: None
 ) -> Iterator[tuple[Touch, PeriodicOrbit]]:
-    """The tangencies between two contractions that Newton's method finds from the scene's own, each with its saddle."""
+    """The tangencies between two contractions that Newton's method finds, started at the scene's; with their
+    saddles.
+    """
     mirror = scene.law.odd and reflected(scene.table)
     map, known = pinball(scene.table, scene.law), set[tuple[complex, ...]]()
     for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):
@@ -146,7 +148,7 @@ def near(
 
 
 def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> SaddleCycle:
-    """The shortest part of a cycle that a symmetry maps to the next, in angles that count whole turns.
+    """The shortest part of a cycle from which symmetries give the rest; angles count whole turns.
 
     >>> from symbolic import Scene
     >>> egg, thirds = Scene("egg", alpha="2/25"), (0.0, 2.0943951, -2.0943951)

@@ -1,7 +1,7 @@
-"""Theorems with a certificate file, by the `kind` that their files state: one line for each.
+"""Theorems that have a certificate file, found by the `kind` in the file.
 
-A file can claim anything and prove nothing: each entry of it must be, as JSON text, the one that its theorem would
-write, and the whole checklist is worked through again. `docs/certificate_format.md` says what each entry means.
+A file can claim anything and proves nothing: each of its entries must be, as JSON text, the one that its theorem would
+write, and the whole checklist is worked through again. `docs/certificate_format.md` explains each entry.
 """
 
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ THEOREMS = {
 
 
 def theorem_class(kind: str) -> type[Certified]:
-    """The class of theorems of this kind; its module is imported only now."""
+    """The class of theorems of this kind; its module is imported by this call."""
     if kind not in [*THEOREMS]:
         raise ValueError(f"certificate: kind = {ascii(kind)[:60]} is unknown; accepted: {', '.join(THEOREMS)}")
     module, _, name = (PROOFS + THEOREMS[kind]).rpartition(".")
@@ -35,19 +35,19 @@ def theorem_class(kind: str) -> type[Certified]:
 
 
 def theorem(document: Mapping[str, Any]) -> Certified:
-    """The theorem that a document states, not proved yet; `ValueError` where an entry is not what it would write."""
+    """The theorem that a document states, not yet proved; `ValueError` if the theorem would write another entry."""
     stated = theorem_class(document.get("kind", "")).from_dict(document)
     stated.check_entries(document)
     return stated
 
 
 def checked(document: Mapping[str, Any]) -> Certified:
-    """The theorem of a document, worked through anew; `ValueError` where the file says more of it than is proved."""
+    """The theorem of a document, proved anew; `ValueError` if the file claims more than is proved."""
     stated = theorem(document)
     stated.check_entries(document, stated.evidence)
     return stated
 
 
 def check(path: Path | str) -> Certified:
-    """The theorem that a certificate file states, worked through anew; `proved` says whether every item holds."""
+    """The theorem that a certificate file states, proved anew; `proved` says whether every item holds."""
     return checked(read_document(Path(path)))

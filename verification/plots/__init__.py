@@ -1,4 +1,4 @@
-"""Sheets of panels, and the drawings that more than one room uses."""
+"""Figures as sheets of panels, and drawings that several packages use."""
 
 import lazy_loader
 

@@ -1,8 +1,8 @@
 """Figures of branches of cycles, of the egg's parameter plane and of its crises.
 
-A branch: `theta` of each bounce against the parameter, solid where the cycle is stable, bifurcations marked. The plane
-of `lam` and `alpha`: the curves of the cascade over the share of chaotic starts. A crisis (paper: section 6.7): the
-attractor and the invariant manifolds, whole and enlarged where they touch.
+For a branch, `theta` of each bounce is drawn against the parameter, solid where the cycle is stable, with bifurcations
+marked. For the plane of `lam` and `alpha`, the curves of the cascade over the fraction of chaotic starts. For a crisis
+(paper: section 6.7), the attractor and the invariant manifolds, whole and enlarged where they touch.
 """
 
 from collections.abc import Iterator, Sequence
@@ -55,7 +55,7 @@ MARKS = {
 
 
 def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None, axes: "Axes | None" = None) -> "Figure":
-    """Figure of branches, new or on `axes`: `theta` of the bounces with these indices (None: all) by the parameter."""
+    """Figure of `theta` against the parameter along branches, for the given bounces (None: all); new or on `axes`."""
     if axes is not None:
         along(axes, branches, bounces)
         return figure_of(axes)
@@ -67,7 +67,7 @@ def plotted(branches: Sequence[Branch], bounces: Sequence[int] | None = None, ax
 
 
 def along(axes: "Axes", branches: Sequence[Branch], bounces: Sequence[int] | None = None) -> None:
-    """Draws `theta` of the bounces with these indices (None: all) along each branch, and marks the bifurcations."""
+    """Draws `theta` of the given bounces (None: all) along each branch, and marks the bifurcations."""
     seen: set[BifurcationKind] = set()
     for number, followed in enumerate(branches):
         shown = range(followed.system.recurrence.period) if bounces is None else bounces
@@ -96,10 +96,10 @@ NUMBERED = {"band-merging": "4", "interior-crisis": "1"}  # the crisis that is d
 
 
 def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
-    """Figure of the first located value: its cycle in the table, and the branch near it with the value marked.
+    """Figure of the first located value: its cycle in the table, and the branch with the value marked.
 
-    A crisis is drawn with its manifolds (`number` chooses among several of one name); the orbit through the corners
-    with the place of its fourth bounce, as in section 5.2.
+    A crisis is drawn with its manifolds; `number` selects one of several with the same name. For the orbit through the
+    corners, the landing of the fourth bounce is drawn, as in section 5.2.
     """
     one = found[0]
     proof: Any = one.proof
@@ -144,7 +144,7 @@ def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
 
 
 def _diameter() -> Chords:
-    """The diameter of the egg as a chord system; its multipliers become complex at alpha-hat."""
+    """The diameter of the egg as a chord system, for alpha-hat, where its multipliers become complex."""
     return Chords(egg(3), (0, 0))
 
 
@@ -171,7 +171,7 @@ def _through_corners(lam: float) -> "Figure":
 
 
 def _whole(closure: Closure, x: Array) -> list[float]:
-    """All bounces of a cycle: `x` are those of one part, and the symmetry maps each part to the next."""
+    """All bounces of a cycle, from the bounces `x` of one part, which a symmetry maps to the next parts."""
     bounces, here = list(x), np.asarray(x)
     for _ in range(MOST):
         here = closure.turn * here + closure.radians
@@ -182,7 +182,7 @@ def _whole(closure: Closure, x: Array) -> list[float]:
 
 
 def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float], bool]]:
-    """Pieces `(parameters, angles, stable)` of a branch, each of one stability, cut where the angle jumps by a turn."""
+    """Pieces `(parameters, angles, stable)` of a branch, cut where the stability changes or the angle jumps by 2*pi."""
     values: list[float] = []
     angles: list[float] = []
     for a, b in pairwise(branch.points):
@@ -212,7 +212,7 @@ POINTS = 10_000  # shapes are multiples of this part of their range, hence exact
 
 
 class Sample(NamedTuple):
-    """Share of starts with a positive exponent, by shape `alpha` (rows) and contraction `lam` (columns)."""
+    """The fraction of starts whose exponent is positive, by shape `alpha` (rows) and contraction `lam` (columns)."""
 
     alpha: Array
     lam: Array
@@ -220,7 +220,7 @@ class Sample(NamedTuple):
 
 
 def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed: int = 1) -> Sample:
-    """Share of chaotic random starts on a grid of `side` by `side`; `bounces` count, after as many that are discarded.
+    """The fraction of chaotic starts on a `side` by `side` grid; exponents are over `bounces`, after a transient.
 
     >>> found = sampled(3, 3, 4, 200)
     >>> found.share.shape, float(found.share[0].max())
@@ -240,7 +240,7 @@ def sampled(K: int, side: int = 40, starts: int = 24, bounces: int = 2000, seed:
 
 
 def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) -> "Figure":
-    """Figure of doublings, symmetry breaking, accumulation and the folds of polygons in the plane of `lam`, `alpha`."""
+    """Figure of the plane of `lam` and `alpha`: doublings, symmetry breaking, accumulation, folds of polygons."""
     made = figure(7.5, 5.2)
     axes = made.add_subplot()
     top = largest_shape(K)
@@ -264,7 +264,7 @@ def tongue_plotted(K: int = 3, sample: Sample | None = None, highest: int = 64) 
 
 
 def turns(K: int) -> list[tuple[int, int]]:
-    """Rotation numbers `p/K` below 1/2 in lowest terms, as pairs `(p, K)`: those of the polygons that fold.
+    """The rotation numbers `p/K` below 1/2 in lowest terms, as pairs `(p, K)`, of the polygons that have folds.
 
     >>> turns(5)
     [(1, 5), (2, 5)]
@@ -350,7 +350,7 @@ def attractor(kind: str, alpha: Expr, lam: float, law: Law = PAPERS_LAW) -> tupl
 
 
 def _touching_point(where: Any, map: Any) -> tuple[float, float]:
-    """`theta` modulo 2*pi/3 and `phi` of the tangency orbit's most sensitive bounce; for a 2-cycle of its last."""
+    """`theta` modulo 2*pi/3 and `phi` of the bounce at which a tangency is shown, the most sensitive or the last."""
     gap = Gap(where, map, where.parameter, 28, 1e-16)
     flight = [jet.c[0] for jet in gap.orbit(gap.extremum()[0])]
     moves = [abs(jet.c[1]) for jet in gap.orbit(gap.start)[:-1]]

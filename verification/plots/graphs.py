@@ -17,7 +17,7 @@ NAMED = len(PALETTE)  # classes that have a colour of their own
 
 
 def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
-    """Figure of the Morse sets in phase space, proved basins in pale colours; a panel for each boundary component."""
+    """Figure of the Morse sets in phase space, with proved basins in pale colours; one panel per boundary component."""
     from matplotlib.colors import to_rgb
 
     grid, leaf, count = graph.transitions.grid, graph.transitions.leaf, graph.transitions.count
@@ -50,7 +50,7 @@ def morse_sets(graph: "MorseGraph", label: str) -> "Figure":
 
 
 def database(found: "xr.Dataset") -> "Figure":
-    """Figure of parameter boxes: coloured alike where the Morse graph continues, and by number of trapping regions."""
+    """Figure of the parameter boxes, coloured by class of Morse graphs, and by the number of trapping regions."""
     from matplotlib.colors import ListedColormap, to_rgb
 
     from verification.proofs.global_dynamics.database import continued

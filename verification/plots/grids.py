@@ -1,6 +1,6 @@
-"""Figures of sweeps: basins, attractors against a parameter, parameter space, exponents by attractor.
+"""Figures of sweeps: basins, attractors against a parameter, parameter space, exponents of attractors.
 
-The resolution is high enough for each cell of a grid to have a pixel.
+The resolution is high enough that each cell of a grid has at least one pixel.
 """
 
 from collections.abc import Iterable, Sequence
@@ -39,7 +39,7 @@ def fine(made: "Figure", axes: "Axes", columns: int, rows: int) -> None:
 
 
 def basins(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
-    """Figure of the starts `(s, sin(phi))`, each in the colour of the attractor it reaches, blank for none."""
+    """Figure of the starts `(s, sin(phi))`, each in the colour of the attractor it reaches; blank if none."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 
@@ -67,9 +67,9 @@ def basins(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
 
 
 def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = (), axes: "Axes | None" = None) -> "Figure":
-    """Figure of the attractors against the parameter as a density, proved values as lines, and exponents below.
+    """Figure of the attractors against the parameter as a density; proved values are lines, exponents are below.
 
-    On given axes only the attractors are drawn.
+    On given axes, only the attractors are drawn.
     """
     parameter = str(found.chaotic.dims[0])
     values = np.asarray(found[parameter].values)
@@ -112,7 +112,7 @@ def bifurcation(found: "xr.Dataset", marks: Sequence[Marked] = (), axes: "Axes |
 
 
 def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[float, float]) -> None:
-    """Draws lines at the marks in both axes, and their words above `top`, shifted where they would overlap."""
+    """Draws lines at the marks in both axes, and their texts above `top`, shifted where they would overlap."""
     near, at = 0.022 * (ends[1] - ends[0]), -np.inf
     for value, words in marks:
         for axes in (top, bottom):
@@ -126,8 +126,9 @@ def labelled(top: "Axes", bottom: "Axes", marks: Iterable[Marked], ends: tuple[f
 def parameter_space(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure":
     """Figure of the largest exponent over shape and contraction; below it, the period of the least chaotic particle.
 
-    Exponents are red where positive, with a line around cells with a chaotic particle. Each period has a colour; a cell
-    without a cycle is grey, darker for a larger smallest exponent. On given axes only the exponents are drawn.
+    Positive exponents are red, and a line surrounds cells with a chaotic particle. Each period has a colour; a cell
+    without a cycle is grey, darker for a larger value of its smallest exponent. On given axes, only the exponents are
+    drawn.
     """
     shape = str(found.chaotic.dims[0])
     lams, values = np.asarray(found.lam.values), np.asarray(found[shape].values)
@@ -152,7 +153,7 @@ def parameter_space(found: "xr.Dataset", axes: "Axes | None" = None) -> "Figure"
 
 
 def periods(period: NDArray[Any], nu: Array) -> Array:
-    """RGB image, shape `(rows, columns, 3)`: a colour for each period, grey without one, darker for larger `nu`.
+    """RGB image of shape `(rows, columns, 3)`: a colour for each period; else grey, which is darker for larger `nu`.
 
     >>> periods(np.array([[2, 0]]), np.array([[-1.0, 0.6]]))[0, 1].round(2).tolist()
     [0.4, 0.4, 0.4]
@@ -166,7 +167,7 @@ def periods(period: NDArray[Any], nu: Array) -> Array:
 
 
 def colour(period: int) -> str:
-    """The colour of a period; black for 8, whose colour in the palette is grey as for chaos.
+    """The colour of a period; black for 8, whose colour in the palette would be the grey of chaos.
 
     >>> colour(8), colour(2) == PALETTE[1]
     ('#000000', True)

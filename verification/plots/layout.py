@@ -1,6 +1,6 @@
 """Layout of a figure: a grid of equal axes, with room around them for labels and legends.
 
-The places are those of Matplotlib's constrained layout, but each text is measured once instead of a dozen times, since
+Positions are those of Matplotlib's constrained layout, but each text is measured once instead of a dozen times, since
 an axis label keeps its distance when the axes move. Import this module only to draw: it needs Matplotlib.
 """
 
@@ -32,10 +32,10 @@ _parsers: dict[str, Any] = {}
 
 
 class Canvas(FigureCanvasAgg):
-    """Canvas that shares its parser of formulas with all other canvases of the process."""
+    """Canvas that shares its formula parser with all other canvases of the process."""
 
     def get_renderer(self) -> RendererAgg:
-        """Matplotlib's renderer with the parser of the first one made, so that equal formulas are parsed once."""
+        """Matplotlib's renderer, with the formula parser of the first canvas, so that formulas are parsed once."""
         made: RendererAgg = super().get_renderer()  # type: ignore[no-untyped-call]
         made.mathtext_parser = _parsers.setdefault("agg", made.mathtext_parser)
         return made
@@ -44,14 +44,14 @@ class Canvas(FigureCanvasAgg):
 class GridLayout(LayoutEngine):
     """Layout engine for equal axes in one grid; each row and column gets the room that its labels need.
 
-    It makes no room for colour bars; texts of the figure lie at its foot, and titles at the top of their axes.
+    It makes no room for colour bars. Texts of the figure are at its foot, titles at the top of their axes.
     """
 
     _adjust_compatible = False
     _colorbar_gridspec = False
 
     def execute(self, fig: "Figure") -> None:
-        """Moves the axes to their places."""
+        """Moves the axes to their positions in the grid."""
         canvas = fig.canvas if isinstance(fig.canvas, Canvas) else Canvas(fig)
         renderer = canvas.get_renderer()
         pairs = ((axes, axes.get_subplotspec()) for axes in fig.axes)
@@ -74,7 +74,7 @@ class GridLayout(LayoutEngine):
 
 
 def _cell_starts(size: float, room: "Array", foot: float = 0.0) -> "tuple[Array, float]":
-    """Starts of the cells along a side of the figure and their length, as shares of `size`; `room` in inches.
+    """The starts of the cells along a side, and their length, as fractions of `size`; `room` is in inches.
 
     >>> _cell_starts(10.0, np.array([[1.0, 0.0]]))[0].round(3).tolist()
     [0.104]
@@ -95,7 +95,7 @@ def _outside(box: Bbox, inner: BboxBase) -> "Array":
 
 @dataclass(eq=False)
 class Cell:
-    """Axes and how far their numbers, labels and title reach; measured again only when their numbers change."""
+    """One pair of axes, and the room that its labels and title need, which is cached until the ticks change."""
 
     axes: "Axes"
     dpi: float
@@ -104,7 +104,7 @@ class Cell:
     reach: "Array" = field(default_factory=lambda: np.zeros((2, 2)))
 
     def beyond(self, renderer: RendererAgg) -> "Array":
-        """Reach of the axes with labels and legend beyond their cell, in inches: `[[left, below], [right, above]]`."""
+        """How far labels and legend extend beyond the cell, in inches: `[[left, below], [right, above]]`."""
         words = self.words(renderer)
         box = Bbox(self.axes.bbox.get_points() + self.dpi * words * [[-1], [1]])
         legend = self.axes.get_legend()
@@ -117,7 +117,7 @@ class Cell:
         return _outside(box, cell) / self.dpi
 
     def words(self, renderer: RendererAgg) -> "Array":
-        """Reach of numbers, labels and title beyond the axes as drawn, as by `beyond`; places the axis labels."""
+        """How far tick labels, axis labels and title extend beyond the axes, as in `beyond`; places the axis labels."""
         self.axes.apply_aspect()
         shown = (self.axes.xaxis, self.axes.yaxis) if self.axes.axison else ()
         numbered = [list(axis.get_majorticklocs()) for axis in shown]
@@ -134,7 +134,7 @@ class Cell:
         return self.reach
 
     def _label_boxes(self, axis: "Axis", renderer: RendererAgg) -> list[Bbox]:
-        """Boxes of the numbers of an axis and of its label, which is placed beside them."""
+        """Boxes of the tick labels of an axis and of its axis label, which is placed beside them."""
         inside, across = self.axes.bbox, axis is self.axes.xaxis
         numbers = [text.get_window_extent(renderer) for text in _numbers(axis)]
         away = _outside(Bbox.union([inside, *numbers]), inside)[0, int(across)] / self.dpi + axis.labelpad / 72
@@ -150,7 +150,7 @@ class Cell:
 
 
 def _numbers(axis: "Axis") -> "Iterable[Text]":
-    """The texts at the ticks that are in view."""
+    """The tick labels that are in view."""
     low, high = sorted(axis.get_view_interval())
     slack = 1e-10 * (high - low)
     for place, text in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False):
@@ -159,9 +159,9 @@ def _numbers(axis: "Axis") -> "Iterable[Text]":
 
 
 def plain_minor_ticks(axes: "Axes") -> None:
-    """Draws the minor ticks of a logarithmic x-axis as two rows of markers, for the limits that it has now.
+    """Draws the minor ticks of a logarithmic x-axis as two rows of markers, for its present limits.
 
-    They look like Matplotlib's, each of which takes five artists.
+    They look like Matplotlib's own minor ticks, each of which takes five artists.
     """
     low, high = axes.get_xlim()
     if not high > DECADE * low:

@@ -1,7 +1,7 @@
 """Figures of the results of commands: `--plot FILE` draws the numbers that were printed.
 
-Many points are drawn as a density, whose opacity is the logarithm of the count. All tables can be drawn, also with
-several components or holes, under every reflection law.
+Many points are drawn as a density, whose opacity is the logarithm of the count. All tables can be drawn, under every
+reflection law, also if they have several components or holes.
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,23 +47,23 @@ CELLS: dict[str, Any] = {"origin": "lower", "aspect": "auto", "interpolation": "
 
 
 class Marked(NamedTuple):
-    """A proved value of the parameter, and a text on what happens there."""
+    """A proved value of the parameter, and a text that says what happens at it."""
 
     value: float
     words: str
 
 
 def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
-    """Bytes of the picture of a command's results; `kind` is `module.function` of this package, `ending` as `.png`."""
+    """The picture of a command's results as bytes; `kind` is `module.function` in this package, `ending` a suffix."""
     module, _, name = kind.partition(".")
     with styled():
         return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
 
 
 def shown(kind: str, results: Sequence[Any], axes: "Axes | None" = None) -> "Figure":
-    """Figure of results for a script or a notebook, on the axes given or new.
+    """Figure of results for a script or a notebook; on given axes, or new.
 
-    `kind` is `module.function` of this package, or a function named in full.
+    `kind` is `module.function` of this package, or the full name of a function.
     """
     module, _, name = kind.rpartition(".")
     where = module if "." in module else f"verification.plots.{module}"
@@ -80,7 +80,7 @@ def _png(made: "Figure") -> bytes:
 
 
 def outline(map: PinballMap) -> tuple[Array, Array]:
-    """`x` and `y` of points along the boundary; a nan separates components that do not join."""
+    """`x` and `y` of points along the boundary; a nan separates components that are not joined."""
     x: list[Array] = []
     y: list[Array] = []
     for index, (low, high) in enumerate(map.states.ends):
@@ -95,7 +95,7 @@ def outline(map: PinballMap) -> tuple[Array, Array]:
 
 
 def position(map: PinballMap, s: Array) -> tuple[Array, tuple[float, float]]:
-    """Arc length within half the perimeter either side of 0 (with holes: unchanged), and the two ends of its range.
+    """Arc length reduced to `[-L/2, L/2]` (unchanged if the table has holes), and the ends of its range.
 
     >>> position(PinballMap("circle"), np.array([4.0]))[0].round(4).tolist()
     [-2.2832]
@@ -135,7 +135,7 @@ def phase(axes: "Axes", map: PinballMap) -> tuple[float, float]:
 
 
 def cloud(axes: "Axes", x: Array, y: Array, colour: str, size: float = 2.5) -> None:
-    """Draws points within the limits of the axes: as dots up to `DOTS`, else as a density."""
+    """Draws the points within the limits of the axes: as dots if there are at most `DOTS`, else as a density."""
     from matplotlib.colors import to_rgb
 
     if x.size <= DOTS:
@@ -147,7 +147,7 @@ def cloud(axes: "Axes", x: Array, y: Array, colour: str, size: float = 2.5) -> N
 
 
 def pair() -> "tuple[Figure, Axes, Axes]":
-    """A figure, its axes on the left for the table and on the right for phase space."""
+    """A new figure, with its axes for the table (left) and for phase space (right)."""
     made = figure(7.0, 3.0)
     left, right = made.subplots(1, 2, width_ratios=(1, 1.25))
     return made, left, right
@@ -169,7 +169,7 @@ def orbit(map: PinballMap, entries: Sequence[Mapping[str, Any]]) -> "Figure":
 
 
 def flights(found: "Orbit", axes: "Axes | None" = None) -> "Figure":
-    """Figure of the flights and bounces of an `Orbit`, its first particles in colours; on given axes flights alone."""
+    """Figure of an `Orbit`: flights and bounces, with the first particles in colours; on given axes, flights only."""
     map = found.map
     assert map is not None
     rows: list[Any] = [np.asarray(row).reshape(len(found.theta), -1)[:, :LABELLED] for row in found]
@@ -213,9 +213,9 @@ def _bounces(axes: "Axes", map: PinballMap, s: Array, phi: Array, colour: str, l
 
 
 def attractors(map: PinballMap, found: "Sequence[Attractor]", axes: "Axes | None" = None) -> "Figure":
-    """Figure of attractors, each in a colour: flights in the table, points in phase space, share of the starts.
+    """Figure of attractors, each in its colour: flights in the table, points in phase space, fraction of starts.
 
-    On given axes phase space alone.
+    On given axes, only phase space is drawn.
     """
     left: Any
     right: Any
@@ -243,7 +243,7 @@ def attractors(map: PinballMap, found: "Sequence[Attractor]", axes: "Axes | None
 
 
 def beside(made: "Figure", axes: "Axes", own: bool, columns: int) -> None:
-    """Puts the legend outside the axes: below a figure of its own, to the right of axes that were given."""
+    """Puts the legend below a figure of its own, or to the right of given axes."""
     if own:
         made.legend(loc="outside lower center", ncols=columns)
     else:
@@ -251,9 +251,9 @@ def beside(made: "Figure", axes: "Axes", own: bool, columns: int) -> None:
 
 
 def exponents(document: Mapping[str, Any], axes: "Axes | None" = None) -> "Figure":
-    """Figure of both exponents of each attractor with twice their standard errors, and of the errors by bounces.
+    """Figure of both exponents of each attractor, with two standard errors, and of the errors by number of bounces.
 
-    On given axes the exponents alone.
+    On given axes, only the exponents are drawn.
     """
     if axes is None:
         made = figure(7.0, 3.4)
@@ -287,7 +287,7 @@ def exponents(document: Mapping[str, Any], axes: "Axes | None" = None) -> "Figur
 
 
 def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "Slap") -> "Figure":
-    """Figure of the iterates of the slap map over arc length with the diagonal, and of the slope of the map."""
+    """Figure of the iterates of the slap map over arc length, with the diagonal, and of the map's slope."""
     s, ends = position(map, np.asarray(map.arclength.s(theta, component)))
     order = np.argsort(s)
     made = figure(7.0, 3.6)
@@ -317,7 +317,7 @@ def slap(map: PinballMap, component: NDArray[np.int64], theta: Array, values: "S
 
 
 def _with_gaps(values: Array) -> Array:
-    """Values with nan before each jump: a step more than 8 times the upper quartile of the steps.
+    """The values, with nan before each jump (a step of more than 8 times the upper quartile of the steps).
 
     >>> _with_gaps(np.array([0.0, 1.0, 2.0, 30.0, 31.0, 32.0])).tolist()
     [0.0, 1.0, nan, 30.0, 31.0, 32.0]
@@ -328,7 +328,7 @@ def _with_gaps(values: Array) -> Array:
 
 
 def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequence[float], **look: Any) -> None:
-    """Draws each chord of a cycle once: a second dashed line on the first would fill its gaps."""
+    """Draws the chords of a cycle, each once: a second dashed line would fill the gaps of the first."""
     x, y = map.states.point(np.array([*components, components[0]]), np.array([*theta, theta[0]], dtype=float))
     ends = [tuple(end) for end in np.round(np.stack([x, y], axis=1), 6)]
     chords = {frozenset(pair): i for i, pair in reversed(list(enumerate(pairwise(ends))))}
@@ -337,7 +337,7 @@ def closed(axes: "Axes", map: PinballMap, components: Sequence[int], theta: Sequ
 
 
 def cycles(scene: "Scene", catalogue: "Catalogue") -> "Figure":
-    """Figure of the first cycles of the list, each in a table of its own; solid if stable, dashed if unstable."""
+    """Figure of the first cycles in the catalogue, each in a table; solid if stable, dashed if unstable."""
     map, found = PinballMap(scene), catalogue.cycles
     rows = max(1, -(-min(len(found), SMALL) // 4))
     made = figure(7.0, 2.0 * rows + 0.3)

@@ -1,7 +1,8 @@
 """Figures as data (panels of named curves, in the quantities of the paper's axes), and how they are drawn.
 
 All figures have the same style, readable in black and white. Matplotlib is imported inside functions, and only when
-something is drawn. No pyplot and no global state: the style's settings hold only while a figure is made and saved.
+something is drawn. There is no pyplot and no global state: the style's settings hold only while a figure is made and
+saved.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -32,7 +33,7 @@ class Curve(NamedTuple):
 
 
 class Raster(NamedTuple):
-    """Labels for the cells of a grid: `names[labels[row, column]]`; the first row is the lowest."""
+    """Labels of the cells of a grid; `names[labels[row, column]]` is a cell's name, and the first row is the lowest."""
 
     x: Array
     y: Array
@@ -42,7 +43,7 @@ class Raster(NamedTuple):
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes: `x` and `y` are keys of `AXES`, `facts` the settings from which the data were computed."""
+    """The data of one pair of axes: `x` and `y` are keys of `AXES`, `facts` tells how the data were computed."""
 
     title: str
     x: str
@@ -140,7 +141,7 @@ CROSS: dict[str, Any] = {"ls": "", "marker": "x", "color": BLACK, "ms": 6, "mew"
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Sets Matplotlib's options for the figures, and restores them afterwards."""
+    """Context in which Matplotlib has the options for our figures; they are restored afterwards."""
     try:
         import matplotlib
     except ImportError:
@@ -160,22 +161,22 @@ def figure(width: float, height: float) -> "Figure":
 
 
 def figure_of(axes: "Axes") -> "Figure":
-    """The figure that some axes belong to."""
+    """The figure that the axes belong to."""
     made: Figure = axes.figure  # type: ignore[assignment]  # or a part of one
     return made
 
 
 def image(drawn: "Figure", ending: str) -> bytes:
-    """Bytes of a figure's file in the format of `ending`, such as `.png`; equal figures give equal bytes."""
+    """A figure as the bytes of a file in the format of `ending`, such as `.png`; equal figures give equal bytes."""
     from matplotlib import rcParams
 
     return encoded(drawn, ending, dpi=max(rcParams["savefig.dpi"], drawn.dpi))
 
 
 def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> bytes:
-    """Bytes of a figure's file, with further options of `savefig`.
+    """A figure as the bytes of a file, with further options for `savefig`.
 
-    The layout is made here, once: `savefig` would make it in an extra drawing, which it throws away.
+    The layout is computed here, once; `savefig` would compute it in an extra drawing that is then discarded.
     """
     from verification.plots.layout import Canvas
 
@@ -191,7 +192,7 @@ def encoded(drawn: "Figure", ending: str, dpi: float = 72.0, **form: Any) -> byt
 
 
 def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array:
-    """RGBA image of counts: opaque at the largest, transparent at 0; the first row is the lowest.
+    """RGBA image of counts: opaque at the largest count, transparent at 0; the first row is the lowest.
 
     >>> ink(np.array([[0, 9]]))[..., 3].tolist()
     [[0.0, 1.0]]
@@ -204,7 +205,7 @@ def ink(counts: NDArray[Any], colour: tuple[float, float, float] = INK) -> Array
 def shaded(
     made: "Figure", lams: Array, shapes: Array, nu: Array, chaotic: Array, name: str, axes: "Axes | None" = None
 ) -> "Axes":
-    """Axes with the largest exponent over contractions and shapes, red if positive; a line around chaotic cells."""
+    """Draws the largest exponent over contractions and shapes, red if positive, and a line around chaotic cells."""
     from matplotlib.colors import TwoSlopeNorm
 
     axes = axes or made.add_subplot()
@@ -227,7 +228,7 @@ def shaded(
 
 
 def sides(centres: Array) -> tuple[float, float]:
-    """The two outer ends of equal cells with these centres.
+    """The two outer ends of a row of equal cells with these centres.
 
     >>> sides(np.array([0.5, 1.5]))
     (0.0, 2.0)
@@ -237,7 +238,7 @@ def sides(centres: Array) -> tuple[float, float]:
 
 
 def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tuple[Figure, list[Axes]]":
-    """A figure with one pair of axes for each panel, titled and labelled; `height` of a row in inches."""
+    """A figure with titled and labelled axes for each panel; `height` is that of a row, in inches."""
     from matplotlib.figure import Figure
 
     from verification.plots.layout import GridLayout
@@ -256,7 +257,7 @@ def sheet(panels: Sequence[Panel], columns: int = 2, height: float = 2.8) -> "tu
 
 
 def _prepare(ax: "Axes", panel: Panel) -> None:
-    """Sets labels, limits and ticks for the quantities on the axes."""
+    """Sets the labels, limits and ticks of the axes for the panel's quantities."""
     if panel.x == "x":
         ax.set_aspect("equal")
         ax.set_axis_off()
@@ -282,7 +283,7 @@ def _pi(halves: int) -> str:
 
 
 def cloud(ax: "Axes", curve: Curve, color: str, size: float = 0.6, label: str | None = None) -> None:
-    """Draws a curve as separate points; more than 4000 become pixels also in a vector file."""
+    """Draws a curve as separate points; more than 4000 points are drawn as pixels even in a vector file."""
     ax.plot(*curve, ls="", marker="o", mew=0, ms=size, color=color, rasterized=curve.x.size > 4000, label=label)
 
 
@@ -295,7 +296,7 @@ def legend(ax: "Axes", columns: int = 3) -> None:
 
 
 def graphs(ax: "Axes", panel: Panel) -> None:
-    """Draws graphs of a map and its iterates with the diagonal, lighter for higher iterates."""
+    """Draws the graphs of a map and its iterates, lighter for higher iterates, with the diagonal."""
     low = min(float(curve.x[0]) for curve in panel.curves.values())
     high = max(float(curve.x[-1]) for curve in panel.curves.values())
     ax.plot([low, high], [low, high], **FAINT)

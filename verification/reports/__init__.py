@@ -1,4 +1,4 @@
-"""Reports on any scene, made in the time given: a page by sections, JSON and LaTeX."""
+"""Reports on any scene, made within a given time: a page in sections, JSON and LaTeX."""
 
 import lazy_loader
 

@@ -1,7 +1,7 @@
-"""The settings of a report, its command lines, and its parts, which are kept on disk.
+"""The settings of a report, its command lines, and its intermediate results, which are kept on disk.
 
-Each step of the work leaves one file, with a digest of the settings in it: a report that was stopped goes on from
-there, and the files of other settings are not used.
+Each step of the work writes one file that contains a digest of the settings. A report that was stopped can be resumed
+from these files; files with other settings are ignored.
 """
 
 import json
@@ -32,9 +32,10 @@ CONTRACTIONS = ("1/10", "1/2", "9/10")
 class Asked:
     """The settings of a report: a scene, the interval of the parameter that varies, and what is examined on it.
 
-    `low` and `high` are exact numbers as text, `at` the contractions of portraits and censuses, `period` the longest
-    cycle that is searched for, `digits` those of a certificate. `second` is a parameter of the table or of the law that
-    varies beside the contraction, with its ends; the rest of the report is then at the scene's own value of it.
+    `low` and `high` are exact numbers as text, `at` the contractions for which portraits are drawn and attractors are
+    counted, `period` the longest period that is searched for, `digits` the number of digits in a certificate. `second`
+    is a parameter of the table or of the law that varies beside the contraction, with its ends; the other sections are
+    then at the scene's own value of it.
     """
 
     scene: Scene
@@ -62,7 +63,7 @@ class Asked:
 
     @cached_property
     def digest(self) -> str:
-        """Digest of the settings, the program and the versions, on which the bits of the answers depend."""
+        """A digest of the settings, the program and the package versions, which together determine all results."""
         program = sources("symbolic", "numeric", "verification")
         said = {**asdict(self), "scene": self.scene.text, "versions": versions(), "program": program}
         return sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
@@ -80,7 +81,7 @@ class Asked:
 
     @property
     def both(self) -> str:
-        """The option `--vary` for a second parameter; empty without one."""
+        """The option `--vary` for a second parameter; empty if there is none."""
         return "" if self.second is None else "--vary {}={}:{}".format(*self.second)
 
     @property
@@ -92,7 +93,7 @@ class Asked:
 
     @property
     def own_value(self) -> float:
-        """The scene's own value of the parameter that varies, or the nearer end of the interval."""
+        """The scene's own value of the parameter that varies; if it lies outside the interval, the nearer end."""
         low, high = self.ends
         own = (
             self.scene.lam
@@ -103,13 +104,13 @@ class Asked:
 
     @property
     def varied(self) -> str:
-        """The parameter that varies, as options of `pinball follow`."""
+        """The parameter that varies and its interval, as options for `pinball follow`."""
         if self.parameter == "lam":
             return f"--lam {self.low}:{self.high}"
         return f"--lam {self.at[0]} --shape {self.parameter}={self.low}:{self.high}"
 
     def command(self, name: str, *options: str, lam: str | None = None) -> str:
-        """A command line about the scene, at `lam` if it is given.
+        """A `pinball` command line for the scene, at `lam` if it is given.
 
         >>> Asked(Scene("egg", alpha="2/25")).command("attractor", "--seed 1", lam="1/2")
         'pinball attractor egg --alpha 2/25 --lam 1/2 --seed 1'
@@ -134,17 +135,16 @@ class Asked:
         return ["--scene", FILE]
 
     def scene_file(self) -> str:
-        """The text of the scene's file."""
+        """The scene as the text of a scene file."""
         return self.scene.text + "\n"
 
 
 class Parts:
-    """The folder of a report's parts: a document for each step, arrays and pictures.
+    """The folder of a report's intermediate results: a document for each step, arrays and pictures.
 
-    A document carries a checksum of itself and of the files of its step, which begins with the digest of the settings:
-    what was altered since is made again. Certificates among the parts of an earlier run are proved again before they
-    are shown. `scheduler` is the address of a Dask cluster whose workers compute the grids; left out, this machine
-    does.
+    A document has a checksum of itself and of its step's files, and the digest of the settings; a step is computed
+    again if its files were altered. Certificates from an earlier run are proved again before they are shown.
+    `scheduler` is the address of a Dask cluster whose workers compute the grids; without it, this machine does.
     """
 
     def __init__(self, folder: Path, digest: str, scheduler: str | None = None) -> None:
@@ -155,14 +155,14 @@ class Parts:
         self.memory: dict[str, Any] = {}  # further results of this run
 
     def made(self, asked: Asked) -> None:
-        """Makes the folder, with the scene as a file in it."""
+        """Creates the folder, with the scene as a file in it."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for left in self.folder.glob(f".*{PARTIAL}"):  # of a report that was killed
             left.unlink(missing_ok=True)
         write_whole(self.folder / FILE, asked.scene_file())
 
     def read(self, name: str) -> dict[str, Any] | None:
-        """The document of a step, if it exists, has the same settings and is as it was written; else None."""
+        """The document of a step; None if it is missing, was altered, or has other settings."""
         if name not in self.believed:
             try:
                 found = json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
@@ -174,24 +174,24 @@ class Parts:
         return self.believed[name]
 
     def write(self, name: str, document: Mapping[str, Any]) -> None:
-        """Keeps the document of a step, with the checksums of the files that the step has kept."""
+        """Writes the document of a step, with checksums of the files that the step has written."""
         whole = json.loads(json_text({"digest": self.digest, "files": self.files, **document}))
         write_whole(self.folder / f"{name}.json", json_text({**whole, "checksum": self._checksum(name, whole)}))
         self.believed[name], self.files = whole, {}
 
     def keep(self, name: str, arrays: Arrays) -> None:
-        """Keeps arrays in the file `name.npz`."""
+        """Writes arrays to the file `name.npz`."""
         named: dict[str, Any] = dict(arrays)
         with replacing(self.folder / f"{name}.npz") as file:
             np.savez_compressed(file, **named)
         self.noted(f"{name}.npz")
 
     def noted(self, file: str) -> None:
-        """Notes that a file belongs to the step whose document is written next."""
+        """Records that a file belongs to the step whose document is written next."""
         self.files[file] = sha256((self.folder / file).read_bytes()).hexdigest()
 
     def arrays(self, name: str) -> dict[str, NDArray[Any]]:
-        """The arrays of the file `name.npz`."""
+        """The arrays in the file `name.npz`, by name."""
         with np.load(self.folder / f"{name}.npz") as found:
             return dict(found)
 
@@ -204,7 +204,7 @@ class Parts:
         return sha256(f"{self.digest} {name} {text}".encode()).hexdigest()
 
     def _unaltered(self, name: str, document: Mapping[str, Any]) -> bool:
-        """Is a document of an earlier run unchanged, with its files, and do its certificates hold?"""
+        """True if a document of an earlier run and its files are unchanged, and its certificates are proved again."""
         if document.get("checksum") != self._checksum(name, document):
             return False
         try:
@@ -217,7 +217,7 @@ class Parts:
 
     @staticmethod
     def _holds(given: Mapping[str, Any], document: Mapping[str, Any]) -> bool:
-        """Is a certificate proved anew, and is the value that it proves among the numbers of its step?"""
+        """True if a certificate is proved anew, and the value that it proves is among the numbers of its step."""
         from verification.named.theorems import checked
 
         try:

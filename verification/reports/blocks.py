@@ -1,7 +1,7 @@
 """The content of a report: sections of words, formulas, tables, figures and certificates, as plain data.
 
-A section is written once and shown three times: as a page, as JSON and as LaTeX. Every number says how it is known:
-exactly, by a proof in balls, in float64, or from a sample with its error.
+A section is written once and shown in three forms: as a page, as JSON and as LaTeX. For every number it is stated how
+it is known: exactly, by a proof in balls, in float64, or from a sample with its error.
 """
 
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from typing import Any
 
 
 class Known(Enum):
-    """How a number is known."""
+    """How a number is known: exactly, by a proof, in float64 or from a sample."""
 
     EXACT = "exact"
     PROVED = "proved"
@@ -39,7 +39,7 @@ class ShownNumber:
 
 
 def solved(value: float, digits: int, error: float = 0.0) -> ShownNumber:
-    """A number solved for in float64, to `digits` digits; its error is half a unit of the last, or `error` if larger.
+    """A number computed in float64 to `digits` digits; its error is half a unit of the last, or `error` if larger.
 
     >>> solved(2 / 3, 4).words, solved(0.25, 4, 0.01).words
     ('0.6667 ± 5e-05', '0.25 ± 1e-02')
@@ -69,7 +69,7 @@ class Formula:
 
 @dataclass(frozen=True)
 class Listing:
-    """A table: caption, column names, rows of cells, and the command that makes it again."""
+    """A table: caption, column names, rows of cells, and the command that computes it."""
 
     caption: str
     columns: tuple[str, ...]
@@ -79,9 +79,9 @@ class Listing:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure: the name of its file among the parts of the report, what it shows, and the command that draws it.
+    """A figure: the name of its file in the report's folder, what it shows, and the command that draws it.
 
-    `values` are the numbers that it draws, where they are few.
+    `values` are the numbers that are drawn, if they are few.
     """
 
     name: str
@@ -111,7 +111,7 @@ KINDS: dict[str, type[Block]] = {
 
 @dataclass(frozen=True)
 class Effort:
-    """The cost of a question: its seconds, and the remaining error of its answer."""
+    """The cost of a question in seconds, and the remaining error of its answer."""
 
     question: str
     size: str
@@ -121,7 +121,7 @@ class Effort:
 
 @dataclass(frozen=True)
 class Section:
-    """A section: name, title, blocks in order, and what they cost."""
+    """A section: its name and title, its blocks in order, and their costs."""
 
     name: str
     title: str
@@ -150,7 +150,7 @@ class Section:
 
 
 def costs(efforts: tuple[Effort, ...]) -> Listing:
-    """A table of the seconds of each question in this run, and of the errors of the answers."""
+    """A table of the seconds that each question took in this run, and of the errors of the answers."""
     rows = tuple((each.question, each.size, f"{each.seconds:.2f}", each.error or "-") for each in efforts)
     caption = (
         "What each question cost on this machine, and the error that its answer is left with; later rows of a question "

@@ -1,9 +1,9 @@
 """Homoclinic tangencies near contractions at which the sampled attractor suddenly changes.
 
-A crisis is such a tangency. Each is sought in float64 and then proved in balls. That the attractor changes at the one
-that was located, and not beside it, is what sampling shows, and no proof; so a tangency is not called a crisis here.
-The boundary has to be one smooth formula; where it is not convex each flight is proved to meet nothing on its way. For
-other tables only the changes are reported (`parted`).
+A crisis is such a tangency. Each tangency is found in float64 and then proved in balls. Only samples show that the
+attractor changes at this contraction and not beside it, so a tangency is not called a crisis here. The boundary has to
+be one smooth formula; if it is not convex, each flight is proved to meet no other part of it. For other tables only the
+changes are reported (`parted`).
 """
 
 from collections.abc import Iterator, Mapping
@@ -42,7 +42,7 @@ DIGITS = 10  # of a multiplier
 
 
 def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found:
-    """The tangencies near the changes that the diagram shows, found in float64 and not proved yet."""
+    """The tangencies near the changes in the diagram, found in float64 and not yet proved, with the cost."""
     arrays = parts.arrays("diagram-0")
     changes = changed(arrays["counts"], arrays["chaotic"])
     if objection_of(asked.scene):
@@ -62,13 +62,13 @@ def crises(asked: Asked, parts: Parts, heard: Tick = lambda said: None) -> Found
 
 
 def _about(low: float, high: float) -> tuple[float, float]:
-    """The contractions within which a tangency is attributed to a change between `low` and `high`."""
+    """The interval of contractions in which a tangency is attributed to a change between `low` and `high`."""
     reach = min(NEAR * (high - low), (low + high) / 2 - SAME, 1 - (low + high) / 2)
     return (low + high) / 2 - reach, (low + high) / 2 + reach
 
 
 def proved(asked: Asked, said: Document, number: int) -> Found:
-    """The proof of a tangency that was found: an enclosure of the contraction, the checklist, and the certificate."""
+    """The proof of a tangency: an enclosure of the contraction, the checklist, the certificate; with its cost."""
     effort = Effort(f"tangency {number}", f"{max(asked.digits, LEAST_DIGITS)} digits", 0.0)
     made = tangencies.proved(asked.scene, contact_of(said["contact"]), asked.digits)
     if isinstance(made, str):
@@ -85,7 +85,7 @@ def proved(asked: Asked, said: Document, number: int) -> Found:
 
 @dataclass(frozen=True)
 class Told:
-    """Report on tangencies: a table, lines of the diagram, and events for JSON."""
+    """The report on tangencies: blocks of a section, lines for the diagram, and events for JSON."""
 
     blocks: list[Block]
     lines: list[list[Any]]
@@ -96,7 +96,7 @@ NOTHING = Told([], [], [])
 
 
 def told(asked: Asked, made: Mapping[str, Document]) -> Told:
-    """The report on the tangencies found, each with its proof where there is one among the parts."""
+    """The report on the tangencies found, each with its proof if it has been proved."""
     said = made["crises"]["data"]
     if "touches" not in said:
         return NOTHING
@@ -109,7 +109,7 @@ def told(asked: Asked, made: Mapping[str, Document]) -> Told:
 
 
 def changed(counts: NDArray[Any], chaotic: NDArray[Any]) -> list[int]:
-    """The columns after which chaos gains or loses the largest part of the cells that it meets, the largest first.
+    """The columns after which the chaotic attractor gains or loses the most cells, by fraction, largest first.
 
     >>> changed(np.array([[1, 1, 1, 1], [1, 1, 0, 0], [1, 1, 0, 0]]), np.array([1, 1, 0, 0]))
     [1]
@@ -125,7 +125,7 @@ def changed(counts: NDArray[Any], chaotic: NDArray[Any]) -> list[int]:
 
 
 def closer(asked: Asked, parts: Parts, values: NDArray[Any], j: int) -> tuple[float, float]:
-    """Two nearer contractions around the change after column `j`, by a finer scan with a longer transient."""
+    """Two contractions closer to the change after column `j`, from a finer scan with a longer transient."""
     first, last = max(0, j - 2), min(len(values) - 1, j + 3)
     finer = np.linspace(values[first], values[last], COLUMNS)
     sweep = bifurcation(text_of(asked.scene), finer, ORBITS, POINTS, POINTS, LONG, asked.seed)
@@ -200,7 +200,7 @@ def _table(asked: Asked, changes: int, pairs: list[tuple[Document, Document]]) -
 
 
 def _commands(asked: Asked, changes: list[list[float]]) -> Iterator[str]:
-    """For each change the command that seeks and proves the tangencies near it."""
+    """For each change, the command that searches for tangencies near it and proves them."""
     for low, high in {tuple(change): None for change in changes}:
         (first, last), options = _about(low, high), f"--period {asked.period} --digits {asked.digits} --searches 1"
         yield asked.command("locate tangency", f"--lam {first:.9f}:{last:.9f} {options}")

@@ -40,7 +40,7 @@ LISTED = 11  # contractions of a diagram whose exponents are listed
 
 
 def slap(asked: Asked, parts: Parts) -> Found:
-    """Graph of the slap map, the limit of contraction 0: where a particle lands that leaves along the normal."""
+    """The content of the section on the slap map: its graph, the limit in which particles leave along the normal."""
     if not asked.scene.law.uniform:
         return [Paragraph("The slap map is the limit of the law phi = -lam*eta; this scene has another law.")], [], {}
     map = PinballMap(asked.scene, lam=0)
@@ -73,7 +73,7 @@ def wrapped(s: Any, half: float) -> Any:
 
 
 def portrait(asked: Asked, parts: Parts, level: int) -> Found:
-    """Density of random particles after a transient, over arc length and the sine of the exit angle."""
+    """The content of the section on phase portraits: the density of random particles after a transient."""
     from numeric.pinball.sampling import interior_starts
 
     orbits, bounces = 100 << level, 400 << level
@@ -108,7 +108,7 @@ def portrait(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def diagram(asked: Asked, parts: Parts, level: int) -> Found:
-    """Arrays of the diagram, kept among the parts: attractors by the contraction, and exponents of the same orbits."""
+    """Computes the arrays for the bifurcation diagram: attractors by parameter, and exponents of the same orbits."""
     low, high = asked.ends
     columns, orbits, points = (150 if asked.parameter == "lam" else SHAPES) * 2**level, 12 + 6 * level, 120
     values = np.linspace(low, high, columns)
@@ -149,13 +149,13 @@ def diagram(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def density(s: NDArray[Any], half: float) -> NDArray[np.int32]:
-    """Counts of bounces: a row for each cell of arc length, a column for each value of the parameter."""
+    """Counts of bounces, with a row for each cell of arc length and a column for each value of the parameter."""
     rows = wrapped(s, half).reshape(len(s), -1)
     return np.stack([np.histogram(row[np.isfinite(row)], CELLS, (-half, half))[0] for row in rows], 1).astype(np.int32)
 
 
 def plane(asked: Asked, parts: Parts, level: int) -> Found:
-    """Arrays of the plane, kept among the parts: the largest exponent by the second parameter and the contraction."""
+    """Computes the arrays for the parameter plane: the largest exponent by second parameter and contraction."""
     assert asked.second is not None
     name, low, high = asked.second
     rows, columns, starts = 16 << level, 32 << level, 6 + 2 * level
@@ -178,7 +178,7 @@ def plane(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def regions(asked: Asked, parts: Parts, level: int) -> Found:
-    """Which attractors random starts end on at pairs of the second parameter and the contraction; kept as arrays."""
+    """Computes on which attractors random starts end, by second parameter and contraction."""
     assert asked.second is not None
     name, low, high = asked.second
     first, last = (float(exact(name, end)) for end in (low, high))
@@ -196,7 +196,7 @@ def regions(asked: Asked, parts: Parts, level: int) -> Found:
 
 
 def _set_of(seen: Endings, size: float) -> str:
-    """The attractors that some starts end on, in words: periods, each as often as cycles differ but for symmetries."""
+    """The attractors that some starts reach, as text: the periods of different cycles (up to symmetry), and chaos."""
     found = list[str]()
     for n in np.unique(seen.period[seen.kind == CYCLE]):
         left = seen.marks[(seen.kind == CYCLE) & (seen.period == n)]
@@ -214,7 +214,7 @@ def plane_blocks(
     curves: Sequence[dict[str, Any]],
     sets: dict[str, Any] | None,
 ) -> list[Block]:
-    """The regions of coexistence and the plane with the curves known so far over them, drawn unless they are there."""
+    """The blocks for the parameter plane: regions of coexistence, and the plane with all curves known so far."""
     assert asked.second is not None
     letter, blocks = asked.second[0], list[Block]()
     lines = (
@@ -244,7 +244,7 @@ def plane_blocks(
 
 
 def exponent_rows(arrays: dict[str, NDArray[Any]]) -> list[list[Any]]:
-    """Rows for a few values of the parameter: value, share of chaotic orbits, largest exponent, its error."""
+    """Rows for a few parameter values: value, fraction of chaotic orbits, largest exponent and its error."""
     at = np.linspace(0, len(arrays["values"]) - 1, LISTED).round().astype(int)
     rows = [[float(arrays[name][i]) for name in ("values", "chaotic", "largest", "error")] for i in at]
     return [[value if np.isfinite(value) else None for value in row] for row in rows]
@@ -257,7 +257,7 @@ def diagram_blocks(
     events: list[tuple[float, str, float]],
     seen: dict[str, Any] | None,
 ) -> list[Block]:
-    """The diagram with the families and events known so far, drawn if it does not exist, and exponents along it."""
+    """The blocks for the diagram with all families and events known so far, and for the exponents along it."""
     level = -1 if seen is None else seen["level"]
     name = f"diagram-{said['level']}-{level}-{len(events)}"
     families = None if seen is None else parts.arrays(f"families-{level}")
@@ -293,7 +293,7 @@ def diagram_blocks(
 
 
 def close(asked: Asked, values: Sequence[float]) -> tuple[float, float] | None:
-    """The part of the interval in which the events lie, if it is small; else None."""
+    """The part of the interval that contains all events, if it is small; else None."""
     (low, high), span = asked.ends, max(values, default=0.0) - min(values, default=0.0)
     if len(values) < CLOSE[0] or span > CLOSE[1] * (high - low):
         return None
@@ -301,7 +301,7 @@ def close(asked: Asked, values: Sequence[float]) -> tuple[float, float] | None:
 
 
 def counted(count: int, of: int) -> str:
-    """A count of starts, with bounds for the share behind it at 95 %.
+    """A count of starts as text, with a 95 % bound or interval for the probability.
 
     >>> counted(200, 200)
     '200 of 200, at least 98.1%'
@@ -313,7 +313,7 @@ def counted(count: int, of: int) -> str:
 
 
 def census(asked: Asked, parts: Parts, which: int, level: int) -> Found:
-    """The attractors that random starts reach at one contraction, and the basins."""
+    """The content of the section on attractors at one contraction: those that random starts reach, and the basins."""
     text = asked.at[which]
     starts = 200 * 4**level
     scene = asked.scene.at(lam=text)
@@ -345,7 +345,7 @@ Three = tuple[str | ShownNumber, str | ShownNumber, ShownNumber]
 
 
 def _attractor(text: str, member: Member, known: Three) -> dict[str, Any]:
-    """An attractor as JSON: its kind, the number of its images, and the share of starts with a 95 % interval."""
+    """An attractor as JSON: its kind, the number of its images, and the fraction of starts with a 95 % interval."""
     share, numbers = member.share, dict(zip(("nu_plus", "nu_minus"), known[:2], strict=True))
     errors = {f"{name}_error": nu.error if isinstance(nu, ShownNumber) else None for name, nu in numbers.items()}
     return {
@@ -373,7 +373,7 @@ def _member(member: Member, known: Three) -> tuple[str | ShownNumber, ...]:
 
 
 def _known(scene: Scene, member: Member) -> Three:
-    """Both exponents and the existence of an attractor: proved in balls for a cycle, else as sampled."""
+    """Both exponents of an attractor and its existence, each with how it is known: proved for a cycle, else sampled."""
     first = member.first
     if member.kind is not Kind.CYCLE:
         errors = zip((first.nu_plus, first.nu_minus), first.errors, strict=True)

@@ -1,4 +1,4 @@
-"""A page on which a database of Morse graphs is explored: point at a box of parameters, and see graph and sets."""
+"""A page for a database of Morse graphs: pointing at a box of parameters shows its graph and Morse sets."""
 
 import base64
 import json
@@ -23,7 +23,7 @@ COLUMNS, ROWS = 48, 64  # cells of phase space on the page, at most
 
 
 def explorer(found: "xr.Dataset", label: Numbers) -> str:
-    """The page as HTML, one file that needs no network; `label` has the class of each box of parameters."""
+    """The page as one file of HTML that needs no network; `label` is the class of each box of parameters."""
     settings = json.loads(found.attrs["settings"])
     parameter, sets = settings["parameter"], found.sets.values
     scene = Scene.parse(found.attrs["scene"])
@@ -64,7 +64,7 @@ def explorer(found: "xr.Dataset", label: Numbers) -> str:
 
 
 def _thinned(cells: NDArray[np.int8]) -> NDArray[np.int8]:
-    """Cells of phase space, coarsened to at most `ROWS` by `COLUMNS`: each has the largest set number in its block."""
+    """The cells of phase space, coarsened to at most `ROWS` by `COLUMNS`, by the largest set index in each block."""
     for axis, most in ((-2, ROWS), (-1, COLUMNS)):
         step = -(-cells.shape[axis] // most)
         cells = np.maximum.reduceat(cells, np.arange(0, cells.shape[axis], step), axis=axis)

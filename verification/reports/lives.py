@@ -1,4 +1,4 @@
-"""Families of cycles from birth to death: their table, their events with proofs, and a picture of each large one."""
+"""Families of cycles from birth to death: their table, their events with proofs, and pictures of large families."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -53,7 +53,7 @@ OTHER = ("chaotic", "neutral", "stopped", "other")  # of the shares, after those
 
 
 def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continuation:
-    """The families known so far in this run, followed further; `TimeoutError` where `heard` raises it."""
+    """Continues to follow the families known so far, and returns them; raises `TimeoutError` if `heard` does."""
     found: Continuation = parts.memory.get("families") or Continuation(
         asked.scene, asked.parameter, (asked.low, asked.high), seed=asked.seed
     )
@@ -63,7 +63,7 @@ def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continu
 
 
 def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
-    """The families that attract random starts, the shares of the starts, and a check at values that were not used."""
+    """The section on families that attract random starts, with fractions of starts and a check at unused values."""
     try:
         found, late = continuation(asked, parts, level, heard), False
     except TimeoutError:
@@ -91,7 +91,7 @@ def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
 
 
 def _shares(found: Continuation) -> dict[str, Any]:
-    """The number of starts that end on each family, and on each of the `OTHER` kinds, at each value."""
+    """The number of starts that end on each family, and on each of the `OTHER` kinds, at each sampled value."""
     n = len(found.families)
     counts = np.zeros((len(found.seen), n + len(OTHER)), dtype=np.int32)
     for row, seen, label in zip(counts, found.seen, found.labels, strict=True):
@@ -102,7 +102,7 @@ def _shares(found: Continuation) -> dict[str, Any]:
 
 
 def lines(asked: Asked, found: Continuation) -> dict[str, Any]:
-    """Lines for the diagram, nan between: family, parameter, arc length of bounces and images while it attracts."""
+    """Curves for the diagram, with nan between: family, parameter, arc length of the bounces and symmetric images."""
     map = found.map_at(asked.own_value)
     half, group = map.arclength.perimeter / 2, symmetries_of(map)
     rows = list[Any]()
@@ -124,7 +124,7 @@ def lines(asked: Asked, found: Continuation) -> dict[str, Any]:
 
 
 def family_said(found: Continuation, number: int, numbers: Mapping[str, Any]) -> Document:
-    """A family as plain data: its JSON, its parent, its largest share of the starts, and a cycle of it."""
+    """A family as plain data: its JSON, its parent, its largest fraction of the starts, and one of its cycles."""
     family = found.families[number]
     best = int(np.argmax(numbers["counts"][:, number] / numbers["counts"].sum(axis=1)))
     parent = family.parent if family.birth else next((e.family for e in found.events if e.born == number), None)
@@ -139,19 +139,19 @@ def family_said(found: Continuation, number: int, numbers: Mapping[str, Any]) ->
 
 
 def event_said(found: Continuation, event: FamilyEvent) -> Document:
-    """An event as plain data, before it is proved."""
+    """An event as plain data, without its proof."""
     form = event.event.form
     plain = found.event_document(event, None, LOCATED)
     return {**plain, "supercritical": form.supercritical if form else None, "key": key_of(plain)}
 
 
 def key_of(event: Mapping[str, Any]) -> str:
-    """A name for an event that is the same at every level."""
+    """A name of the event that is the same at every level of refinement."""
     return f"{event['kind']} {event['period']} {float(event['value']):.8f}"
 
 
 def proofs(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
-    """Proofs of the events, those of the families with most starts first, as far as there is time."""
+    """Proves events as far as there is time, those of the families that most starts reach first."""
     before = parts.read(f"proofs-{level - 1}")
     data: Document = {"proofs": dict(before["data"]["proofs"]) if before else {}, "late": False}
     blocks: list[Block] = []
@@ -211,7 +211,7 @@ def life(asked: Asked, parts: Parts, said: Document, number: int) -> Made:
 
 
 def chaos(asked: Asked, said: Document) -> Made:
-    """The attractors that coexist at some of the values where starts end on chaos, each set with its images."""
+    """A table of the chaotic attractors that coexist at some values; symmetric images are counted as copies."""
     rows: list[tuple[Cell, ...]] = []
     for value in said["amid_chaos"]:
         map = PinballMap(asked.scene.at(**{asked.parameter: repr(value)}))
@@ -233,7 +233,7 @@ def chaos(asked: Asked, said: Document) -> Made:
 
 
 def drawn_alone(said: Sequence[Document]) -> list[int]:
-    """The numbers of the `DRAWN_ALONE` families with the largest shares of starts."""
+    """The indices of the `DRAWN_ALONE` families that the most starts reach."""
     order = sorted(range(len(said)), key=lambda i: -said[i]["largest"][1] / said[i]["largest"][2])
     return sorted(order[:DRAWN_ALONE])
 
@@ -250,7 +250,7 @@ def said_of(orbit: PeriodicOrbit) -> Document:
 
 
 def orbit_of(scene: Scene, said: Document) -> PeriodicOrbit:
-    """The cycle of plain data from `said_of`."""
+    """The cycle from the plain data of `said_of`."""
     one, two = (complex(*pair) for pair in said["multipliers"])
     return PeriodicOrbit(scene, tuple(said["components"]), tuple(said["theta"]), tuple(said["phi"]), (one, two))
 
@@ -262,7 +262,7 @@ def followed(asked: Asked, orbit: PeriodicOrbit) -> Branch:
 
 
 def events_of(said: Document, proved: Mapping[str, Document]) -> list[Document]:
-    """The events as JSON, with the digits of the proofs that exist."""
+    """The events as JSON, with the digits of those that are proved."""
     found = []
     for event in said["events"]:
         proof = proved.get(event["key"])
@@ -273,7 +273,7 @@ def events_of(said: Document, proved: Mapping[str, Document]) -> list[Document]:
 
 
 def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[Block]) -> list[Block]:
-    """The table of events, and where cascades of doublings would end."""
+    """The table of events, and estimates of the limits of period-doubling cascades."""
     rows: list[tuple[Cell, ...]] = []
     for event in said["events"]:
         proof = proved.get(event["key"])
@@ -296,7 +296,7 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
 
 
 def _cascades(said: Document) -> list[Block]:
-    """A sentence for each chain of doublings: the ratios of their distances, and an estimate of the limit."""
+    """A sentence for each chain of period doublings: the ratios of their distances, and an estimate of the limit."""
     flips = {e["branch"]: (float(e["value"]), e["born"]) for e in said["events"] if e["kind"] == "flip"}
     chained = {born for _, born in flips.values()}
     blocks: list[Block] = []
@@ -359,7 +359,7 @@ def _between(ends: Sequence[float]) -> ShownNumber:
 
 
 def missing_blocks(asked: Asked, said: Document) -> list[Block]:
-    """What may be missing: the check at other values, what could not be followed, and the share that starts miss."""
+    """The blocks on what may be missing: the check, cycles that could not be followed, and too small basins."""
     check = said["check"]
     total = len(check["values"]) * check["starts"]
     blocks: list[Block] = []
@@ -385,7 +385,7 @@ def missing_blocks(asked: Asked, said: Document) -> list[Block]:
 
 
 def located(asked: Asked, event: Event, name: str, branch: Branch) -> tuple[ShownNumber, str, Certificate | None]:
-    """The value of an event, its checklist in words, and a certificate; to `digits` digits where its kind has one."""
+    """An event's value (to `digits` digits if it can be certified), its checklist in words, and its certificate."""
     between = float(np.max(np.abs(np.diff(branch.values)), initial=0.0))  # two points, one of them on either side
     digits, step = CERTAIN.get(event.kind, LOCATED), 0.0 if event.located else between
     plain = solved(event.value, digits, step)
@@ -415,7 +415,7 @@ def command(asked: Asked, orbit: PeriodicOrbit, text: str) -> str:
 
 
 def start_of(asked: Asked, orbit: PeriodicOrbit) -> str:
-    """The options of `pinball follow` that give the bounces of a cycle."""
+    """The options for `pinball follow` that give the bounces of a cycle."""
     names = [part.name for part in asked.scene.table.components]
     start = f"--start={','.join(f'{x:.9f}' for x in orbit.theta)}"
     if len(names) == 1:

@@ -1,6 +1,7 @@
 """The report as one page of HTML that needs no network, and as a LaTeX article.
 
-The page has formulas as MathML, pictures and certificates inside; the article's pictures are PDF files among the parts.
+The page embeds its pictures and certificates, and has formulas as MathML; the article's pictures are separate PDF
+files.
 """
 
 import base64
@@ -48,7 +49,7 @@ FRAME = '<div class="{}" tabindex="0" role="group" aria-label="{}">{}</div>'  # 
 
 
 def page(report: Report, parts: Parts) -> str:
-    """The whole page as HTML. Two runs differ in the seconds, and in how far they got."""
+    """The whole page as HTML. Two runs differ in computing times, and in how many steps they completed."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"remark": remark, "said": said, "further": further}
     environment.filters["block"] = partial(shown, parts=parts)
@@ -69,7 +70,7 @@ def page(report: Report, parts: Parts) -> str:
 
 
 def further(left: Iterable[str]) -> str:
-    """The kinds of steps for which there was no time, in words, each once.
+    """The kinds of the steps for which there was no time, in words and without repetition.
 
     >>> further(("families-0", "families-1", "diagram-1"))
     'families of cycles, the bifurcation diagram'
@@ -78,12 +79,12 @@ def further(left: Iterable[str]) -> str:
 
 
 def said(text: str) -> Markup:
-    """A formula as MathML, any other text as words."""
+    """A formula as MathML, or any other text as words, in HTML."""
     return formula(text) or remark(text)
 
 
 def again(report: Report) -> list[str]:
-    """The options that make the same report again."""
+    """The options that produce the same report again."""
     asked = report.asked
     at = [f"--at {','.join(asked.at)}"] if asked.parameter == "lam" else []
     looked = [*at, f"--period {asked.period}", f"--digits {asked.digits}"]
@@ -92,12 +93,12 @@ def again(report: Report) -> list[str]:
 
 
 def address(kind: str, content: bytes) -> str:
-    """A data URL with the content inside."""
+    """A data URL that contains the content."""
     return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def tag(known: Known) -> Markup:
-    """The mark beside a number that says how it is known, as HTML."""
+    """A mark in HTML, beside a number, that says how the number is known."""
     return Markup('<span class="known {}">{}</span>').format(known.name.lower(), known.value.split(",")[0])
 
 
@@ -185,7 +186,7 @@ def latex(report: Report, parts: Parts) -> str:
 
 
 def tex(text: str) -> str:
-    r"""Text in LaTeX: formulas typeset, special characters escaped, and names of variables as the paper's letters.
+    r"""Text in LaTeX: formulas typeset, special characters escaped, and names of variables as the paper's symbols.
 
     >>> print(tex("50 %: nu_plus for lambda = 1/2"))
     50 \%: $\nu_+$ for $\lambda = \frac{1}{2}$
@@ -222,7 +223,7 @@ def typeset(given: Block, parts: Parts) -> str:
 
 
 def _shares(given: Listing) -> list[int]:
-    """Widths of a table's columns in hundredths, by their longest words and texts."""
+    """The widths of a table's columns in per cent, from their longest words and texts."""
     columns = zip(given.columns, *given.rows, strict=True)
     texts = [[cell if isinstance(cell, str) else f"{cell.words} sampled" for cell in column] for column in columns]
     sizes = [max(max([len(text) / 3, *map(len, text.split())]) for text in column) for column in texts]
@@ -244,5 +245,5 @@ def _tex_command(text: str) -> str:
 
 
 def _tex_address(text: str) -> str:
-    r"""Text for `\url`, with per cent signs escaped, which TeX would read."""
+    r"""Text for `\url`, with per cent signs escaped, as TeX would read them as comments."""
     return text.replace("%", r"\%")

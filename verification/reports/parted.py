@@ -1,9 +1,9 @@
-"""Sudden changes of the sampled attractor on a table in pieces, and how near it comes to a tangency there.
+"""Sudden changes of the sampled attractor on a table in pieces, and how close it comes to a tangency.
 
-Manifolds that cross a join, a cusp or a corner break there, and are not followed, so no tangency is sought. But at a
-homoclinic tangency an expanded and a contracted direction are parallel: the least angle between both, over a chaotic
-attractor, says whether one can be near. Where it stays away from 0, what changes the attractor is something else, as
-in the cuspless table where it meets a corner (paper: section 5.2).
+Manifolds that cross a join, a cusp or a corner break there and are not followed, so tangencies are not searched for.
+But at a homoclinic tangency an expanded and a contracted direction are parallel, so the least angle between them over a
+chaotic attractor shows whether a tangency can be near. If this angle stays away from 0, something else changes the
+attractor, such as a corner that it meets in the cuspless table (paper: section 5.2).
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,7 +36,7 @@ CAPTION = (
 def least_angle(asked: Asked, lam: float) -> tuple[float, float, int] | None:
     """The least angle between the expanded and the contracted direction, its error, and the number of points used.
 
-    None where fewer than two particles are chaotic, or at contraction 0, where one direction vanishes.
+    None if fewer than two particles are chaotic, or at contraction 0, where one direction vanishes.
 
     >>> from symbolic import Scene
     >>> angle, error, _ = least_angle(Asked(Scene("cuspless")), 0.5)  # a cone of directions is proved there
@@ -58,7 +58,7 @@ def least_angle(asked: Asked, lam: float) -> tuple[float, float, int] | None:
 
 
 def near_changes(asked: Asked, pairs: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
-    """For each change, the two contractions around it and the smaller of the least angles at them."""
+    """For each change, the two contractions around it and the smaller of the least angles at these two."""
     rows = []
     for low, high in pairs:
         sides = [side for lam in (low, high) if (side := least_angle(asked, lam))]
@@ -67,7 +67,7 @@ def near_changes(asked: Asked, pairs: Sequence[tuple[float, float]]) -> list[dic
 
 
 def told_of(asked: Asked, rows: Sequence[Mapping[str, Any]]) -> Block:
-    """The table of the changes, or a sentence if there are none."""
+    """A table of the changes, or a sentence that there are none."""
     if not rows:
         return Paragraph(NONE)
     cells: list[tuple[Cell, ...]] = []

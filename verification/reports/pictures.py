@@ -27,7 +27,7 @@ GROUND = {"chaotic": "#5a6478", "neutral": "#c3cad6", "stopped": "#e3dccb", "any
 
 
 def saved(parts: Parts, name: str, drawn: "Figure") -> None:
-    """Writes a picture as PDF and then as SVG; the SVG file marks the picture as complete."""
+    """Writes a picture as PDF, then as SVG; the existence of the SVG file shows that the picture is complete."""
     with replacing(parts.folder / f"{name}.pdf") as file:
         drawn.savefig(file, format="pdf", transparent=True, metadata={"CreationDate": None})
     with replacing(parts.picture(name)) as file:
@@ -38,7 +38,7 @@ def saved(parts: Parts, name: str, drawn: "Figure") -> None:
 
 
 def table(parts: Parts, name: str, map: PinballMap, start: float) -> None:
-    """Draws the boundary, with a few flights of a particle that starts at this parameter and exit angle."""
+    """Draws the boundary, and a few flights of a particle that starts at the parameter and exit angle `start`."""
     with styled():
         drawn = figure(3.6, 3.2)
         axes = drawn.add_subplot()
@@ -71,7 +71,7 @@ def slap(parts: Parts, name: str, s: Array, image: Array, slope: Array, half: fl
 
 
 def _broken(values: Array, half: float) -> Array:
-    """The values, with nan where the graph jumps over the ends of arc length."""
+    """The values, with nan where the graph jumps between the ends of the arc-length range."""
     jumps = np.abs(np.diff(values, append=values[-1:])) > half
     return np.where(jumps, np.nan, values)
 
@@ -102,9 +102,9 @@ def diagram(
     periods: Sequence[int] = (),
     window: tuple[float, float] | None = None,
 ) -> None:
-    """Draws families in colour over the density of other orbits, events as lines, shares, and exponents.
+    """Draws families in colour over the density of other orbits, with events, fractions of starts, and exponents.
 
-    With a `window` only that range of the parameter is drawn.
+    With a `window`, only that range of the parameter is drawn.
     """
     from matplotlib.collections import LineCollection
 
@@ -151,21 +151,21 @@ def diagram(
 
 
 def _without_cycle(families: Arrays, values: Array) -> NDArray[np.bool_]:
-    """Whether some start ends on chaos or is neutral, at the value next to each: elsewhere a cloud is on its way."""
+    """True where some start at the nearest sampled value is chaotic or neutral, so that a cloud is drawn there."""
     at, kinds = families["shares_at"], families["counts"][:, -len(GROUND) :]
     nearest = np.argmin(np.abs(values[:, None] - at), axis=1)
     return np.asarray((kinds[:, 0] + kinds[:, 1] > 0)[nearest])
 
 
 def _paints(counts: NDArray[Any]) -> list[str]:
-    """A colour for each family, first for those on which most starts end; further families share one."""
+    """A colour for each family; the families that most starts reach come first, and the last ones share a colour."""
     families = counts.shape[1] - len(GROUND)
     order = np.argsort(-counts[:, :families].sum(axis=0)).tolist()
     return [COLOURS[order.index(i)] if order.index(i) < len(COLOURS) else REST for i in range(families)]
 
 
 def _shares(axes: "Axes", families: Arrays, paints: Sequence[str], periods: Sequence[int]) -> None:
-    """Draws the shares of the starts as a stack, those of the families first."""
+    """Draws the fractions of starts as a stack of areas, those of the families first."""
     at, counts = families["shares_at"], families["counts"].astype(float)
     shares = counts / counts.sum(axis=1, keepdims=True)
     order = sorted(range(len(paints)), key=lambda i: (paints[i] == REST, -shares[:, i].sum()))
@@ -180,13 +180,13 @@ def _shares(axes: "Axes", families: Arrays, paints: Sequence[str], periods: Sequ
 
 
 def _alone(axes: "Axes") -> tuple[list[Any], list[str]]:
-    """Handles and labels for a legend, without the empty labels."""
+    """The handles and labels of a legend, without those with an empty label."""
     pairs = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels(), strict=True) if label]
     return [handle for handle, _ in pairs], [label for _, label in pairs]
 
 
 def _events(axes: Sequence["Axes"], events: Sequence[tuple[float, str, float]], ends: tuple[float, float]) -> None:
-    """Draws lines at the events, with words above those of most weight, moved apart where they would overlap."""
+    """Draws lines at the events, with texts above the most important ones, moved apart where they would overlap."""
     near, at = 0.022 * (ends[1] - ends[0]), -np.inf
     worded = sorted(sorted(events, key=lambda event: -event[2])[:LABELS])
     for value, _, _ in events:
@@ -219,7 +219,7 @@ DASHES = {"fold": "-", "period doubling": (0, (5, 1.5)), "pitchfork": (0, (1.2, 
 
 
 def plane(parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[Mapping[str, Any]], own: float) -> None:
-    """Draws the largest exponent over a parameter and the contraction, and the curves of events with their words."""
+    """Draws the largest exponent over a parameter and the contraction, and the curves of events with their names."""
     with styled():
         drawn = figure(7.0, 4.6)
         lams, values, chaotic = found["lams"], found["values"], np.asarray(found["chaotic"] > 0, dtype=float)
@@ -230,7 +230,7 @@ def plane(parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[
 def regions(
     parts: Parts, name: str, found: Arrays, letter: str, curves: Sequence[Mapping[str, Any]], own: float
 ) -> None:
-    """Which attractors coexist over both parameters: a colour for each set, and the curves of events."""
+    """Draws which attractors coexist, by both parameters: a colour for each set, and the curves of events."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 
@@ -255,7 +255,7 @@ def regions(
 
 
 def _curves(axes: "Axes", lams: Array, values: Array, curves: Sequence[Mapping[str, Any]], own: float) -> None:
-    """The curves of events with their words, dots where they are proved, and the value of the other sections."""
+    """Draws the curves of events with their names, dots where they are proved, and a line at the scene's own value."""
     taken, size = list[Array](), np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
     axes.axhline(own, color="0.45", lw=0.8)
     for number, curve in enumerate(curves):
@@ -272,7 +272,7 @@ def _curves(axes: "Axes", lams: Array, values: Array, curves: Sequence[Mapping[s
 
 
 def _apart(points: Array, taken: Sequence[Array]) -> Array:
-    """The place on a curve, away from its ends, farthest from the places `taken` by words; at first its middle."""
+    """The point on a curve, away from its ends, farthest from the points in `taken`; the middle if `taken` is empty."""
     length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
     places = np.stack([np.interp(np.linspace(0.12, 0.88, 39) * length[-1], length, x) for x in points.T], axis=1)
     if not taken:
@@ -284,7 +284,7 @@ def _apart(points: Array, taken: Sequence[Array]) -> Array:
 def basins(
     parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int], names: Sequence[str], half: float, title: str
 ) -> None:
-    """Draws the attractor that each start reaches: a colour for each, with a legend; empty for none."""
+    """Draws the attractor that each start reaches: a colour for each attractor, blank for none, and a legend."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Patch
 

@@ -1,4 +1,4 @@
-"""Curves of events in the plane of two parameters: what a report computes of them, and their tables."""
+"""Curves of events in the plane of two parameters: their computation for a report, and their tables."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -29,9 +29,9 @@ def plane_of(asked: Asked) -> Plane:
 def curves(
     asked: Asked, said: Document, number: int, known: Sequence[Document], heard: Tick = lambda said: None
 ) -> Made:
-    """Curves in both parameters through the events of a family, and those that its cycle meets in the other one.
+    """The curves in both parameters of events on a family, including those met when the second parameter varies.
 
-    Left out are those that lie on a curve that is `known`.
+    Curves that are in `known` are left out.
     """
     plane, found = plane_of(asked), list[Document]()
     for branch, other, options in _lines(asked, said):
@@ -44,9 +44,9 @@ def curves(
 
 
 def _lines(asked: Asked, said: Document) -> Iterator[tuple[Branch, float, str]]:
-    """The branch of a cycle in the contraction, and its branches in the other parameter at each contraction of `at`.
+    """A cycle's branch in the contraction, and its branches in the second parameter at the contractions `at`.
 
-    With each come the value of the fixed parameter, and the options that follow it again.
+    Each comes with the value of the fixed parameter, and the command-line options that follow it again.
     """
     assert asked.second is not None
     letter, low, high = asked.second

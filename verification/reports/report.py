@@ -1,7 +1,7 @@
-"""The report of a scene, made in steps: a useful page first, refined as long as there is time, kept on the way.
+"""The report of a scene, made in steps: a useful page first, then refinements as long as there is time.
 
-Each step leaves one file in the folder of parts, and the page is written anew after it. So a run that is stopped leaves
-a report, and the next run goes on from its files.
+Each step writes one file to the folder of intermediate results, and the page is written again after it. So a stopped
+run leaves a report, and the next run resumes from its files.
 """
 
 import json
@@ -61,7 +61,7 @@ UNANSWERED: dict[str, Any] = {"unanswered": True}  # data of a step that ended i
 
 @dataclass(frozen=True)
 class Step:
-    """A piece of work: the file that it leaves, its section, and the seconds that it is expected to take."""
+    """A piece of work: the file that it writes, its section, and the seconds that it is expected to take."""
 
     name: str
     section: str
@@ -71,10 +71,10 @@ class Step:
 
 @dataclass(frozen=True, repr=False)
 class Report:
-    """The sections of a report, its findings in a few numbers each, and the steps for which there was no time.
+    """The sections of a report, its main numbers, and the steps for which there was no time.
 
-    `pending` are the titles of sections of which nothing is known yet. A report is `unfinished` while it is worked on,
-    which a page left behind by a run that was killed says.
+    `pending` are the titles of sections about which nothing is known yet. A report is `unfinished` while it is being
+    made; if the run is killed, the page says so.
     """
 
     asked: Asked
@@ -95,7 +95,7 @@ class Report:
         return f"Report({self.asked.title}: {found}, {self.seconds:.0f} s)"
 
     def document(self) -> dict[str, Any]:
-        """The report as JSON: what the page shows, without its pictures."""
+        """The report as JSON: all that the page shows, except its pictures."""
         asked = self.asked
         return {
             "schema": SCHEMA,
@@ -143,15 +143,15 @@ def report(
     law: Law | str | None = None,
     **shape: Any,
 ) -> Report:
-    """The report on a scene as the contraction varies, as one page of HTML; parts are kept in `out` with `.parts`.
+    """Makes a report on a scene as the contraction varies, as one page of HTML; its files are kept in `out` + `.parts`.
 
-    A scene, a table, a map or the name of a table is taken, with `law` and the exact numbers of its shape as keywords.
+    `table` is a scene, a table, a map or the name of a table; `law` and the exact numbers of its shape are keywords.
 
-    With `vary=("b", low, high)` a parameter of the table or of the law varies too, and the page has the plane of both
-    with the curves of events in it; its other sections are at the scene's own `b`, or in the middle where that lies at
-    an end. With one contraction for `lam` it is that parameter alone which varies.
+    With `vary=("b", low, high)`, a parameter of the table or of the law varies too, and the page has the plane of both
+    with the curves of events in it. Its other sections are at the scene's own `b`, or in the middle of the interval if
+    that lies at an end. If `lam` is one contraction, only `b` varies.
 
-    The page is useful after its first steps and refined until the `minutes` are over. Called again, it goes on.
+    The page is useful after its first steps and refined until the `minutes` are over; another call resumes it.
     Diagrams, planes and basins are grids: the workers of the Dask cluster at `scheduler` compute them, or all cores.
     """
     second = None if vary is None else (vary[0], str(vary[1]), str(vary[2]))
@@ -180,9 +180,9 @@ def report(
 
 
 def _placed(scene: Scene, parameter: str, low: Any, high: Any) -> Scene:
-    """The scene with an interval for one of its parameters, over which it is proved to be a table.
+    """The scene with an interval for one of its parameters; its table is proved to exist over this interval.
 
-    The parameter keeps its value where that is inside the interval; else it gets the middle of the interval.
+    The parameter keeps its value if it is inside the interval; otherwise it gets the middle of the interval.
     """
     ends = [exact(parameter, end) for end in (low, high)]
     if parameter not in (*scene.shape, *dict(scene.law.numbers)):
@@ -206,11 +206,11 @@ def worked(
     tick: Tick,
     latex: str | Path | None = None,
 ) -> Report:
-    """Runs the steps that fit in the time, each of them once; writes the report after each and returns the last."""
+    """Runs each step that fits in the time, once; writes the report after each, and returns the last report."""
     left: list[str] = []
 
     def within(share: float) -> Tick:
-        """A function that raises `TimeoutError` when this share of the time that is left is over."""
+        """A function that raises `TimeoutError` when this fraction of the remaining time is over."""
         end = until - (1 - share) * max(0.0, until - clock())
 
         def heard(_: str) -> None:
@@ -258,17 +258,17 @@ def written(done: Report, parts: Parts, page: Path, latex: str | Path | None = N
 def plan(
     asked: Asked, parts: Parts, within: Callable[[float], Tick] = lambda share: lambda said: None
 ) -> Iterator[Step]:
-    """The steps, the most useful first; later ones are planned from what earlier ones found.
+    """The steps, the most useful first; later steps are planned from the results of earlier ones.
 
-    `within(share)` is a function for a share of the time: it is called during a long search, and may end it with a
-    `TimeoutError`.
+    `within(share)` gives a function for a fraction of the remaining time. A long search calls this function, which may
+    end the search with a `TimeoutError`.
     """
     from verification.reports import dynamics
 
     heard = within(1.0)
 
     def seconds(name: str, kind: str) -> float:
-        """The expected time of a step of this kind, from its previous level."""
+        """The expected time of a step of this kind, from that of its previous level."""
         found = parts.read(name)
         return FIRST.get(kind, 1.0) if found is None else GROWTH * float(found["seconds"])
 
@@ -308,7 +308,7 @@ def plan(
 
 
 def _answered(parts: Parts, name: str) -> bool:
-    """Has the step of this name been done without an error?"""
+    """True if the step of this name has been done without an error."""
     found = parts.read(name)
     return found is not None and found["data"] != UNANSWERED
 
@@ -326,7 +326,7 @@ def _scene(asked: Asked, parts: Parts) -> Made:
 
 
 def _work(asked: Asked, parts: Parts) -> Made:
-    """Error against run time for orbits of this scene, in every arithmetic."""
+    """The section on work-precision: error against run time for orbits of this scene, in every arithmetic."""
     from verification.measure.work.scenes import work_precision
     from verification.plots.sheet import styled
     from verification.reports import pictures
@@ -344,7 +344,7 @@ def _work(asked: Asked, parts: Parts) -> Made:
 
 
 def _families(asked: Asked, parts: Parts, level: int, within: Callable[[float], Tick]) -> Iterator[Step]:
-    """Steps that find the families, at as many values as the level has, and prove their events."""
+    """The steps that find the families and prove their events; each level samples more parameter values."""
 
     def work(name: str, section: str, made: Callable[..., Made]) -> Step:
         before = parts.read(f"{name}-{level - 1}")
@@ -357,20 +357,20 @@ def _families(asked: Asked, parts: Parts, level: int, within: Callable[[float], 
 
 
 def _best(parts: Parts, name: str) -> dict[str, Any]:
-    """The last answer to a question that is answered at several levels; empty without one."""
+    """The answer to a question from the highest level computed so far; empty if there is none."""
     found = [parts.read(f"{name}-{level}") for level in range(LEVELS)]
     return next((one["data"] for one in reversed(found) if one and one["data"] != UNANSWERED), {})
 
 
 def _lives(asked: Asked, parts: Parts) -> Iterator[Step]:
-    """Steps that draw the families on which most starts end, one by one."""
+    """The steps that draw, one by one, the families that most starts reach."""
     said = _best(parts, "families").get("families", [])
     for i in lives.drawn_alone(said):
         yield Step(f"life-{i}", "families", FIRST["life"], partial(lives.life, asked, parts, said[i], i))
 
 
 def _curves(asked: Asked, parts: Parts, heard: Tick) -> Iterator[Step]:
-    """Steps that follow the events of those families as two-parameter curves, without curves that are known."""
+    """The steps that follow events of the largest families as curves in two parameters, without repetition."""
     said, known = _best(parts, "families").get("families", []), list[dict[str, Any]]()
     for i in lives.drawn_alone(said):
         name = f"curves-{i}"
@@ -380,14 +380,14 @@ def _curves(asked: Asked, parts: Parts, heard: Tick) -> Iterator[Step]:
 
 
 def _tangencies(asked: Asked, parts: Parts) -> Iterator[Step]:
-    """Steps that prove the tangencies that were found, one by one."""
+    """The steps that prove, one by one, the tangencies that were found."""
     found = parts.read("crises")
     for i, said in enumerate(found["data"].get("touches", []) if found else []):
         yield Step(f"tangency-{i}", "events", FIRST["tangency"], partial(tangencies.proved, asked, said, i))
 
 
 def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
-    """The report from the parts that exist, with the finest answer to each question."""
+    """The report from the results that exist, with the finest answer to each question."""
     from numeric.sweeps.sweep import versions
     from verification.reports import dynamics
 
@@ -454,19 +454,19 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
 
 
 def _still(found: dict[str, Any], name: str, seen: dict[str, Any]) -> bool:
-    """Is the family of a picture still in the table, with the same first value of the parameter?"""
+    """True if the family of a picture is still in the table, with the same first value of the parameter."""
     number = int(name.split("-")[1])
     families = seen.get("families", [])
     return number < len(families) and families[number]["low"] == found["data"].get("mark")
 
 
 def _once(rows: Iterable[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
-    """Each row once, in order: the same event on images of one cycle counts once."""
+    """The rows in order, without repetition: events on symmetric images of a cycle are listed once."""
     return tuple({json.dumps(row): row for row in rows}.values())
 
 
 def _names(parts: Parts) -> list[str]:
-    """The steps whose files exist, in the order of the page."""
+    """The names of the steps whose files exist, in the order of the page."""
     order = ["diagram", "families", "proofs", "chaos", "life", "census", "plane", "scene", "derivation", "slap"]
     order += ["portrait", "crises", "tangency", "curves", "work"]
     found = [path.stem for path in parts.folder.glob("*.json")]
@@ -479,7 +479,7 @@ def _names(parts: Parts) -> list[str]:
 
 
 def _finest(made: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """The last answer to each question, of those that were answered at several levels."""
+    """For each question that was answered at several levels, the answer at the highest level."""
     best: dict[str, dict[str, Any]] = {}
     for name, found in made.items():
         kind = name.split("-")[0]

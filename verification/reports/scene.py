@@ -1,4 +1,4 @@
-"""The first sections of a report: the table, what is proved about it, and thresholds of its double normals."""
+"""The first sections of a report: the table, what is proved about it, and the thresholds of its double normals."""
 
 from collections.abc import Iterator
 
@@ -32,7 +32,7 @@ WIDE = 400  # letters of a formula in LaTeX that is still shown
 
 
 def definition(asked: Asked) -> list[Block]:
-    """The section's formulas of the table, its law and its curvature."""
+    """The formulas of the table, its law and its curvature, as blocks of the section."""
     table, law = asked.scene.table, asked.scene.law
     shown = [part for part in table.components[:SHOWN] if size(part.point[0]) + size(part.point[1]) <= LONG]
     blocks: list[Block] = []
@@ -68,7 +68,7 @@ def facts(asked: Asked) -> list[Block]:
 
 
 def length(scene: Scene) -> ShownNumber:
-    """The perimeter: in closed form where there is one, else enclosed by integration in balls."""
+    """The perimeter, in closed form if there is one, else enclosed by integration in balls."""
     table = scene.table
     if len(table.components) <= SHOWN + 1 and not any(arc_length(part).has(Integral) for part in table.components):
         return ShownNumber(str(perimeter(table)))
@@ -77,7 +77,7 @@ def length(scene: Scene) -> ShownNumber:
 
 
 def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
-    """The properties closed, simple and convex, with the answer to each and how it is known."""
+    """The properties closed, simple and convex: for each its name, the answer, and how it is known."""
     yield "closed", "yes", Known.PROVED
     rho = table.components[0].radius if len(table.components) == 1 else None
     if rho is not None and radius_sign(rho) is Outcome.PROVED:
@@ -123,7 +123,7 @@ def inflections(table: Table) -> list[str]:
 
 
 def derivation(asked: Asked) -> list[Block]:
-    """Section on the derivative of the map, and on the double normals on axes of symmetry with their thresholds."""
+    """The section on the derivative of the map, and on double normals along symmetry axes with their thresholds."""
     law = asked.scene.law
     matrix = derivative_matrix() if law.uniform else derivative_matrix(lam=Symbol("f'", real=True))
     name = "derivative in (s, phi), one flight and one reflection"
@@ -147,9 +147,9 @@ def derivation(asked: Asked) -> list[Block]:
 
 
 def double_normals(table: Table) -> Iterator[Cycle]:
-    """The chords along axes of symmetry with smooth ends: cycles of period 2 for every contraction.
+    """The chords along symmetry axes with smooth end points; they are cycles of period 2 for every contraction.
 
-    Chords that a symmetry exchanges count once.
+    Chords that a symmetry exchanges are listed once.
 
     >>> from symbolic.tables import ellipse
     >>> [cycle.bounces for cycle in double_normals(ellipse.at(a=2))]
@@ -169,7 +169,7 @@ def double_normals(table: Table) -> Iterator[Cycle]:
 
 
 def _on_axis(table: Table, mirror: Symmetry) -> list[tuple[int, Expr]]:
-    """The boundary points that a reflection fixes, without the ends of pieces."""
+    """The boundary points that a reflection fixes, except end points of pieces."""
     fixed = [(i, mirror.shift[i] / 2) for i, onto in enumerate(mirror.onto) if onto == i]
     if len(table.components) == 1:
         return [*fixed, *((i, at + pi) for i, at in fixed)]
@@ -177,7 +177,7 @@ def _on_axis(table: Table, mirror: Symmetry) -> list[tuple[int, Expr]]:
 
 
 def _look(table: Table, ends: list[tuple[int, Expr]]) -> tuple[float, ...]:
-    """The length of a chord and the curvatures at its ends, rounded: the same for chords that a symmetry exchanges."""
+    """The rounded length of a chord and curvatures at its ends, equal for chords that a symmetry exchanges."""
     (x0, y0), (x1, y1) = (table.components[i].at(at) for i, at in ends)
     length = float(sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2))
     bent = sorted(float(curvature(table.components[i]).subs(theta, at)) for i, at in ends)
@@ -185,12 +185,12 @@ def _look(table: Table, ends: list[tuple[int, Expr]]) -> tuple[float, ...]:
 
 
 def _marked(table: Table, index: int, at: Expr) -> bool:
-    """Is the map undefined at this boundary point?"""
+    """True if the map is undefined at this boundary point."""
     return any(mark.component == index and cos(mark.theta - at) == 1 for mark in table.undefined)
 
 
 def thresholds(cycle: Cycle) -> list[Block]:
-    """Formulas of the stability number of a double normal, and of the contraction of its doubling or focus."""
+    """Formulas for a double normal: its stability number, and where it doubles its period or becomes a focus."""
     number = stability_number(cycle)
     value = number.evalf(20)
     blocks: list[Block] = [Formula(f"{cycle.name}: stability number P = (1 + t*K0)*(1 + t*K1)", f"P = {latex(number)}")]

@@ -55,14 +55,14 @@ def command(
     compare: str | None,
     output: Output,
 ) -> int:
-    """Error against run time: each way to bounce, timed for one bounce at lam = 0.95.
+    """Error against run time of each method that computes a bounce, at lam = 0.95.
 
-    Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30
-    digits more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the
-    Pareto front: no other way is both faster and more exact. Whole calls, questions, and tables other than the
-    egg, are compared with other times, and each ratio has a bar that it should not pass. The exit status is 1 when
-    one is over its bar or, with --compare, when a time changed by a factor of more than 1.5 against the other times
-    of its run, or an error grew tenfold.
+    Errors of float64 are measured against 50 digits, those of mpmath and arb against a proved enclosure with 30 digits
+    more than theirs. In the diagrams time grows to the right and error upwards; a capital letter is on the Pareto
+    front: no other method is both faster and more exact. The times of whole calls, of questions, and of tables other
+    than the egg are divided by reference times, and each ratio has a limit. The exit status is 1 when a ratio exceeds
+    its limit or, with --compare, when a time changed by a factor of more than 1.5 against the other times of its run,
+    or an error grew tenfold.
     """
     from verification.measure.extremes import orbits as labelled
     from verification.measure.work import bench
@@ -130,7 +130,7 @@ def command(
 
 
 def show(console: "Console", name: str, rows: "list[SceneTiming]") -> None:
-    """Prints a scene's rows with ratios to the kernel and marks on the Pareto front, and two diagrams."""
+    """Prints a scene's rows, with ratios to the kernel's time and marks on the Pareto front, and two diagrams."""
     from verification.measure.extremes.orbits import RADII, SCENES
     from verification.measure.work.bench import frontier
     from verification.measure.work.row import diagram, duration
@@ -150,7 +150,7 @@ def show(console: "Console", name: str, rows: "list[SceneTiming]") -> None:
 
 
 def show_ratios(console: "Console", rows: "list[SceneTiming]") -> None:
-    """Prints the times of tables that are not the paper's, as multiples of the egg's in the same run."""
+    """Prints the times of tables that are not in the paper, as multiples of the egg's times in the same run."""
     from verification.measure.extremes.orbits import RADII
 
     times = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}
@@ -168,7 +168,7 @@ def show_ratios(console: "Console", rows: "list[SceneTiming]") -> None:
 
 
 def show_tables(console: "Console", rows: "Sequence[SceneTiming]") -> bool:
-    """Prints times of many tables as multiples of the egg's or the square's; True when none is over its bar."""
+    """Prints times of many tables as multiples of the egg's or the square's; False if a ratio exceeds its limit."""
     from verification.measure.work.bench import SCALAR
     from verification.measure.work.calls import BARS, KERNEL
     from verification.measure.work.row import duration
@@ -193,7 +193,7 @@ def show_tables(console: "Console", rows: "Sequence[SceneTiming]") -> bool:
 
 
 def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
-    """Prints whole calls with their bars, and marks those over their bar."""
+    """Prints the times of whole calls with the limits of their ratios, and marks those that exceed them."""
     from verification.measure.work.row import duration
 
     if calls:
@@ -204,7 +204,7 @@ def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
 
 
 def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
-    """What users type, from the start of the process to its last line; what is over its bar is marked."""
+    """Prints the times of whole commands, from process start to last line, and marks those that exceed their limit."""
     from verification.measure.work.row import duration
 
     if asked:
@@ -219,7 +219,7 @@ def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
 
 
 def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
-    """Prints the errors of the hard cases; position errors beyond 4 units and direction errors beyond 8 are marked."""
+    """Prints the errors of the hard cases; marks position errors above 4 units and direction errors above 8."""
     console.print("\naccuracy of one bounce in float64, largest errors in units of 2**-52; beyond 4 and 8 marked")
     console.print(CASES)
     for case in cases:
@@ -251,13 +251,13 @@ def work_command(
     seed: int,
     output: Output,
 ) -> int:
-    """Error against run time for a whole question: every arithmetic, and the scripts that one would write first.
+    """Error against run time for a whole question, in every arithmetic and by plain scripts.
 
-    With a table QUESTION is step, jacobian, orbit, cycle, fold or exponent: of that scene. Without one it is step-egg,
-    step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle,
-    exponent-chaos, arclength, arclength-inverse or slap-infimum; all of these if left out. Errors are distances from
-    a certified ball. In the table `*` marks the Pareto front: nothing else is both quicker and more exact; `!` marks
-    a method whose error is larger than it claims.
+    With a table, QUESTION is step, jacobian, orbit, cycle, fold or exponent, for that scene. Without one it is
+    step-egg, step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle,
+    exponent-chaos, arclength, arclength-inverse or slap-infimum, and all of these if left out. Errors are distances
+    from a certified ball. In the printed table `*` marks the Pareto front: no method is both quicker and more exact;
+    `!` marks a method whose error is larger than it claims.
     """
     from verification.measure.work.bench import MISSING, is_checkout
     from verification.measure.work.choice import QUESTIONS
@@ -313,7 +313,7 @@ def described(question: "Question") -> dict[str, str | bool]:
 
 
 def _target(question: str | None, out: str | None) -> Path | None:
-    """The path of the diagram, or None; refused, before anything is measured, where it cannot be written."""
+    """The path of the diagram, or None; a path that cannot be written is refused before anything is measured."""
     if out is None:
         return None
     path = Path(out)
@@ -331,7 +331,7 @@ def _target(question: str | None, out: str | None) -> Path | None:
 @click.option("--clear", is_flag=True, help="Remove the kept tables and kernels; they are made again when needed.")
 @json_option
 def cache_command(where: bool, clear: bool, output: Output) -> int:
-    """Where tables and compiled kernels are kept between runs, and how much of it there is.
+    """Shows in which folder tables and compiled kernels are kept between runs, and the folder's size.
 
     PINBALL_CACHE names another folder, and an empty PINBALL_CACHE switches the cache off. The folder is for its user
     alone: one that belongs to somebody else, or that others can write, is not used, and the exit status is 1.

@@ -61,10 +61,11 @@ def command(
 ) -> int:
     """What becomes of this cycle as lambda changes? Followed through folds, with every event on the way.
 
-    With --shape [NAME=]LOW:HIGH, or NAME=VALUE:LOW..HIGH, and one number for --lam it is the table's shape that
-    changes, or a parameter of the law; its number is the start's. Exit status 1 when a branch stops inside the
+    With --shape [NAME=]LOW:HIGH, or NAME=VALUE:LOW..HIGH, and one number for --lam, a parameter of the table or of the
+    law varies; the start is then a cycle at the scene's own value of it. Exit status 1 when a branch stops inside the
     interval; what was found is kept. With --all no start is given: all families of cycles that attract random starts at
-    some values are followed, and random starts at other values say what was missed, with exit status 1 if anything was.
+    some values are followed. Random starts at other values then show whether an attractor was missed, with exit status
+    1 if so.
     """
     from verification.cycles.arc import Steps
     from verification.cycles.branch import at_contraction, branch, named, record, typed
@@ -127,7 +128,7 @@ def command(
 
 
 def all_families(scene: Scene, shape: str | None, interval: str, digits: int, output: Output) -> int:
-    """Follows and prints every family of cycles that attracts random starts, with events and a check; exit status."""
+    """Follows and prints every family that attracts random starts, with events and a check; returns the exit status."""
     from verification.named.bifurcations import bifurcations
 
     parameter, ends = varied(scene, shape) if shape else ("lam", interval)
@@ -177,7 +178,7 @@ def own_numbers(scene: Scene) -> dict[str, Any]:
 
 
 def ranged(scene: Scene) -> str | None:
-    """The parameter that has a range, as `NAME=LOW:HIGH`; None where none has one, an error where several have."""
+    """The parameter with a range, as `NAME=LOW:HIGH`; None if there is none, `ValueError` if there are several."""
     found = [f"{name}={low}:{high}" for name, (low, high) in scene.ranges.items()]
     if len(found) > 1:
         raise ValueError(
@@ -203,7 +204,7 @@ def varied(scene: Scene, shape: str) -> tuple[str, str]:
 
 
 def over(scene: Scene, parameter: str, ends: str) -> "Table":
-    """The table with `parameter` free over the interval `ends`; an error names a value at which there is no table."""
+    """The table with `parameter` free over the interval `ends`; the error names a value at which no table exists."""
     try:
         return scene.over(parameter, *ends.split(":"))
     except ValueError as why:
@@ -211,7 +212,7 @@ def over(scene: Scene, parameter: str, ends: str) -> "Table":
 
 
 def contraction(text: str) -> "Fraction | Expr":
-    """The one contraction of `--lam`, at which the shape varies."""
+    """The value of `--lam`, which must be one number when the shape varies."""
     lam = exact("--lam", text) if ":" not in text else -1
     if not 0 <= lam <= 1:
         raise ValueError(f"--lam {text} with --shape is no contraction; accepted: one number between 0 and 1")
@@ -219,7 +220,7 @@ def contraction(text: str) -> "Fraction | Expr":
 
 
 def turned_off(first: "Branch", interval: tuple[float, float], steps: Any, depth: int) -> list["Branch"]:
-    """The branches that leave `first` at its events, and those that leave them, up to this depth."""
+    """The branches born at events of `first`, those born at events of these, and so on, `depth` times."""
     from verification.cycles.arc import LostError
     from verification.cycles.switching import switched
 

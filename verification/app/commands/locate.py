@@ -1,4 +1,4 @@
-"""`pinball locate`: where does it happen, to so many certified digits?
+"""`pinball locate`: the parameter values of named events, to a given number of certified digits.
 
 `pinball check` verifies a certificate without the search that found it.
 """
@@ -30,7 +30,7 @@ TANGENCY = "tangency"  # only with a table
 
 
 def _names(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The names of values that begin with `begun`, for completion in a shell."""
+    """The names of events that begin with `begun`, for completion in a shell."""
     from verification.named.locate import NAMES
 
     return [name for name in (*NAMES, TANGENCY) if name.startswith(begun)]
@@ -68,13 +68,13 @@ def command(
 
     NAME is lambda-star, phi-star, lambda-c, alpha-tilde, alpha-hat, saddle-node, doubling, symmetry-breaking, or
     merging-crisis, boundary-crisis, symmetry-restoring, band-merging, interior-crisis and, with --period, window-end,
-    window-merging, family-end, family-merging: tangencies of manifolds, which are proved; that the attractor changes
-    there, and nowhere before, is not. With --law they are those of another law, followed there from the paper's.
+    window-merging, family-end, family-merging: tangencies of manifolds. The tangency is proved; that the attractor
+    changes there, and not earlier, is not. With --law the value is followed from the paper's law to another one.
 
-    With a table, saddle-node, doubling and symmetry-breaking are those of its cycles of one --period, as --lam
-    LOW:HIGH varies, or --shape NAME=LOW:HIGH and --lam is one number; tangency is where, as --lam LOW:HIGH varies, the
-    manifolds of a saddle up to that period touch. Cycles are looked for at some values: each bifurcation that is found
-    is proved, and that there is no other is not.
+    With a table, saddle-node, doubling and symmetry-breaking are bifurcations of its cycles of one --period, as --lam
+    LOW:HIGH varies, or as --shape NAME=LOW:HIGH varies at one --lam. For tangency, --lam LOW:HIGH varies, and the
+    manifolds of saddles up to that period are searched for contacts. Cycles are searched for at some values only: each
+    bifurcation found is proved, but not that there is no other.
     """
     from symbolic.tables.formula import number
     from symbolic.tables.law import PAPERS_LAW, Law
@@ -155,7 +155,7 @@ def of_scene(
 
 
 def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[Located, ...]":
-    """The tangencies of a table's manifolds as the contraction varies; `ValueError` where another parameter varies."""
+    """The tangencies of a table's manifolds as the contraction varies; `ValueError` if another parameter varies."""
     if parameter != "lam":
         raise ValueError(f"locate tangency: {parameter} varies; accepted: --lam LOW:HIGH")
     from verification.named.tangencies import tangencies
@@ -164,7 +164,7 @@ def _tangencies(scene: Scene, parameter: str, asked: dict[str, Any]) -> "tuple[L
 
 
 def interval_of(scene: Scene, axis: str | None, lam: str | None) -> tuple[Scene, str, tuple[str, str]]:
-    """The scene at its fixed contraction, the parameter that varies, and the two ends."""
+    """The scene at its fixed contraction, the parameter that varies, and the two ends of its interval."""
     if lam is None:
         raise ValueError("--lam is missing; accepted: LOW:HIGH, or one number and --shape NAME=LOW:HIGH")
     ends = (axis or "").rpartition("=")[2] or lam
@@ -191,7 +191,7 @@ HAPPENS = {"flip": "period {n} doubles", "fold": "period {n} folds", "tangency":
 
 
 def marked(path: str, scene: Scene, parameter: str) -> "Marked":
-    """The value that a certificate proves for this scene, checked anew, and what happens there in words."""
+    """The parameter value that a certificate proves for this scene (checked anew), and a text on what happens there."""
     from symbolic.tables.definition import table_boundary
     from verification.named.theorems import checked
     from verification.plots.results import Marked
@@ -236,7 +236,7 @@ def show(output: Output, found: "Located") -> None:
 
 
 def writable(path: str) -> None:
-    """Raises `ValueError`, before any work, where the certificate's file could not be written."""
+    """Raises `ValueError`, before any work, if the certificate's file could not be written."""
     where = Path(path)
     if where.is_dir() or not where.parent.is_dir() or not os.access(where if where.exists() else where.parent, os.W_OK):
         raise ValueError(f"--certificate {path!r} cannot be written; accepted: a file in a directory of yours")
@@ -256,8 +256,8 @@ def _write(path: str, found: "Located") -> None:
 def check_command(files: tuple[str, ...], output: Output) -> int:
     """Does a certificate prove what it says? Exit status 1 when an item of its checklist is not proved.
 
-    The whole checklist is worked through anew; what the file says of itself is not believed. With several files the
-    JSON has a list of them, under `files`.
+    The whole checklist is proved anew, whatever verdict the file contains. With several files, the JSON has a list of
+    the verdicts under `files`.
     """
     from verification.rigorous.certificate import read_document
 
@@ -280,7 +280,7 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
 
 
 def _checked(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """The verdict on a certificate's theorem, whose hypotheses are proved anew: as JSON and as lines of text."""
+    """Proves a certificate's theorem anew; returns the verdict as a JSON document and as lines of text."""
     from verification.named.locate import WORDS
     from verification.named.theorems import checked
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 def attractor_command(
     scene: Scene, orbits: int, seed: int, transient: int, bounces: int, points: int, certify: bool, output: Output
 ) -> int:
-    """The attractors that random starts reach, with period, symmetry, exponents and share of the starts.
+    """The attractors that random starts reach, with period, symmetry, exponents and the fraction of starts.
 
     Starts are uniform inside the table with uniform directions; the first collision is elastic.
     """
@@ -120,7 +120,7 @@ def checked(scene: Scene, attractor: "Attractor") -> dict[str, bool | None]:
 
 
 def show_attractor(console: "Console", document: dict[str, Any]) -> None:
-    """Prints a line for each attractor; where that is too wide, with fewer digits and the proofs below."""
+    """Prints a line for each attractor; a narrow terminal gets fewer digits, and the proofs below the table."""
     names = "row", "symmetry", "attractor", "at x, y, phi", "starts", "share (95%)", "nu_plus", "nu_minus"
     found = document["attractors"]
     proofs = [said(a.get("checks")) for a in found]
@@ -140,7 +140,7 @@ def show_attractor(console: "Console", document: dict[str, Any]) -> None:
 
 
 def show_doubts(console: "Console", doubts: list[tuple[int, str]]) -> None:
-    """Prints which rows may each be several attractors, or part of one, and why: a line for each reason."""
+    """Prints, for each reason, the rows for which it is undecided whether they are one attractor or several."""
     for reason in dict.fromkeys(reason for _, reason in doubts):
         rows = [str(row) for row, word in doubts if word == reason]
         many = f"row {rows[0]} is" if len(rows) == 1 else f"rows {', '.join(rows)} are"
@@ -148,7 +148,7 @@ def show_doubts(console: "Console", doubts: list[tuple[int, str]]) -> None:
 
 
 def _row(a: dict[str, Any], number: int, found: list[dict[str, Any]], digits: int) -> tuple[str, ...]:
-    """The cells of an attractor's row in the table; exponents have `digits` decimals."""
+    """The cells of a row of the table, for one attractor; exponents have `digits` decimals."""
     kind = {"cycle": f"period {a['period']}", "chaotic": "chaotic", "stopped": f"stopped: {a['status']}"}
     name = kind.get(a["kind"], f"neutral, period {a['period']}" if a["period"] else "neutral")
     first = next(k for k, other in enumerate(found, 1) if other["family"] == a["family"])
@@ -160,7 +160,7 @@ def _row(a: dict[str, Any], number: int, found: list[dict[str, Any]], digits: in
 
 
 def share_in_words(a: dict[str, Any]) -> str:
-    """The 95 per cent interval of a share, estimated from counts, in words; a bound for 0 or 1.
+    """The 95 % interval of a probability estimated from counts, in words; a one-sided bound at 0 or 1.
 
     >>> share_in_words({"share": 1.0, "share_low": 0.98116, "share_high": 1.0})
     'at least 98.1 %'
@@ -174,7 +174,7 @@ def share_in_words(a: dict[str, Any]) -> str:
 
 
 def said(checks: dict[str, bool | None] | None) -> str:
-    """`proved`, or the names of the checks that are not proved; empty without a proof."""
+    """`proved`, or the names of the checks that are not proved; empty if there are no checks."""
     if not checks:
         return ""
     missing = [name for name, value in checks.items() if value is not True]
@@ -227,9 +227,9 @@ def command(
 ) -> int:
     """The two exponents per bounce, in the coordinates (s, phi), with standard errors, for each attractor.
 
-    Starts are those of the paper's appendix: points uniform in the table, directions uniform, the first collision
-    elastic; or uniform in arc length and sin(phi). Nothing is averaged across attractors. Ctrl-C ends a long count,
-    and what was counted is reported.
+    Starts are those of the paper's appendix (points uniform in the table, directions uniform, the first collision
+    elastic), or uniform in arc length and sin(phi). Nothing is averaged across attractors. Ctrl-C ends a long run; the
+    bounces so far are reported.
     """
     if until_error is not None and not until_error > 0:
         raise ValueError(f"--until-error = {until_error} is no error; give a positive number such as 1e-4")
@@ -271,7 +271,7 @@ def command(
 
 
 def add_proofs(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None:
-    """Adds proved exponents to each group of `document`: of a cycle (null where the proof failed) or proved chaos."""
+    """Adds certified exponents to each group of `document`: of a cycle (null if not proved) or of proved chaos."""
     from sympy import S
 
     from verification.named.attractors import certified_exponents, chaotic_exponents
@@ -288,7 +288,7 @@ def add_proofs(scene: Scene, survey: "Survey", document: dict[str, Any]) -> None
 
 
 def show(console: "Console", document: dict[str, Any]) -> None:
-    """Prints the exponents of the one attractor or of each, and where the error bars come from."""
+    """Prints the exponents, for each attractor if there are several, and how their error bars were obtained."""
     if document["nu_plus"] is None:
         many = "undecided how many" if document["undecided"] else document["attractors"]
         console.print(f"{many} attractors: nothing is averaged across them")
@@ -343,7 +343,7 @@ def show(console: "Console", document: dict[str, Any]) -> None:
 
 
 def place(described: dict[str, Any]) -> str:
-    """A point of an attractor as text: its place in the table and its exit angle.
+    """A point of an attractor as text: its coordinates in the table and its exit angle.
 
     >>> place({"at": {"x": 0.0, "y": -2e-10, "phi": 0.25}})
     '0.000e+00, -2.000e-10, 0.250'

@@ -1,6 +1,6 @@
-"""`pinball morse`: which attractors and repellers are proved, and in what order?
+"""`pinball morse`: which attractors and repellers are proved, and in what order do orbits pass through them?
 
-`pinball sweep morse-graphs` does so for each box of a parameter grid, and finds the graphs that continue.
+`pinball sweep morse-graphs` answers this for each box of a parameter grid, and finds the graphs that continue.
 """
 
 import json
@@ -66,10 +66,11 @@ def command(
     certificates: str | None,
     output: Output,
 ) -> int:
-    """Which attractors are proved, and in what order? Exit status 1 when no trapping region but the whole is found.
+    """Which attractors are proved, and in what order? Exit status 1 when no trapping region but the whole strip is
+    found.
 
-    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. Proved: from some
-    bounce on, every orbit that never lands on a join is in one of the Morse sets listed; it goes from one to another
+    The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by boxes. From some bounce on,
+    every orbit that never lands on a join is proved to be in one of the Morse sets listed; it goes from one to another
     only in the order given; and each trapping region keeps what enters it. A set may hold several attractors, or none.
     """
     from verification.proofs.global_dynamics.images import PinballImages
@@ -126,7 +127,7 @@ def span(text: str) -> tuple[Fraction, Fraction]:
 
 
 def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
-    """A Morse set as JSON: its number of boxes, their range, and the sets that walks lead to."""
+    """A Morse set as JSON: its number of boxes, their range, and the Morse sets below it in the order."""
     from verification.rigorous.graph import Cells
 
     members = graph.sets[index]
@@ -140,7 +141,7 @@ def entry(graph: "MorseGraph", index: int) -> dict[str, Any]:
 
 
 def blocks(graph: "MorseGraph") -> "Iterator[tuple[int, Mask]]":
-    """Index and trapping region (a mask of boxes) of each attracting set that has one."""
+    """The index and the trapping region (a mask of boxes) of each attracting set that has such a region."""
     for index in graph.attracting:
         block = graph.trapping(index)
         if not block[-1]:
@@ -243,7 +244,7 @@ def graphs_command(
     """The Morse graph of each box of parameters, and which of them continue from box to box.
 
     The N values of --lams and of --shape NAME=LOW:HIGH:N are the borders of the boxes; contractions are below 1. What
-    is proved of a box holds for each of its parameters. Rotations that keep the table are divided out.
+    is proved for a box holds for each of its parameters. Phase space is taken modulo rotations of the table.
     """
     from verification.proofs.global_dynamics.database import continued, database
 
@@ -265,7 +266,7 @@ def graphs_command(
 
 
 def graph_lines(found: "xr.Dataset", label: "Numbers") -> list[str]:
-    """Lines of text: the boxes of the largest classes, and the numbers of trapping regions as a picture."""
+    """Lines of text: the numbers of boxes of the largest classes, and a picture of the numbers of trapping regions."""
     import numpy as np
 
     sets, attracting = found.sets.values, found.attracting.values

@@ -1,8 +1,4 @@
-"""Where does this particle go?
-
-`pinball orbit` follows it, `pinball slap` does so at contraction 0, and `pinball cycles` lists the orbits that
-return.
-"""
+"""`pinball orbit` follows a particle, `pinball slap` does so at contraction 0, `pinball cycles` lists cycles."""
 
 from collections.abc import Sequence
 from math import isfinite
@@ -66,15 +62,15 @@ def command(
 ) -> int:
     """Where does this particle go? Exit status 1 when it stops at a join, a cusp or a tangency.
 
-    In arb the last digit shown is off by one at most, and every landing is proved to be the first hit; an orbit
-    that goes on where that cannot be proved ends as `unproved`. The other outcomes are found, and not proved.
-    `auto` takes what is cheapest for the digits asked of the last bounce, and says why: float64 as long as the orbit
-    leaves it enough of its own, then arb.
+    In arb the last digit shown is off by one at most, and every landing is proved to be the first hit; an orbit ends as
+    `unproved` where this cannot be proved. The other outcomes are computed, but not proved. `auto` takes the cheapest
+    arithmetic that has the wanted digits at the last bounce, and says why: float64 as long as the orbit leaves it
+    enough correct digits, else arb.
 
-    The first line of a --starts file names its columns: theta,phi or theta,phi,component or s,phi or x,y,dx,dy or
-    x,y,angle. Of --fields, `flight` is the length of the flight before a bounce and `time` the length of all so far;
-    nothing else than what is asked is computed, and arc lengths in mpmath and arb are for --json or --fields alone.
-    With a --door a particle that lands between two arc lengths ends as `escaped`, and its number of bounces is told.
+    The first line of a --starts file names its columns (theta,phi or theta,phi,component or s,phi or x,y,dx,dy or
+    x,y,angle). Of --fields, `flight` is the length of the flight before a bounce and `time` the length of all flights
+    so far. Only the fields asked for are computed; mpmath and arb compute arc lengths only for --json or --fields. With
+    a --door, a particle that lands between two arc lengths ends as `escaped`, and its number of bounces is printed.
     With --out every bounce is a row of a table of float64 columns, and `component` and `code` are whole numbers; then
     --json has the first bounces only. A .zarr store is written in pieces, and the same command resumes it.
     """
@@ -150,7 +146,7 @@ def command(
 
 
 def opened(map: Any, text: str) -> tuple[float, float]:
-    """The ends of a door, by arc length, in counterclockwise order; it may lie over the end of arc length."""
+    """The two ends of a door as arc lengths, counterclockwise; the point where arc length jumps may lie inside."""
     half, parts = map.arclength.perimeter / 2, text.split(":")
     try:
         low, high = (float(exact("--door", part)) for part in parts)
@@ -162,7 +158,7 @@ def opened(map: Any, text: str) -> tuple[float, float]:
 
 
 def escape(entries: list[dict[str, Any]], door: tuple[float, float]) -> int | None:
-    """After how many bounces a particle lands in a door, at which its orbit is cut; None where it never does."""
+    """The number of bounces until a particle lands in a door, or None; `entries` is cut off after this bounce."""
     low, high = door
     for bounce, entry in enumerate(entries[1:], 1):
         s = entry["s"] if entry["status"] == "regular" else None
@@ -174,7 +170,7 @@ def escape(entries: list[dict[str, Any]], door: tuple[float, float]) -> int | No
 
 
 def escapes(times: Sequence[int | None], bounces: int) -> str:
-    """How many particles escaped, and when.
+    """A sentence on how many particles escaped, and after how many bounces.
 
     >>> escapes([3, None, 5], 100)
     '2 of 3 particles escaped within 100 bounces, after 4 on average, the last after 5'
@@ -185,7 +181,7 @@ def escapes(times: Sequence[int | None], bounces: int) -> str:
 
 
 def wanted(digits: int | None, tolerance: str | None) -> int | None:
-    """The number of digits that --digits or --tolerance gives; None without either."""
+    """The number of digits that --digits or --tolerance asks for; None if neither is given."""
     if tolerance is None:
         return digits
     if digits is not None:
@@ -196,7 +192,7 @@ def wanted(digits: int | None, tolerance: str | None) -> int | None:
 
 
 def in_float64(map: Any, particles: "list[Start]", bounces: int, fields: Sequence[str]) -> list[list[dict[str, Any]]]:
-    """The bounces of each particle by the float64 kernels, until it stops."""
+    """The bounces of each particle until it stops, computed by the float64 kernels."""
     from verification.app.commands.starts import columns, entries_of
 
     found = columns(map, particles, bounces, fields)
@@ -233,7 +229,7 @@ ROWS = 33  # points shown to people
 @plot_option("results.slap", "the graphs of the iterates, and the slope")
 @json_option
 def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> int:
-    """The slap map: what remains at lambda = 0, where every exit is along the normal."""
+    """The slap map: the limit at lambda = 0, where every particle leaves along the normal."""
     import numpy as np
 
     from numeric import PinballMap
@@ -272,7 +268,7 @@ def slap_command(scene: Scene, iterates: int, points: int, output: Output) -> in
 
 
 def normal_exits(scene: Scene) -> Scene:
-    """The scene with the paper's law: at `lam = 0` every law with normal exits has the same slap map."""
+    """The scene with the paper's law; its slap map is that of every law which exits along the normal at `lam = 0`."""
     if scene.law.uniform:
         return scene
     from symbolic.expressions.signs import vanishes
@@ -306,9 +302,9 @@ CYCLES_MOST = 60  # cycles shown to people
 def cycles_command(
     scene: Scene, period: int, count: int | None, prove: int | None, budget: int, seed: int, output: Output
 ) -> int:
-    """Which cycles are there, up to a period? Found by search, and completeness shown as far as it can be.
+    """Lists the cycles up to a period, found by a search, and shows as far as possible whether the list is complete.
 
-    Exit status 1 when a count does not come out even or a proof stays open; the cycles found are kept.
+    Exit status 1 when the cycles found do not account for a count, or a proof stays open; the cycles are kept.
     """
     from sympy import S
 
@@ -384,7 +380,7 @@ def worth(solution: "Solution") -> dict[str, Any]:
 
 
 def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[str, Any]]:
-    """For each period, fixed points of `T**n` counted on cells, and those of the catalogue, as JSON."""
+    """For each period n, as JSON: the number of fixed points of `T**n`, as counted on cells and as in the catalogue."""
     from numeric import PinballMap
     from verification.cycles.cells import fixed_points
     from verification.maps.first_hit import closes_smoothly, convex
@@ -416,7 +412,7 @@ def counted(catalogue: "Catalogue", highest: int, output: Output) -> list[dict[s
 
 
 def provable(scene: Scene) -> None:
-    """Raises `ValueError`, with the reason, where the theorem behind --prove does not apply to the scene."""
+    """Raises `ValueError`, with the reason, if the theorem behind --prove does not apply to the scene."""
     from symbolic.tables.curves import is_periodic
     from verification.maps.first_hit import convex
     from verification.proofs.periodic.completeness import one_smooth_curve, stays_below
@@ -435,7 +431,7 @@ def provable(scene: Scene) -> None:
 
 
 def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, output: Output) -> list[dict[str, Any]]:
-    """For each period, whether the cycles found are proved to be all, as JSON."""
+    """For each period, as JSON: whether the cycles found are proved to be all."""
     from verification.proofs.periodic.completeness import proofs
 
     with output.progress("Proving", highest - 1) as tick:

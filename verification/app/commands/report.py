@@ -1,4 +1,4 @@
-"""`pinball report`: what becomes of this table? One page, useful first and refined in the time given."""
+"""`pinball report`: one page on the dynamics of a table, which is soon useful, and refined in the time given."""
 
 from functools import wraps
 from importlib.util import find_spec
@@ -40,7 +40,7 @@ def varied(text: str) -> tuple[str, str, str]:
 
 
 def needed() -> None:
-    """Raises `ValueError`, before any work, where a package that a report needs is missing, and says how to get it."""
+    """Raises `ValueError`, before any work, if a package that a report needs is missing, and says how to install it."""
     absent = [name for name in NEEDED if find_spec(name) is None]
     if absent:
         extras = ",".join(EXTRAS[name] for name in NEEDED)
@@ -99,9 +99,9 @@ def command(
     """What becomes of this table as the contraction varies? One page of HTML that needs no network.
 
     Every family of cycles that attracts random starts, from birth to death, with events and certificates; attractors
-    with basins; what may be missing; the table and what is proved of it, slap map, portraits. With --vary
-    NAME=LOW:HIGH also the plane of that parameter and the contraction, shaded by exponent, with curves of events. A
-    report that was stopped goes on when the same command is given again.
+    with basins; what may be missing; the table and what is proved about it, slap map, portraits. With --vary
+    NAME=LOW:HIGH also the plane of that parameter and the contraction, shaded by exponent, with the curves of events.
+    The same command resumes a report that was stopped.
     """
     needed()
     from numeric.sweeps.run import UnfinishedError

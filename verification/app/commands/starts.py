@@ -1,7 +1,7 @@
 """Where the particles of `pinball orbit` start: on the wall, at an interior point, or each row of a file.
 
-A start on the wall is a parameter or an arc length, and an exit angle. One inside is a point and a direction: the first
-wall that it meets is its first bounce. One table of columns holds the quantities of all bounces.
+A start on the wall is a boundary parameter (or an arc length) and an exit angle. A start inside is a point and a
+direction; its first bounce is at the first wall that it meets. The quantities of all bounces are in one table.
 """
 
 import csv
@@ -29,9 +29,9 @@ FILES = "theta,phi", "theta,phi,component", "s,phi", "x,y,dx,dy", "x,y,angle"  #
 
 @dataclass(frozen=True)
 class Start:
-    """A particle that leaves the wall, or begins at the interior point `inside` of its first flight.
+    """A particle that leaves the wall, or starts at the interior point `inside` in the middle of a flight.
 
-    `given` are the parameter and the angle as exact numbers, if they were typed so.
+    `given` has the parameter and the angle as exact numbers, if they were typed.
     """
 
     theta: float
@@ -49,7 +49,7 @@ def chosen(
     component: str | None,
     file: Path | None,
 ) -> list[Start]:
-    """The starts that the options describe; `ValueError` where they contradict each other."""
+    """The starts that the options describe; `ValueError` if the options contradict each other."""
     given = [name for name, value in (("--start", start), ("--from", point), ("--starts", file)) if value is not None]
     if len(given) != 1:
         raise ValueError(
@@ -175,7 +175,7 @@ def columns(
 ) -> "dict[str, NDArray[Any]]":
     """The named fields of each bounce and particle, with its `code`, as arrays of shape `(bounces + 1, particles)`.
 
-    A particle that sets out inside has no component, parameter or angle there: -1 and nan.
+    For a particle that starts in the interior, the start has component -1, and its parameter and angle are nan.
     """
     needed = {*fields} & {*Orbit._fields, "s"} | {"code"} | ({"x", "y"} if {*fields} & {*MORE} else set())
     theta, phi, component = _arrays(starts)
@@ -204,7 +204,7 @@ def _arrays(starts: Sequence[Start]) -> "tuple[NDArray[Any], NDArray[Any], NDArr
 
 
 def entries_of(map: "PinballMap", found: "dict[str, NDArray[Any]]", particle: int) -> list[dict[str, Any]]:
-    """A dictionary for each bounce of a particle until it stops; None stands for a missing number."""
+    """A dictionary for each bounce of a particle until it stops; missing numbers are None."""
     names = [part.name for part in map.ir.parts]
     codes = found["code"][:, particle]
     stopped = np.flatnonzero(codes)
@@ -221,7 +221,7 @@ def entries_of(map: "PinballMap", found: "dict[str, NDArray[Any]]", particle: in
 
 
 def written(map: "PinballMap", starts: Sequence[Start], bounces: int, path: Path, fields: Sequence[str] | None) -> str:
-    """Writes all bounces as rows of a table in the format of the file's ending; the status of a stopped particle."""
+    """Writes all bounces as rows, in the format of the file's ending; returns the first stopped particle's status."""
     from numeric.sweeps.orbits import COLUMNS, record, table_written
 
     several = len(starts) > 1

@@ -1,7 +1,7 @@
-"""Grids of independent tasks, on all cores or on a Dask cluster, into a Zarr store.
+"""Sweeps: grids of independent tasks, run on all cores or on a Dask cluster, with results in a Zarr store.
 
-`pinball sweep KIND` takes any; `pinball basins` says which attractor each start reaches, and `pinball bifurcation`
-draws the attractors against the contraction.
+`pinball sweep KIND` runs any kind of grid; `pinball basins` shows which attractor each start reaches, and `pinball
+bifurcation` draws the attractors against the contraction.
 """
 
 from collections.abc import Callable
@@ -33,7 +33,7 @@ Lines = Callable[["Memory | Stored"], list[str]]
 
 @dataclass(frozen=True)
 class How:
-    """Where the results of a sweep go, and who computes them."""
+    """How a sweep is run: where its results go, and on which workers it is computed."""
 
     output: Output
     store: Path | None
@@ -72,7 +72,7 @@ def sweep_options(command: Command) -> Command:
 
 
 def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
-    """Runs a sweep and prints what `lines` makes of it, or prints its cost; the exit status. `more` goes to --plot."""
+    """Runs a sweep and prints a summary (or only its cost); returns the exit status. `more` is passed to --plot."""
     from numeric.sweeps import run
     from numeric.sweeps.cost import cost
 
@@ -128,7 +128,7 @@ def basins_command(
     seed: int,
     how: How,
 ) -> int:
-    """The attractor that each cell of phase space reaches; attractors are found from random starts first."""
+    """Computes which attractor each cell of phase space reaches; the attractors are found from random starts first."""
     from numeric.dynamics.basins import Window
     from numeric.sweeps.fields import basins
     from numeric.sweeps.sweep import text_of
@@ -149,7 +149,7 @@ def basins_command(
 
 
 def basins_lines(found: "Memory | Stored") -> list[str]:
-    """Lines of text: the share of cells of each attractor, and a small picture in letters."""
+    """Lines of text: the fraction of cells that reach each attractor, and a small picture made of letters."""
     import numpy as np
 
     label = found.arrays["label"][:]
@@ -207,10 +207,10 @@ def bifurcation_command(
     marks: tuple[str, ...],
     how: How,
 ) -> int:
-    """Where random particles are after a long time, for each contraction; starts as in the paper's appendix.
+    """Bifurcation diagram: random particles after a long time, for each contraction; starts as in the paper's appendix.
 
-    With --shape NAME=LOW:HIGH:N it is a parameter of the table or of the law that varies, and --lams is one number.
-    Each --mark is a certificate that `pinball locate --certificate` wrote of this scene: a line where it is proved.
+    With --shape NAME=LOW:HIGH:N a parameter of the table or of the law varies, and --lams is one number. Each --mark is
+    a certificate that `pinball locate --certificate` wrote for this scene, and is drawn as a line at the proved value.
     """
     from numeric.sweeps.fields import bifurcation
     from verification.app.commands.locate import marked
@@ -222,7 +222,7 @@ def bifurcation_command(
 
 
 def bifurcation_lines(found: "xr.Dataset") -> list[str]:
-    """Lines of text for some contractions: how many orbits are chaotic, how many points the attractors have."""
+    """For some contractions a line of text: how many orbits are chaotic, and how many points the attractors have."""
     import numpy as np
 
     parameter = str(found.chaotic.dims[0])
@@ -244,7 +244,7 @@ SWEEP_ROWS = 24  # contractions shown to people
 
 
 class Kinds(click.Group):
-    """A group of commands that lists the kinds of sweep when an unknown one is given."""
+    """A command group that lists the kinds of sweep if the given kind is unknown."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [*super().list_commands(ctx), "morse-graphs"]
@@ -268,8 +268,8 @@ class Kinds(click.Group):
 def command() -> None:
     """Parameter space, exponents, basins, bifurcation diagrams and Morse graphs.
 
-    The bits of the results depend on the seed and on nothing else, and a sweep with a --store that was stopped goes
-    on from there when the same command is given again.
+    The results depend on the seed and on nothing else, to the last bit. If a sweep with a --store was stopped, the same
+    command resumes it.
     """
 
 
@@ -298,9 +298,10 @@ def parameter_space(
     seed: int,
     how: How,
 ) -> int:
-    """Chaos or none in the egg, or in a table with --shape NAME=LOW:HIGH:N, for each pair of shape and contraction.
+    """For each pair of shape and contraction: does a chaotic orbit exist, in the egg or in a table with --shape?
 
-    An orbit counts as chaotic when its exponent is positive beyond two standard errors and beyond what shear shows.
+    An orbit counts as chaotic if its exponent is above two standard errors, and above the values that shear alone can
+    give.
     """
     import numpy as np
 
@@ -325,7 +326,7 @@ def parameter_space(
 
 
 def picture(found: "xr.Dataset") -> list[str]:
-    """Lines of text: the parameter space, `#` where some orbit is chaotic, `.` where none is. Paper: section 6.5."""
+    """The parameter space as lines of text: `#` if some orbit is chaotic, `.` if none is. Paper: section 6.5."""
     step = max(1, -(-found.lam.size // TEXT_WIDTH))
     shape, ends = str(found.chaotic.dims[0]), (float(found.lam[0]), float(found.lam[-1]))
     shown = [f"{shape} down, lam from {ends[0]:g} to {ends[1]:g} across; # chaos, . none"]
@@ -359,7 +360,7 @@ def exponents(
 ) -> int:
     """Both Lyapunov exponents against the contraction, with standard errors, for each attractor.
 
-    With --shape NAME=LOW:HIGH:N it is a parameter of the table or of the law that varies, and --lams is one number.
+    With --shape NAME=LOW:HIGH:N a parameter of the table or of the law varies, and --lams is one number.
     """
     from numeric.sweeps import fields as kind
 
@@ -369,7 +370,7 @@ def exponents(
 
 
 def table_of_groups(found: "xr.Dataset") -> list[str]:
-    """Lines of text for some contractions, one for each attractor."""
+    """For some contractions, the exponents as lines of text, one line for each attractor."""
     parameter = str(found.orbits.dims[0])
     values = found[parameter].values
     shown = [f"{parameter:<11}orbits  period  nu_plus               nu_minus"]

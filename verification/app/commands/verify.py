@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 def figure_command(
     name: str | None, out: str | None, full: bool, listing: bool, everything: bool, output: Output
 ) -> int:
-    """One of the paper's figures, computed and drawn.
+    """Computes and draws one of the paper's figures.
 
     With --json and without --out only the data are written, and Matplotlib is not needed.
     """
@@ -138,7 +138,7 @@ def explore_command(port: int, show: bool, output: Output) -> int:
 
 
 def _free(port: int) -> int:
-    """The port, or a free one for 0; `ValueError` when it is taken."""
+    """`port`, or a free port if it is 0; `ValueError` if the port is taken."""
     with socket.socket() as probe:
         try:
             probe.bind((LOOPBACK, port))
@@ -152,7 +152,7 @@ def _free(port: int) -> int:
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @json_option
 def claims_command(what: str, folder: Path, output: Output) -> int:
-    """A new folder for the claims of another paper: one sentence and its judge, to be replaced by your own.
+    """Creates a folder for the claims of another paper, with one sentence and its judge as an example to replace.
 
     It has paper.toml (title, authors, where it was printed, its sections, its sentences as printed) and judges.py.
     """
@@ -194,9 +194,9 @@ def command(
     """Is each claim of the paper true? Exit status 1 when one is open.
 
     --claims DIR judges another paper, whose sentences and judges are in DIR; `pinball claims new DIR` begins one. The
-    judges are Python: this option runs them, so give it folders only that you would run. Nothing else loads them.
+    judges are Python code that this option runs, so use only folders that you trust. Nothing else loads them.
 
-    The report does not depend on --jobs, but for the seconds in it.
+    The report does not depend on --jobs, except for its computing times.
     """
     from verification.paper.claims.folder import OWN, paper
     from verification.paper.report.page import ReportFigure, diagrams, set_claims, set_result
@@ -250,14 +250,14 @@ def command(
 
 @dataclass(frozen=True)
 class Last:
-    """Results and images of the last report that still hold, since their code has not changed."""
+    """The results and images of the last report that still hold, as their code has not changed since."""
 
     results: "Mapping[str, Result]"
     images: "Mapping[str, bytes]"
 
     @classmethod
     def read(cls, directory: Path, claims: "Sequence[Claim]", digits: int, figures: "Sequence[Figure]" = ()) -> "Last":
-        """The results and images that still hold in the report of a directory; none where there is no report."""
+        """The results and images in the directory's report that still hold; empty if it has no report."""
         path = directory / "report.json"
         if not path.is_file():
             return cls({}, {})
@@ -280,7 +280,7 @@ IMAGE = re.compile(r'<img src="data:image/[^;]*;base64,([^"]*)" data-figure="([^
 
 
 def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
-    """The claims that --only and --section select; `ValueError` with the nearest ids or the sections if none is."""
+    """The claims that --only and --section select; `ValueError` with the accepted ids or sections if there is none."""
     claims = list(about.claims)
     if section is not None:
         known = dict.fromkeys(claim.section for claim in claims)
@@ -304,7 +304,7 @@ def within(name: str, section: str) -> bool:
 
 
 def label(name: str) -> str:
-    """The number at the start of a section's name; the whole name where it has none.
+    """The number at the start of a section's name; the whole name if it has no number.
 
     >>> label("6.3 Period-2 orbits"), label("Abstract"), label("Of the square")
     ('6.3', 'Abstract', 'Of the square')
@@ -313,7 +313,7 @@ def label(name: str) -> str:
 
 
 def matching(only: str, ids: Sequence[str]) -> list[str]:
-    """The ids that match the glob `only`; `ValueError` with the nearest ones when none does.
+    """The ids that match the glob `only`; `ValueError` with the most similar ids if none does.
 
     >>> matching("egg.*", ["egg.mu", "ellipse.mu"])
     ['egg.mu']
@@ -326,7 +326,7 @@ def matching(only: str, ids: Sequence[str]) -> list[str]:
 
 
 def prepared(folder: str) -> Path:
-    """The report's directory, made if missing; refused before any work where it cannot be written."""
+    """The report's directory, created if missing; `ValueError`, before any work, if it cannot be written."""
     directory = Path(folder)
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -338,7 +338,7 @@ def prepared(folder: str) -> Path:
 
 
 def drawable(output: Output, wanted: "Sequence[object]") -> bool:
-    """True if Matplotlib is installed; prints a line where pictures are wanted and it is not."""
+    """True if Matplotlib is installed; if it is not, but pictures are wanted, prints a line that says so."""
     if not wanted or find_spec("matplotlib") is not None:
         return True
     output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
@@ -354,7 +354,7 @@ def write_report(
 ) -> None:
     """Writes `report.html`, `report.md`, `report.json`, `report.tex` and `letter.tex`, each replaced as a whole.
 
-    `code` has digests of the code that the results depend on, kept for `--changed`.
+    `code` has digests of the code on which the results depend, for a later run with `--changed`.
     """
     from verification.paper.claims.folder import paper
     from verification.paper.report.findings import letter, tables
@@ -374,7 +374,7 @@ SHOWN = 6  # substantial corrections on the terminal
 
 
 def line_of(result: "Result") -> str:
-    """The line for a claim: its verdict, and what is wrong or why it is not proved."""
+    """The line for a claim: its verdict, and what is wrong with the claim or why it is not proved."""
     said = "" if result.verdict.value == "confirmed" else f": {result.erratum or result.method}"
     return f"{result.verdict.value:9}  {result.id}{said}"
 

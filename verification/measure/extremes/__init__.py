@@ -1,4 +1,4 @@
-"""Extreme and stiff cases, with errors measured against 50 or more digits and recorded."""
+"""Extreme and stiff cases: their errors are measured against 50 or more digits, and the results are recorded."""
 
 import lazy_loader
 

@@ -1,9 +1,9 @@
-"""First hits on tables of sides and arcs by trying every piece in 80 bits, with no code in common with the kernels.
+"""First hits on tables of sides and arcs, found by trying every piece in 80-bit arithmetic, for tests of the kernels.
 
-The reference of tests and of `benchmarks/adversarial.py`. It takes the particles as the doubles that a kernel is given
-and the table's numbers to 64 bits. A landing is the nearest point of all pieces ahead; on the arc that a particle
-leaves it is the other point where its line meets the ellipse. It also says how closely each line passes a corner or a
-tangent on its way, relative to the numbers from which its ends are added up.
+No code is shared with the kernels. Particles start with exactly the doubles that a kernel gets, and the table's numbers
+have 64 bits. The first hit is the nearest intersection ahead on any piece; on the arc from which a particle starts, it
+is the second intersection of the line with the ellipse. Also computed is how closely each line passes a corner or a
+tangent, relative to the numbers that are summed for the ends of its flight.
 """
 
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ SKEW = WIDE(2.0**-20)  # the same: so far beyond the landing, a tangent still co
 
 
 def spikes(count: int) -> Table:
-    """A star of straight sides, every second corner of which lies nearer to the origin; rational, not convex."""
+    """A star of straight sides with rational corners, every second one nearer to the origin; not convex."""
     corners = []
     for i in range(count):
         part, far = 2 * np.pi * i / count, 0.6 if i % 2 else 1.0
@@ -41,7 +41,7 @@ def spikes(count: int) -> Table:
 
 
 def comet() -> Table:
-    """An arc of an ellipse of eccentricity 0.999 with its far tip, about the focus, closed by a chord."""
+    """A table of two pieces: an arc of an ellipse of eccentricity 0.999 around its far tip, and the arc's chord."""
     rho = 1 / (1 + Rational(999, 1000) * cos(theta))
     arc = tables.arc("arc", rho * cos(theta), rho * sin(theta), pi / 2, 3 * pi / 2)
     return tables.piecewise(arc, tables.arc("chord", 0, theta, -1, 1), name="comet")
@@ -59,7 +59,7 @@ def discs(count: int) -> Table:
 
 
 def outline(points: int, depth: float, name: str) -> Table:
-    """A closed cubic spline through points of an ellipse with three dents; convex where they are shallow."""
+    """A closed cubic spline through points of an ellipse with three dents; convex if `depth` is small."""
     angle = 2 * np.pi * np.arange(points) / points
     r = 1 + depth * np.cos(3 * angle)
     given = zip(1.5 * r * np.cos(angle), r * np.sin(angle), strict=True)
@@ -79,7 +79,7 @@ class Hit(NamedTuple):
 
 
 def pieces(family: Pieces, shape: Any) -> list[PieceNumbers[Any]]:
-    """Every piece of a table in 80 bits, computed from its program."""
+    """The constants of every piece of a table in 80 bits, computed from its program."""
     ops: Any = Wide()
     wide = [WIDE(float(x)) for x in shape]
     return [
@@ -89,7 +89,7 @@ def pieces(family: Pieces, shape: Any) -> list[PieceNumbers[Any]]:
 
 
 def centred(piece: PieceNumbers[Any]) -> PieceNumbers[Any]:
-    """The same piece described from the centre of its ellipse, where it is an arc about a focus."""
+    """The same piece; an arc described from a focus is described from the centre of its ellipse instead."""
     if piece.kind != FOCAL:
         return piece
     e = WIDE(1) - piece.radius
@@ -97,7 +97,7 @@ def centred(piece: PieceNumbers[Any]) -> PieceNumbers[Any]:
 
 
 def placed(known: list[PieceNumbers[Any]], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
-    """Point, unit direction and `size` (as in `Hit`) of the particles with these kernel fields."""
+    """The points, unit directions and `size` (as in `Hit`) of the particles that have the kernel fields `own`."""
     at, p, q = own[0].astype(int), own[1].astype(WIDE), own[2].astype(WIDE)
     line = np.array([kind == LINE for kind in family.kinds])[at]
     length = np.where(line, 1, np.hypot(p, q))
@@ -148,7 +148,7 @@ def hits(map: PinballMap, fields: list[Any]) -> Hit:
 
 
 def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float) -> Any:
-    """Which lines may meet a piece, or pass it within `ROUGHLY` of the table, in doubles, which err by much less."""
+    """True for lines that meet a piece or come close to it (`ROUGHLY` times the table's size); computed in doubles."""
     least = ROUGHLY * table
     if piece.kind == LINE:  # both ends on one side
         one, two = (_cross(v, [float(end[i]) - z[i] for i in (0, 1)]) for end in (piece.start, start))
@@ -163,7 +163,7 @@ def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float
 def _near(
     family: Pieces, known: list[PieceNumbers[Any]], j: int, z: Any, v: Any, size: Any
 ) -> Iterator[tuple[Any, Any, Any]]:
-    """Distances ahead and aside of the corner where a piece begins, and of its tangent, and `size` there, for lines."""
+    """Yields for the start of piece `j`, and its tangent if any: distance along the line, across it, and `size`."""
     piece = known[j]
     if not family.closed[j]:
         corner = [piece.start[i] - z[i] for i in (0, 1)]
@@ -174,7 +174,7 @@ def _near(
 
 
 def _added_up(piece: PieceNumbers[Any], point: Any) -> Any:
-    """Sum of moduli of the numbers from which a point of a piece is added up: its origin, and the way from there."""
+    """The sum of the moduli of the numbers that are added up to a point of a piece (origin plus vector)."""
     return sum(abs(piece.origin[i]) + abs(point[i] - piece.origin[i]) for i in (0, 1))
 
 
@@ -183,7 +183,7 @@ def _cross(v: Any, w: Any) -> Any:
 
 
 def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
-    """Intersections of lines with a piece's curve: length, coordinates `p`, `q`, cosine of incidence, on the piece?"""
+    """Intersections of lines with a curve: length, coordinates `p`, `q`, cos(incidence), and True if on the piece."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     if piece.kind == LINE:
@@ -203,7 +203,7 @@ def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depar
 
 
 def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
-    """Is `(p, q)` on the arc, by the angle from its middle?"""
+    """True if the point `(p, q)` of the full ellipse is on the arc."""
     if closed:
         return np.isfinite(p)
     c = piece.middle[0] * p + piece.middle[1] * q
@@ -212,7 +212,7 @@ def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
 
 
 def _tangent(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
-    """Distances ahead and aside of the tangent to a piece along the line, and `size`; infinite aside without one."""
+    """Where the tangent parallel to a line touches a piece: distance along and across the line (or inf), and `size`."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     root = np.hypot(a, b)
@@ -228,7 +228,7 @@ STRAIGHT = 1.5707  # exit angles beyond are left out
 
 
 def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
-    """Particles with hard flights, by kind, about `count` of each kind that the table has."""
+    """Particles whose next flight is hard to compute, by kind; about `count` of each kind that the table has."""
     rng, family = np.random.default_rng(seed), map.family
     assert isinstance(family, Pieces)
     known = family.known
@@ -259,7 +259,7 @@ def hard(map: PinballMap, count: int, seed: int) -> dict[str, Starts]:
 
 
 def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
-    """The particles that can fly in the direction `away`, turned by `off`."""
+    """The particles at `starts` that can fly at the angle `away + off` to the x axis, with their exit angles."""
     frame = map.family.frame(starts.component, starts.theta)
     phi = frame.angle(map.states.ops, np.cos(away), np.sin(away)) + off
     good = np.abs(phi) < STRAIGHT  # false also where there is no such direction
@@ -267,7 +267,7 @@ def _aim(map: PinballMap, starts: Any, away: Any, off: Any) -> Starts:
 
 
 def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
-    """Particles from one end of a piece, or beside it, to the other end: along a side or the chord of an arc."""
+    """Particles that fly from one end of a piece, or near it, to the other end: along a side or the chord of an arc."""
     where = starts.component
     ends = np.array(map.states.ends)[where]
     at = np.where(off > 0, ends[:, 0], ends[:, 1])
@@ -280,7 +280,7 @@ def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
 
 
 def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
-    """Kernel fields before and after one bounce, and the code of the status."""
+    """The kernel's fields before and after one bounce, and the status code."""
     component, theta, phi = starts
     own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
     lam = np.full(theta.size, float(map.lam))
@@ -290,7 +290,7 @@ def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
 
 
 class BounceErrors(NamedTuple):
-    """One bounce of many particles: which stopped, which landed on a wrong piece, errors across the line."""
+    """One bounce of many particles: which stopped, which landed on a wrong piece, and the errors across the line."""
 
     stopped: Any
     wrong: Any
@@ -299,7 +299,7 @@ class BounceErrors(NamedTuple):
 
 
 def judged(map: PinballMap, starts: Starts) -> BounceErrors:
-    """The verdict on a kernel's bounce of particles, against the first hits by hand."""
+    """The errors of a kernel's bounce, compared with the first hits that are found by trying every piece."""
     own, after, code = bounced(map, starts)
     truth = hits(map, own)
     assert isinstance(map.family, Pieces)
@@ -313,14 +313,14 @@ def judged(map: PinballMap, starts: Starts) -> BounceErrors:
 
 
 def _one_place(family: Pieces, one: Any, other: Any) -> Any:
-    """Are two pieces the same, or smooth neighbours, so that either may have a point near both?"""
+    """True if two pieces are the same or smooth neighbours, so that a hit near their join may be on either."""
     smooth = np.array([not end for _, end in family.corners])
     after = np.array(family.following)
     return (one == other) | (smooth[one] & (after[one] == other)) | (smooth[other] & (after[other] == one))
 
 
 class CubicHit(NamedTuple):
-    """First hits on a boundary of cubics; `sure` is false where rounding leaves the hit in doubt."""
+    """First hits on a boundary of cubics; `sure` is false if rounding leaves the hit in doubt."""
 
     x: Any
     y: Any
@@ -329,7 +329,7 @@ class CubicHit(NamedTuple):
 
 
 def cubic_hits(map: PinballMap, fields: list[Any]) -> CubicHit:
-    """First hits by all zeros of the cubics of each piece, bisected to the last of 80 bits, for each particle.
+    """First hits of particles: every zero of the cubics of each piece, bisected to the last of 80 bits.
 
     The known zero is divided out of the cubic from which a particle leaves. `sure` is false where a line passes an end
     of a piece or a tangent by less than `2**-44` of the table, before the hit or at it.
@@ -391,6 +391,6 @@ def _value(p: list[Any], x: Any) -> Any:
 
 
 def _length(v: Any, terms: list[Any], x: Any, leaves: Any) -> Any:
-    """Distance along the line of a point of a cubic; where `leaves`, the terms have the known zero divided out."""
+    """Distance along the line to a point of a cubic; if `leaves`, the known zero has been divided out of `terms`."""
     along = _value([v[0] * term[0] + v[1] * term[1] for term in terms], x)
     return np.where(leaves, along * x, along)

@@ -1,11 +1,11 @@
-"""The extreme flights, as data: a scene, its contraction, and the starts.
+"""The extreme flights as data: a scene, its contraction, and the starts.
 
-A start is `(component, theta, phi)`. On a table with joins the parameter may be an `Ulps`: so many units in the last
-place inside the end of a component; and the angle an `Aim`: at a join, and then so many ulps off.
+A start is `(component, theta, phi)`. On a table with joins, `theta` may be an `Ulps` (a number of units in the last
+place inside the end of a component), and `phi` an `Aim` (towards a join, up to a number of ulps).
 
-Errors and condition number of one bounce are measured against a proved enclosure of the truth with a hundred digits.
-Data and result are `(theta, psi)`, the parameter and the direction of flight in the plane: `phi`, which turns with the
-boundary, would count the curvature twice. A shape that is not a double counts as rounded data too.
+Errors and condition number of one bounce are measured against a proved enclosure with a hundred digits. Its data and
+its result are `(theta, psi)`, the parameter and the direction of flight in the plane; `phi` would count the curvature
+twice, as it turns with the boundary. A shape that is not a double counts as rounded data too.
 """
 
 from copy import copy
@@ -34,7 +34,7 @@ THETA_STAR = 0.2545268713206783425  # the orbit's bounce on the arc, by `verific
 
 @dataclass(frozen=True)
 class Ulps:
-    """A parameter this many ulps inside the upper (`side = 1`) or lower (`side = -1`) end of its component."""
+    """A parameter `count` ulps inside the upper (`side = 1`) or lower (`side = -1`) end of its component."""
 
     count: int
     side: int = 1
@@ -42,7 +42,7 @@ class Ulps:
 
 @dataclass(frozen=True)
 class Aim:
-    """The exit angle towards the wall's end on one side, plus so many ulps of the angle."""
+    """The exit angle towards the join on one side, changed by `count` ulps."""
 
     count: int
     side: int = 1
@@ -53,7 +53,7 @@ Start = tuple[int, Any, Any]
 
 @dataclass(frozen=True)
 class KernelCase:
-    """A test case: one bounce by every kernel from each start; `shape` is exact, also where it is not a double."""
+    """A test case: one bounce by every kernel from each start; `shape` is exact, even if it is not a double."""
 
     name: str
     group: str
@@ -154,7 +154,7 @@ def _joins() -> tuple[KernelCase, ...]:
 
 
 def _corner_orbit() -> tuple[KernelCase, ...]:
-    """The orbit of period 4 through both joins: flights from a join, from beside it, to it, and to beside it."""
+    """The test cases on the orbit of period 4 through both joins: flights from or to a join, or close to one."""
     group, made = "The orbit through both joins, at lambda*", []
     for count in (0, 1, 2, 1000):
         arc = tuple((0, Ulps(count, side), side * PHI_STAR) for side in (1, -1))
@@ -188,7 +188,7 @@ SMALLER = mpmath.mpf(10) ** -35  # step of the difference quotients: 30 digits a
 
 
 class Truth:
-    """The map of a case's exact table: in balls, and in mpmath numbers where these fail."""
+    """The exact map of a case's table: in balls, and in mpmath numbers where an enclosure fails."""
 
     def __init__(self, case: KernelCase) -> None:
         self.map = PinballMap(case.scene, lam=case.lam, **case.shapes)
@@ -220,7 +220,7 @@ class Truth:
         return made
 
     def bounce(self, here: Bounce, balls: EnclosedMap | None = None) -> Bounce:
-        """The landing: enclosed and proved to be the first hit, or by the map in mpmath with a hundred digits."""
+        """The landing, proved to be the first hit; if that fails, by the map in mpmath with a hundred digits."""
         balls = balls or self.balls
         found = balls.bounce(balls.start(as_ball(here.theta), as_ball(here.phi), here.component))
         if isinstance(found, Refusal):
@@ -233,7 +233,7 @@ class Truth:
         return self.exact.start(middle(found.theta), middle(found.phi), found.component)
 
     def derivative(self, here: Bounce, landed: Bounce) -> Any:
-        """The derivative of the landed `(theta, psi)` by that of the start, and by the logarithm of a rounded shape."""
+        """The derivative of the landing's `(theta, psi)` by the start's, and by log(shape) if the shape is rounded."""
         mp, exact = self.mp, self.exact
         columns = []
         if self.map.law == "slap":
@@ -250,7 +250,7 @@ class Truth:
         return mp.matrix(columns).T
 
     def gap(self, one: Bounce, other: Bounce) -> list[Any]:
-        """`one - other` in `(theta, psi)`, at `lam = 0` in `theta`; between parts the distance replaces `theta`."""
+        """`one - other` in `(theta, psi)`, or `theta` alone for the slap map; a distance if the components differ."""
         mp = self.mp
         theta = one.theta - other.theta
         if one.component != other.component:
@@ -270,7 +270,7 @@ class Truth:
 
 
 class ReferenceState:
-    """A start as kernels hold it, with its true landing and the derivative there, computed once."""
+    """A start as the kernels hold it, with its true landing and the derivative of the landing, computed once."""
 
     def __init__(self, truth: Truth, state: list[Any]) -> None:
         self.truth, self.state = truth, state
@@ -283,7 +283,7 @@ class ReferenceState:
         self.condition = mp.sqrt(max(mp.eigsy(self.spread, eigvals_only=True)))
 
     def why(self, status: str) -> tuple[float, str]:
-        """Distance of the true flight from the outcome that a kernel reported (a join, a grazing one), and in words."""
+        """How far the true flight is from the outcome (join or grazing) that a kernel reported; the same in words."""
         mp, landed, (vx, vy) = self.truth.mp, self.landed, self.here.v
         if status == Status.JOIN.name:
             x, height = -mp.mpf(1) / 4 - self.here.x, mp.sqrt(3) / 4
@@ -306,7 +306,7 @@ class ReferenceState:
 
 
 def findings(case: KernelCase, starts: int | None = None) -> list[Finding]:
-    """For each kernel, the finding on its worst start."""
+    """The findings on a case: for each kernel, that on its worst start."""
     truth = Truth(case)
     asked = [ReferenceState(truth, state) for state in truth.starts(case)[:starts]]
     return [_finding(case, truth, kernel, asked) for kernel in (*KERNELS, TEXTBOOK) if kernel.runs(truth.map)]

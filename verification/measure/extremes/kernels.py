@@ -1,15 +1,15 @@
-"""Kernels under test on extreme cases: one bounce on LLVM, NumPy, 80-bit floats and mpmath, and long products.
+"""Kernels tested on extreme cases (one bounce on LLVM, NumPy, 80-bit floats and mpmath), and tests of long products.
 
-On 80-bit arrays the step of `numeric/flights` has 64 bits of mantissa, 11 more than the doubles that it judges.
+The step of `numeric/flights` on 80-bit arrays has 64 bits of mantissa, 11 more than the doubles that it judges.
 
-Functions made for 53 bits are replaced: sines and arctangents are the C library's, and a zero is sharpened until its
-correction is below the unit or ceases to shrink. Splitting for exact products, and the outcomes that stop a particle,
-remain as they are. All four run the same step; `TEXTBOOK` is the plain quadratic formula, kept to show that the
-measure finds its errors.
+Functions made for 53 bits are replaced: sines and arctangents are the C library's, and a zero is refined by Newton's
+method until its correction is below the unit or stops shrinking. Splitting for exact products, and the outcomes that
+stop a particle, are kept. All four kernels run the same step; `TEXTBOOK` is the plain quadratic formula, kept to show
+that large errors are detected.
 
-Products of many derivative matrices and the exponents they give are tested for underflow, overflow, and sums of
-logarithms. The number sought is the growth a bounce. Its condition number is the largest effect of rounding every
-bounce of the orbit at random, found with roundings a million times too strong, plus one for the result's rounding.
+Products of many derivative matrices, and the exponents they give, are tested for underflow, overflow and errors of sums
+of logarithms. The result is the growth rate per bounce. Its condition number is the largest effect of rounding every
+bounce of the orbit at random (found with roundings a million times too strong), plus one for the result's own rounding.
 """
 
 import math
@@ -64,7 +64,7 @@ class Wide(ArrayBackend):
 
     @property
     def pi_low(self) -> Any:
-        """Pi less the 80-bit number nearest to it."""
+        """Pi minus the 80-bit number nearest to it."""
         return PI_LOW
 
     def angle(self, y: Any, x: Any) -> Any:
@@ -72,7 +72,7 @@ class Wide(ArrayBackend):
         return np.arctan2(y, x)
 
     def turn(self, x: Any, quarters: int = 2) -> tuple[Any, Any]:
-        """Cosine and sine of `x`, in radians; `quarters`, the bound of `abs(x)` in quarter turns, is not needed."""
+        """Cosine and sine of `x`, in radians; `quarters`, a bound of `abs(x)` in quarter turns, is not used."""
         return np.cos(x), np.sin(x)
 
     # the library's functions, of 64 bits: those of `ArrayBackend` are for doubles
@@ -91,13 +91,13 @@ class Wide(ArrayBackend):
         wanted: Any = None,
         accepts: Callable[[Any], Any] | None = None,
     ) -> Any:
-        """A zero as by `bracketed_zero`, sharpened to the last bits."""
+        """A zero found by `bracketed_zero`, then refined to the last bits."""
         found = roots.bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
         return sharpened(function, found, scale, wanted)
 
 
 def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
-    """A zero known to 53 bits after Newton's steps, in each lane until the correction is below the unit or grows.
+    """A zero known to 53 bits, refined by Newton's method in each lane until the correction is below the unit or grows.
 
     >>> root = sharpened(lambda x: (x * x - 2, 2 * x), np.array([np.longdouble(2.0**0.5)]), np.longdouble(1))
     >>> bool(abs(root[0] - np.sqrt(np.longdouble(2))) <= 2 * np.finfo(np.longdouble).eps)
@@ -118,7 +118,7 @@ def sharpened(function: Slope, x: Any, scale: Any, wanted: Any = None) -> Any:
 
 
 def made_unit(family: Family, state: list[Any]) -> list[Any]:
-    """An 80-bit state whose pairs are scaled to length one: as doubles they have that length to 53 bits only.
+    """An 80-bit state, with pairs of numbers scaled to length one; as doubles they have this length to 53 bits only.
 
     >>> from numeric import PinballMap
     >>> u, v = made_unit(PinballMap("cardioid").family, [np.array([np.longdouble(x)]) for x in (0.6, 0.8)])
@@ -141,21 +141,21 @@ GOES_ON = Status.REGULAR.name
 
 @dataclass(frozen=True)
 class TestedKernel:
-    """A way to compute a bounce, with the name that tables show, and its unit of rounding."""
+    """A way to compute a bounce: its name in tables, and its unit of rounding."""
 
     name: str
     unit: float = DOUBLE
 
     def runs(self, map: PinballMap) -> bool:
-        """Is it available for this table?"""
+        """True if this kernel is available for the table."""
         if self is TEXTBOOK:
             return isinstance(map.family, Ellipse) and map.law != "slap"
         return self is not LONGDOUBLE or np.finfo(np.longdouble).nmant >= 63
 
     def bounce(self, map: PinballMap, state: list[Any], exact: Sequence[Any] = ()) -> tuple[list[Any], str]:
-        """The fields after one bounce, and the outcome that the kernel itself reports.
+        """The fields after one bounce, and the outcome (such as a stop) that the kernel reports.
 
-        `exact` is the exact shape, where it is not a double: an 80-bit kernel rounds that.
+        `exact` is the exact shape if it is not a double; the 80-bit kernel rounds it to 80 bits.
         """
         if self in (LLVM, NUMPY):
             return _compiled(map, state, self is LLVM)
@@ -204,7 +204,7 @@ def textbook(map: PinballMap, state: list[float]) -> list[Any]:
 
 
 def _compiled(map: PinballMap, state: list[Any], kernels: bool) -> tuple[list[Any], str]:
-    """Fields and outcome after a bounce by the engine, on LLVM lanes or on NumPy arrays."""
+    """Fields and outcome after one bounce, computed by LLVM kernels or on NumPy arrays."""
     engine = map.engine._replace(kernels=kernels)
     own = [np.array([float(x)]) for x in state]
     result = engine.run(KernelSpec(map.law, record=True), own, np.full(1, float(map.lam)), map.shape, 1)
@@ -226,7 +226,7 @@ CANCELLED = "the determinant of the product is the rounding of its entries: they
 
 @dataclass(frozen=True)
 class Product:
-    """An orbit whose derivative matrices are multiplied."""
+    """A test case: an orbit whose derivative matrices are multiplied."""
 
     name: str
     scene: str
@@ -238,7 +238,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Resting:
-    """A cycle with known multipliers, followed for so many bounces: the short axis of the ellipse `a = 3/2`."""
+    """A test case: a cycle with known multipliers (the short axis of the ellipse `a = 3/2`), iterated for `bounces`."""
 
     name: str
     lam: float
@@ -246,7 +246,7 @@ class Resting:
 
 
 def findings(asked: Product | Resting) -> list[Finding]:
-    """The exponents by the engine and by a plain product of matrices, with errors."""
+    """Errors of the exponents, by the engine and by a plain product of matrices, for one test case."""
     return _of_product(asked) if isinstance(asked, Product) else _of_rest(asked)
 
 
@@ -272,7 +272,7 @@ def _of_product(asked: Product) -> list[Finding]:
 
 
 def _of_rest(asked: Resting) -> list[Finding]:
-    """Both exponents; for the second one the determinant underflows."""
+    """Errors of both exponents of a cycle; for the smaller one, the determinant of the plain product underflows."""
     context = mpmath.MPContext()
     context.dps = DIGITS
     at = {a: Rational(3, 2), lam: Rational(asked.lam)}
@@ -309,7 +309,7 @@ def _finding(case: str, name: str, found: float, truth: Any, condition: float) -
 
 
 def naive(matrices: Any) -> float:
-    """The growth a bounce by the product of the matrices applied to a vector, with no scaling on the way."""
+    """The growth rate per bounce of a vector under the product of the matrices, without rescaling."""
     vector = np.array(GENERIC)
     with np.errstate(all="ignore"):
         for matrix in matrices:
@@ -318,7 +318,7 @@ def naive(matrices: Any) -> float:
 
 
 def growth_of(matrices: Any, context: Any) -> Any:
-    """The growth rate per bounce of a vector in multiprecision, where nothing overflows."""
+    """The growth rate per bounce of a vector under the matrices, in multiprecision, where nothing overflows."""
     x, y = (context.mpf(component) for component in GENERIC)
     count = 0
     for p, q, r, s in matrices:
@@ -347,7 +347,7 @@ def _matrices(map: PinballMap, orbit: Any, context: Any) -> Any:
 
 
 def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = None) -> Any:
-    """The matrices in float64, for an orbit whose numbers are changed at random by `strength`."""
+    """The paper's matrix of every bounce in float64, of an orbit that is perturbed at random by `strength`."""
     from numeric.backends.scalars import ArrayBackend
 
     theta, phi, eta = (field + (strength * rng.choice([-1, 1], field.shape) if rng is not None else 0)
@@ -359,7 +359,7 @@ def _rough_matrices(map: PinballMap, orbit: Any, strength: float, rng: Any = Non
 
 
 def _placed(curve: Any, root: Any) -> Any:
-    """Point and curvature of a curve, the curvature negative where the boundary focuses."""
+    """Point and curvature from a curve's derivatives; the curvature is negative where the boundary focuses."""
     x, y, dx, dy, ddx, ddy = curve
     square = dx * dx + dy * dy
     return x, y, -(dx * ddy - dy * ddx) / (square * root(square))

@@ -1,14 +1,14 @@
 """Errors, condition number and verdict of a computed answer; cycles for which they are extreme.
 
 With data `x`, truth `f(x)` and answer `y`, the *forward error* is `|y - f(x)|`. The *backward error* is the smallest
-`(dx, dy)` with `y + dy = f(x + dx)`, to first order: what the data and the result would have to be off by for the
-answer to be right ([Higham2002], section 1.5, calls this the mixed error). The *condition number* is the largest
-factor between the two. Errors are absolute, in units of the rounding of 1.
+`(dx, dy)` with `y + dy = f(x + dx)`, to first order: the smallest change of the data and the result that makes the
+answer exact ([Higham2002], section 1.5, calls this the mixed error). The *condition number* is the largest factor
+between the two. Errors are absolute, in units of the rounding of 1.
 
-The cases are cycles next to a bifurcation and very long ones, where the chord system is nearly singular. The backward
-error is the residual of the collision rule, the largest of the angles at the bounces, as the forward error
-is the largest of the errors; the condition number is the one that a `Solution` has, taken at the truth. Where a
-multiplier is `1 + d` it is of the size of `1/d`. The truth is the solution with 100 digits.
+The cases are very long cycles and cycles next to a bifurcation, where the chord system is nearly singular. Their
+backward error is the residual of the collision rule, the largest of the angles at the bounces; their forward error is
+the largest error at a bounce. The condition number is that of `Solution`, taken at the truth; near a multiplier `1 + d`
+it is of the size of `1/d`. The truth is the solution with 100 digits.
 """
 
 from collections.abc import Callable
@@ -49,7 +49,7 @@ UNIT, DIGITS = 2.0**-52, 15  # of a float64
 
 
 class StabilityVerdict(Enum):
-    """The verdict; the value says what it means for a user."""
+    """The verdict on a computed answer; the value of a member is its explanation for a user."""
 
     STABLE = "as right as rounded data allow"
     SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
@@ -59,7 +59,7 @@ class StabilityVerdict(Enum):
 
 @dataclass(frozen=True)
 class Errors:
-    """Forward and backward error in units of rounding, and the condition number between them."""
+    """Forward and backward error in units of rounding, and the condition number that relates them."""
 
     forward: float
     backward: float
@@ -67,7 +67,7 @@ class Errors:
 
     @property
     def ratio(self) -> float:
-        """`error / (cond * eps)`; at most 1 means that one rounding of the data has as large an effect."""
+        """`error / (cond * eps)`; if it is at most 1, rounding the data once has at least as large an effect."""
         return self.forward / self.condition if isfinite(self.condition) else 0.0
 
     @property
@@ -89,9 +89,9 @@ WRONG = Errors(inf, inf, 1.0)  # another component, or no number at all
 
 @dataclass(frozen=True)
 class Finding:
-    """One kernel on one case: the worst answer of all starts, what stopped, and what to do instead.
+    """One kernel on one case: its worst answer over all starts, the outcome if it stopped, and what to use instead.
 
-    `named` is the kernel's own verdict on its condition number, where it has one; `reason` explains a verdict that is
+    `named` is the kernel's own verdict on its condition number, if it gives one; `reason` explains a verdict that is
     not plainly stable.
     """
 
@@ -105,9 +105,9 @@ class Finding:
 
     @property
     def stability(self) -> StabilityVerdict:
-        """The verdict on the worst start; a kernel that gave no number at all has stopped.
+        """The verdict on the worst start; `STOPPED` if the kernel gave no number.
 
-        The sensitivity of the answer is taken from the kernel's own verdict, not from what was measured.
+        How sensitive the answer is, is taken from the kernel's own verdict and not from a measurement.
 
         >>> Finding("fold", "Newton", Errors(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
         'SENSITIVE'
@@ -125,7 +125,7 @@ Sought = tuple[Problem, list[float]]
 
 @dataclass(frozen=True)
 class ChordSystem:
-    """A cycle that is hard to solve for: its equations with a start for Newton's method."""
+    """A cycle that is hard to compute: its equations, and a start for Newton's method."""
 
     name: str
     group: str
@@ -133,12 +133,12 @@ class ChordSystem:
 
 
 def nearly_round(gap: Expr) -> Sought:
-    """The short axis of the ellipse `a = 1 + gap`; in the circle each diameter is a cycle and has a multiplier 1."""
+    """The short axis of the ellipse `a = 1 + gap`; its multipliers are near 1, their value for a circle."""
     return Problem(tables.ellipse.at(a=1 + gap), (0, 0), lam=Rational(1, 3)), [1.5707963, -1.5707964]
 
 
 def nearly_flipped(gap: Expr, twice: bool) -> Sought:
-    """The egg's diameter next to where its multiplier is -1, as period 2, or run twice as period 4."""
+    """The egg's diameter where its multiplier is close to -1, as a cycle of period 2, or of period 4 if `twice`."""
     shape = alpha_tilde().subs(lam_symbol, Rational(1, 3)) + gap
     table = tables.egg(3).at(alpha=Rational(float(N(shape, 30))))
     times = 2 if twice else 1
@@ -146,7 +146,7 @@ def nearly_flipped(gap: Expr, twice: bool) -> Sought:
 
 
 def folded(ulps: int | None) -> Sought:
-    """The egg's triangle `ulps` doubles above the contraction at which it is born; for None, that contraction."""
+    """The egg's triangle, `ulps` doubles above the contraction at which it is born, or at that contraction for None."""
     shape = Rational(2, 25)
     table = tables.egg(3).at(alpha=shape)
     exact = float(N(polygons.saddle_node().subs(alpha_symbol, shape), 30))
@@ -160,7 +160,7 @@ def folded(ulps: int | None) -> Sought:
 
 
 def touching(gap: Expr) -> Sought:
-    """The egg's triangle at a contraction that is a double, and a shape whose fold lies `gap` below it."""
+    """The egg's triangle at a contraction that is a double, for a shape whose fold is lower by `gap`."""
     lam = Rational(float(N(polygons.saddle_node().subs(alpha_symbol, Rational(2, 25)), 30)))
     tilt = pi / 6 * (1 - lam + gap) / (1 + lam - gap)  # the closed form of the fold, solved for the shape
     shape = Rational(str(N(tan(tilt) / sqrt(9 + tan(tilt) ** 2), 60)))
@@ -170,7 +170,7 @@ def touching(gap: Expr) -> Sought:
 
 
 def in_the_cascade(power: int) -> Sought:
-    """A cycle of period `2**power` of the egg, a third of the way from its birth to its own doubling."""
+    """A cycle of period `2**power` of the egg; the contraction is a third of the way from its birth to its doubling."""
     below = doubling(Rational(2, 25), power)
     gap = (doubling(Rational(2, 25), power + 1).lam - below.lam) / 3
     theta, lam = doubled(below.problem, below.start, gap)
@@ -182,7 +182,7 @@ FLOAT64, SIXTEEN = "Newton, float64", "Newton, mpmath, 16 digits"
 
 
 def findings(cycle: ChordSystem) -> list[Finding]:
-    """Errors, residual and condition number of a cycle in both arithmetics."""
+    """Errors, residual and condition number of a cycle solved in float64 and in mpmath."""
     problem, start = cycle.sought()
     truth = solution(problem, start)
     context = mpmath.MPContext()
@@ -208,7 +208,7 @@ def findings(cycle: ChordSystem) -> list[Finding]:
 
 
 def solution(problem: Problem, start: list[float]) -> list[Any]:
-    """The solution with `NEAR_DIGITS` digits: by doubling the digits, or with all at once if float64 diverges."""
+    """The solution with `NEAR_DIGITS` digits: by doubling the digits at each step, or at once if float64 diverges."""
     try:
         return refined(problem, start, NEAR_DIGITS).z
     except ValueError:
@@ -216,7 +216,7 @@ def solution(problem: Problem, start: list[float]) -> list[Any]:
 
 
 def settled(problem: Problem, start: list[float], bits: int = 53) -> Solution:
-    """Newton's method in mpmath with `bits` bits, by default those of a float64, until corrections shrink no more."""
+    """The solution by Newton's method in mpmath with `bits` bits, iterated until the corrections stop shrinking."""
     context = mpmath.MPContext()
     context.prec = bits
     newton = partial(problem.newton, multiprecision(context))

@@ -1,18 +1,18 @@
-"""Extreme orbits with known truth: very long ones, and particles whose bounce is numerically hard.
+"""Extreme orbits with known truth: very long orbits, and single bounces of numerically hard particles.
 
-A very long orbit is tested by a quantity that is known although chaos has erased the digits of the start. An invariant
-of the elastic ellipse, to which each bounce adds one rounding: `n` independent ones amount to `sqrt(n)`, and a drift
-would be of order `n`. The elastic circle, where `theta` after `n` bounces is known, with the `2*n` roundings of `phi`
-that it adds up. An attracting cycle, enclosed in balls. Chaotic orbits: two that start as mirror images and must stay
-so to the last bit, and means over the elastic measure `cos(phi) ds dphi`, to which time averages tend because the
-elastic cardioid is ergodic [Szasz1992] [Markarian1993], up to their standard errors. (That its exponents are not 0
-was known before [Wojtkowski1986].)
+A very long orbit is tested by a quantity that is known even after chaos has erased the digits of the start. (1) An
+invariant of the elastic ellipse: each bounce adds one rounding, so `n` independent ones amount to `sqrt(n)`, and a
+drift would be of order `n`. (2) The elastic circle, where `theta` after `n` bounces is known, up to `2*n` roundings of
+`phi`. (3) An attracting cycle, enclosed in balls. (4) Chaotic orbits: two that start as mirror images must stay so to
+the last bit, and time averages tend to means over the elastic measure `cos(phi) ds dphi`, up to their standard errors,
+because the elastic cardioid is ergodic [Szasz1992] [Markarian1993]. (That its exponents are not 0 was known before
+[Wojtkowski1986].)
 
-The hard particles have names: grazing, next to a cusp or a join, flat points, long tables.
+The hard particles are grazing, near a cusp or a join, near flat points, or in long tables.
 
-`pinball bench` prints the errors of a few against 50 digits, `benchmarks/adversarial.py` those of millions against
-80-bit floats. Bounds are 4 units of 2**-52 for the position and 8 for the direction, or 8 condition numbers:
-the row sums of the absolute derivative matrix, and one for the rounding of the result.
+`pinball bench` prints the errors of a few particles against 50 digits, `benchmarks/adversarial.py` those of millions
+against 80-bit floats. The bounds are 4 units of 2**-52 for the position and 8 for the direction, or 8 condition
+numbers. A condition number is a row sum of the absolute derivative matrix, plus one for the rounding of the result.
 """
 
 from collections.abc import Callable, Iterator
@@ -44,7 +44,7 @@ MEAN = "more particles or longer orbits: a mean is known to its standard error a
 
 @dataclass(frozen=True)
 class Long:
-    """A test with so many particles, each for so many bounces."""
+    """A test on long orbits: a measure of their error, the number of particles, and the bounces of each."""
 
     name: str
     measure: Callable[["Long"], list[Finding]]
@@ -52,17 +52,17 @@ class Long:
     bounces: int
 
     def found(self, what: str, measured: Errors | None, status: str, reason: str = "", instead: str = "") -> Finding:
-        """A finding on this test with the engine's kernels: `what` is added to its name."""
+        """A finding on this test with the engine's kernels; `what` is appended to the test's name."""
         return Finding(f"{self.name}{what}", "llvm", measured, status, instead, reason=reason)
 
 
 def findings(asked: Long) -> list[Finding]:
-    """The findings of a long test."""
+    """The findings of a test on long orbits."""
     return asked.measure(asked)
 
 
 def orbits(collisions: int = SHORT, particles: int = PARTICLES) -> tuple[Long, ...]:
-    """Every long test, with so many collisions of all particles together."""
+    """All tests on long orbits, each with `collisions` in total, divided among the particles."""
     each = max(1, collisions // particles)
     kinds: tuple[tuple[str, Callable[[Long], list[Finding]]], ...] = (
         ("elastic ellipse a = 3/2", lambda asked: invariant(asked, "3/2")),
@@ -83,12 +83,12 @@ def starts(particles: int) -> tuple[Array, Array]:
 
 
 def entered(map: PinballMap, theta: Array, phi: Array) -> list[Array]:
-    """Kernel fields of particles on the first component."""
+    """Kernel fields of particles that start on the first component."""
     return [np.asarray(row) for row in map.states.enter(np.zeros(theta.size, dtype=np.int64), theta, phi, map.law)]
 
 
 def advanced(map: PinballMap, rows: list[Array], bounces: int) -> tuple[list[Array], str]:
-    """The fields after so many bounces, and what went wrong, if anything: a particle stopped, a number not finite."""
+    """The fields after `bounces`, and an error message if a particle stopped or a number is not finite, else ''."""
     own, said = rows, ""
     for done in range(0, bounces, PART):
         lam = np.full(own[0].size, float(map.lam))
@@ -107,7 +107,7 @@ def root_mean_square(x: Any) -> float:
 
 
 def invariant(asked: Long, a: str) -> list[Finding]:
-    """Drift of the product of the angular momenta about the foci of the elastic ellipse."""
+    """The drift, along elastic orbits in an ellipse, of the product of the angular momenta about its foci."""
     map = PinballMap("ellipse", lam=1, a=a)
     rows = entered(map, *starts(asked.particles))
     after, said = advanced(map, rows, asked.bounces)
@@ -117,7 +117,7 @@ def invariant(asked: Long, a: str) -> list[Finding]:
 
 
 def momenta(map: PinballMap, rows: list[Any]) -> Any:
-    """The product of angular momenta about both foci in 80 bits, of the exact particles behind rounded fields."""
+    """The product of the angular momenta about both foci, in 80 bits, of fields scaled to unit length."""
     ux, uy, vx, vy = made_unit(map.family, [row.astype(np.longdouble) for row in rows])
     a = np.longdouble(float(map.exact_shape[0]))
     momentum = a * ux * vy - uy * vx
@@ -125,7 +125,7 @@ def momenta(map: PinballMap, rows: list[Any]) -> Any:
 
 
 def turning(asked: Long) -> list[Finding]:
-    """Error of the engine's `theta` after `n` bounces in the elastic circle: `theta + n*(pi - 2*phi)` in 50 digits."""
+    """Error of `theta` after `n` bounces in the elastic circle, where `theta + n*(pi - 2*phi)` is the exact value."""
     map = PinballMap("circle", lam=1)
     rows = entered(map, *starts(asked.particles))
     (theta, phi), said = advanced(map, rows, asked.bounces)
@@ -147,7 +147,7 @@ def turning(asked: Long) -> list[Finding]:
 
 
 def attracted(asked: Long) -> list[Finding]:
-    """Errors of particles near the attracting triangles of the egg, whose place is proved."""
+    """Errors of particles that converge to the attracting triangles of the egg, whose bounces are proved."""
     table, lam = tables.egg(3).at(alpha="2/25"), Rational(7, 10)
     map = PinballMap("egg", alpha="2/25", lam="7/10")
     problem = Problem(table, (0, 0, 0), lam=lam)
@@ -171,7 +171,7 @@ def attracted(asked: Long) -> list[Finding]:
 
 
 def mirrored(asked: Long) -> list[Finding]:
-    """The largest gap between chaotic orbits and the mirror images of orbits that started as mirror images."""
+    """The largest gap between chaotic orbits and the mirror images of the orbits from mirrored starts."""
     map = PinballMap("cardioid", lam="4/5")
     theta, phi = starts(asked.particles // 2)
     both = np.concatenate([theta, -theta]), np.concatenate([phi, -phi])
@@ -183,7 +183,7 @@ def mirrored(asked: Long) -> list[Finding]:
 
 
 def ergodic(asked: Long) -> list[Finding]:
-    """Errors of means over chaotic orbits: `cos(phi)`, whose mean is pi/4, and `sin(theta/2)**2`, whose mean is 1/3."""
+    """Errors of time averages over chaotic orbits: `cos(phi)` (mean pi/4) and `sin(theta/2)**2` (mean 1/3)."""
     map = PinballMap("cardioid", lam=1)
     rows, said, sums = entered(map, *starts(asked.particles)), "", np.zeros((2, asked.particles))
     for done in range(0, asked.bounces, BLOCK):
@@ -230,7 +230,7 @@ LABELLED, DIGITS, SEED_OF_LABELLED = 24, 50, 11
 
 
 class Case(NamedTuple):
-    """Particles of one kind on one table."""
+    """A test case: particles of one kind on one table."""
 
     label: str
     map: PinballMap
@@ -240,7 +240,7 @@ class Case(NamedTuple):
 
 
 class Accuracy(NamedTuple):
-    """Largest errors of one bounce, in units of 2**-52; the second pair is divided by the condition numbers."""
+    """Largest errors of one bounce, in units of 2**-52, and the largest ratios of errors to condition numbers."""
 
     scene: str
     case: str
@@ -252,7 +252,7 @@ class Accuracy(NamedTuple):
 
 
 def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """Cases of `count` particles of every kind on the paper's tables; the first word of a label is the table."""
+    """Test cases on the paper's tables, with `count` particles of each kind; a label's first word is the table."""
     rng = np.random.default_rng(seed)
     side = np.where(rng.integers(0, 2, count) == 0, 1, -1)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -282,14 +282,14 @@ def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
 
 
 def scene(name: str, lam: Any = LAM) -> PinballMap:
-    """The map of a table by name, at the shape that is used for measuring."""
+    """The map of a table of this name, with the shape that benchmarks use."""
     if name in SCENES:
         return PinballMap(name, lam=lam, **SCENES[name])
     return PinballMap(tables.polar(LONG_RADII[name], name=name), lam=lam)
 
 
 def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """Cases of `count` particles of every kind on a table of `LONG_RADII`."""
+    """Test cases on a table of `LONG_RADII`, of about `count` particles of every kind."""
     rng, map = np.random.default_rng(seed), scene(name)
     side, zero = rng.choice([-1, 1], count), np.zeros(count, dtype=np.int64)
     tiny = 10.0 ** rng.uniform(-12, -1, count)
@@ -320,7 +320,7 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
 
 
 def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
-    """Cases of `count` particles of every kind, on a table of pieces cubic in `theta` from 0 to 1."""
+    """Test cases on a table whose pieces are cubic in `theta` from 0 to 1, of `count` particles of every kind."""
     rng, parts = np.random.default_rng(seed), len(map.ir.parts)
     side, tiny = rng.choice([-1, 1], count), 10.0 ** rng.uniform(-12, -1, count)
     at, theta = rng.integers(0, parts, count), rng.uniform(0, 1, count)
@@ -384,7 +384,7 @@ def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
 
 
 def accuracy(name: str, particles: int = LABELLED) -> Iterator[Accuracy]:
-    """The largest errors of every case of a table, against the exact map of the rounded state."""
+    """The largest errors of every test case on a table, against the exact map of the rounded state."""
     for case in cases(particles) if name in SCENES else own_cases(name, particles // 3):
         if case.label.split(",")[0] == name:
             own, after, going = bounced(case)

@@ -1,7 +1,7 @@
-"""All extreme cases in their groups, run one by one; the record of their results, and the page made from it.
+"""All extreme cases, in groups, run one by one; the record of their results, and the page made from the record.
 
-Tests compare the kernels with the record, and `docs/extremes.md` is written from it, with advice where a verdict is
-not `STABLE`. The record has every number, verdict and reason, so the page can be written again without measuring.
+Tests compare the kernels with the record, and `docs/extremes.md` is written from it, with advice where a verdict is not
+`STABLE`. The record has every number, verdict and reason, so that the page can be written without new measurements.
 """
 
 import json
@@ -33,7 +33,7 @@ Group = tuple[str, str, list[Finding]]
 
 
 def rows(longer: bool = False, collisions: int = SHORT) -> Iterator[Group]:
-    """Group, case and findings; with `longer`, also cases that take minutes."""
+    """Yields group, case and findings of every case; with `longer`, also of cases that take minutes."""
     for case in CASES:
         yield case.group, case.name, [advised(found) for found in flights.findings(case)]
     for cycle in (*near.CYCLES, *(near.LONGER if longer else ())):
@@ -45,7 +45,7 @@ def rows(longer: bool = False, collisions: int = SHORT) -> Iterator[Group]:
 
 
 def advised(found: Finding) -> Finding:
-    """The finding, with advice where the kernel is not stable or stopped a particle."""
+    """The finding, with advice if the kernel is not stable or stopped a particle."""
     advice = ADVICE.get((found.kernel, found.stability), "")
     said = [STOPPED[status] for status in found.status.split(", ") if status in STOPPED]
     return replace(found, instead="; ".join(text for text in (advice, *said) if text))
@@ -58,7 +58,7 @@ NUMBERS = ("forward", "backward", "condition", "ratio")
 
 @dataclass(frozen=True)
 class Line:
-    """A finding as a line of the record; numbers are None where there is no answer."""
+    """A finding as a line of the record; its numbers are None if the kernel gave no answer."""
 
     group: str
     case: str
@@ -75,13 +75,13 @@ class Line:
 
     @property
     def why(self) -> str:
-        """The verdict, with the outcome that the kernel reports and the reason."""
+        """The verdict in words, the outcome that the kernel reports, and the reason for the verdict."""
         named = f" ({self.stopped_by})" if self.stopped_by else ""
         return self.verdict.name.lower() + named + (f": {self.reason}" if self.reason else "")
 
 
 def record(rows: Iterable[Group]) -> list[dict[str, Any]]:
-    """Every finding as JSON: numbers with three digits, texts for infinite ones."""
+    """Every finding as JSON; finite numbers have three digits, infinite ones are texts."""
     return [
         {
             "group": group,
@@ -99,7 +99,7 @@ def record(rows: Iterable[Group]) -> list[dict[str, Any]]:
 
 
 def lines(path: Path) -> list[Line]:
-    """The lines of a record file; none where there is no file."""
+    """The lines of a record file; empty if the file is missing."""
     made: list[Line] = []
     if not path.exists():
         return made
@@ -110,7 +110,7 @@ def lines(path: Path) -> list[Line]:
 
 
 def page(found: Sequence[Line], long: Sequence[Line]) -> str:
-    """The whole page: an introduction, the verdicts, a table for each group, then tests that take an hour."""
+    """The whole page: an introduction, the verdicts, a table for each group, and the tests that take an hour."""
     parts = [WORDS, _verdicts(found), _exceptions(found)]
     for group, members in groupby(found, key=lambda line: line.group):
         several = list(members)
@@ -142,7 +142,7 @@ def _verdicts(found: Sequence[Line]) -> str:
 
 
 def _exceptions(found: Sequence[Line]) -> str:
-    """A table of methods that are not stable or stop particles, how often, and what to use instead."""
+    """A table of the methods that are not stable or stop particles, how often they do, and what to use instead."""
     kept: dict[tuple[str, str], list[Line]] = {}
     for one in found:
         if one.verdict is not StabilityVerdict.STABLE or one.stopped_by:
@@ -160,7 +160,7 @@ def _exceptions(found: Sequence[Line]) -> str:
 
 
 def _of_flights(found: Sequence[Line]) -> str:
-    """A table with a line for each case: all four numbers of the LLVM kernel, others' backward errors, verdict."""
+    """A table with a row for each case: numbers of the LLVM kernel, backward errors of other kernels, verdict."""
     others = [*FLIGHTS[1:], TEXTBOOK.name]
     rows = ["| case | condition | forward | error/(cond*eps) | backward: llvm | " + " | ".join(others)
             + " | verdict |", "|---" * (6 + len(others)) + "|"]  # fmt: skip
@@ -174,7 +174,7 @@ def _of_flights(found: Sequence[Line]) -> str:
 
 
 def _of_all(several: Iterable[Line]) -> str:
-    """The verdicts on all kernels; kernels are named only where they differ.
+    """The verdicts of several kernels on one case, as one text; kernels are named only if their verdicts differ.
 
     >>> made = [Line("", "", name, StabilityVerdict.STABLE, "", "", "") for name in ("llvm", "numpy")]
     >>> _of_all(made)

@@ -1,8 +1,8 @@
 """The measurements of `pinball bench`: error and time of every arithmetic and every kernel, with baselines.
 
-The baselines of the benchmark folder are naive NumPy + lambdify, scalar numba, and the paper's own ways, written as one
-would write them first. They are no part of the installed package: they need a checkout, or the source distribution.
-Elsewhere, or without numba, the benchmark goes on with its own rows only, and says so.
+The baselines of the benchmark folder are naive NumPy + lambdify, scalar numba, and the paper's own algorithms in a
+first version. They are not part of the installed package, and need a checkout or the source distribution. Without them,
+or without numba, the benchmark runs with the package's own rows only, and prints a note.
 """
 
 import importlib.util
@@ -47,9 +47,10 @@ UNIT = "2**-52, largest of position and direction"
 
 @dataclass(frozen=True)
 class SceneTiming:
-    """One way to bounce one scene: its largest error over random particles, and its time for one bounce.
+    """One method for a bounce in one scene: its largest error over random particles, and its time per bounce.
 
-    Errors span a thousand decades, which no float does. `lam` is not in the JSON: `kernel` names it where it differs.
+    Errors are decimals, as they can be smaller than all floats. `lam` is not in the JSON, but part of `kernel` if
+    unusual.
     """
 
     scene: str
@@ -61,7 +62,7 @@ class SceneTiming:
     lam: Any = LAWS["pinball"]
 
     def as_data(self) -> dict[str, Any]:
-        """The row as JSON; an error that no float holds is a decimal string."""
+        """The row as JSON; an error outside the range of floats is a decimal string."""
         small = self.error is not None and 0 < self.error < SMALLEST
         error = None if self.error is None else str(self.error) if small else float(self.error)
         names = ("scene", "arithmetic", "kernel", "seconds_per_bounce", "runs")
@@ -88,7 +89,7 @@ def machine_facts() -> dict[str, str]:
 
 
 def best(action: Callable[[], object], runs: int = RUNS, clock: Callable[[], float] = time.process_time) -> float:
-    """The least processor time in seconds of some runs of an action; other work on the machine hardly affects it."""
+    """The least processor time in seconds of `runs` runs of an action; other work on the machine hardly affects it."""
     times = []
     for _ in range(runs):
         start = clock()
@@ -98,7 +99,7 @@ def best(action: Callable[[], object], runs: int = RUNS, clock: Callable[[], flo
 
 
 def kernel_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
-    """Rows for LLVM kernels, with and without exponents and with two threads, and for the same step on NumPy."""
+    """Timings of the LLVM kernels (plain, with exponents, with two threads), and of the same step on NumPy."""
     for kernels, kernel, particles, bounces in ((True, "llvm", PARTICLES, 1000), (False, "numpy", PARTICLES, 10)):
         map = PinballMap(name, lam=LAWS["pinball"], kernels=kernels, **_shape(name))
         own = attracted(map, particles)
@@ -151,7 +152,7 @@ def kernel_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
 
 
 def own_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
-    """Rows for a table that is not the paper's: kernels with and without exponents."""
+    """Timings of the kernels, with and without exponents, on a table that is not in the paper."""
     map = scene(name)
     own, lam, nought = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam)), np.zeros(PARTICLES)
     error = worst(map, own)
@@ -166,7 +167,7 @@ def own_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
 
 
 def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
-    """Seconds for one bounce of an orbit that is returned in full."""
+    """Seconds per bounce of `PinballMap.orbit`, which returns all bounces and not only the last."""
     component, theta = map.states.place(own)
     phi = map.states.exit(component, theta, own, map.law)
 
@@ -178,7 +179,7 @@ def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
 
 
 def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[SceneTiming]:
-    """Rows for mpmath and balls, rounded to their digits, against a proved enclosure with 30 digits more."""
+    """Timings and errors of mpmath and balls with given digits; errors are against an enclosure with 30 digits more."""
     map, lam = PinballMap(name, lam=LAWS["pinball"], **_shape(name)), Fraction(str(LAWS["pinball"]))
     component, theta, phi, *_ = phase_starts(map, FEW, seed=3)
     particles = [(float(t), float(p), int(c)) for c, t, p in zip(component, theta, phi, strict=True)]
@@ -198,7 +199,7 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
 
 
 def distance(found: Any, truth: Any, digits: int) -> Decimal:
-    """The largest error of parameter and exit angle, rounded to these digits, in units of 2**-52; `truth`: balls."""
+    """The largest error of parameter and exit angle, rounded to `digits`, against balls `truth`, in units of 2**-52."""
     largest = arb(0)
     with working(bits_of(digits + 2 * MORE)):
         for one, two in ((found.theta, truth.theta), (found.phi, truth.phi)):
@@ -208,7 +209,7 @@ def distance(found: Any, truth: Any, digits: int) -> Decimal:
 
 
 def attracted(map: PinballMap, particles: int, transient: int = 100) -> list[Array]:
-    """Kernel fields of random particles after some bounces."""
+    """Kernel fields of random particles after `transient` bounces."""
     starts = phase_starts(map, particles, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
     rows = map.engine.run(KernelSpec(map.law), own, np.full(particles, float(map.lam)), map.shape, transient).rows
@@ -216,7 +217,7 @@ def attracted(map: PinballMap, particles: int, transient: int = 100) -> list[Arr
 
 
 def worst(map: PinballMap, own: list[Array]) -> Decimal:
-    """The largest error of one bounce over the first particles, in units of 2**-52, against 50 digits."""
+    """The largest error of one bounce over the first few particles, against 50 digits, in units of 2**-52."""
     first = [field[:CHECKED].copy() for field in own]
     lam = np.full(CHECKED, float(map.lam))
     after = map.engine.run(KernelSpec(map.law, record=True), first, lam, map.shape, 1).record
@@ -226,7 +227,7 @@ def worst(map: PinballMap, own: list[Array]) -> Decimal:
 
 
 def frontier(rows: list[SceneTiming]) -> set[int]:
-    """Indices of the rows on the Pareto front: no other row at the same contraction has less error and time.
+    """Indices of the rows on the Pareto front: no row at the same contraction has both less error and less time.
 
     >>> row = lambda error, seconds: SceneTiming("s", "a", "k", Decimal(error), seconds, 1)
     >>> sorted(frontier([row(1, 1.0), row(2, 2.0), row(0, 3.0)]))
@@ -251,7 +252,7 @@ def frontier(rows: list[SceneTiming]) -> set[int]:
 
 
 def operation_table() -> str:
-    """The vector instructions of one bounce, for every scene and question, as a table in Markdown."""
+    """The vector instructions in one bounce, for every scene and type of result, as a table in Markdown."""
     lines = ["| scene | law | question | fma | add | mul | div | sqrt | compare | select |", "|" + "---|" * 10]
     for name in SCENES:
         for law, lam in LAWS.items():
@@ -264,7 +265,7 @@ def operation_table() -> str:
 
 
 def map_str(numbers: Iterable[int]) -> list[str]:
-    """Numbers as text."""
+    """The numbers as text."""
     return [str(number) for number in numbers]
 
 
@@ -281,12 +282,12 @@ SCALAR = "numba, one particle at a time"
 
 
 def is_checkout() -> bool:
-    """Does the package run from its source tree, so that the folder beside it is its own?"""
+    """True if the package runs from its source tree, next to the benchmark folder."""
     return (ROOT / "pyproject.toml").is_file() and FOLDER.is_dir()
 
 
 def module(name: str) -> ModuleType | None:
-    """A module of the benchmark folder, or None when it is missing or cannot be imported."""
+    """A module of the benchmark folder; None if it is missing or cannot be imported."""
     path = FOLDER / f"{name}.py"
     if not is_checkout() or not path.exists():
         return None
@@ -302,9 +303,9 @@ def module(name: str) -> ModuleType | None:
 
 
 def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., tuple[Any, Any, Any]]:
-    """A function for component, parameter and exit angle after some bounces in scalar numba.
+    """A function that gives component, parameter and exit angle after a number of bounces in scalar numba.
 
-    A table without a function of its name there is one of sides, arcs and cubics.
+    A table without a function of its own in `scalar` consists of straight sides, arcs and cubics.
     """
     own, lam = getattr(scalar, name, None), float(map.lam)
     given = float(map.shape[0]) if map.shape else 0.0
@@ -322,7 +323,7 @@ def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., 
 
 
 def baseline_rows(name: str, runs: int) -> Iterable[SceneTiming]:
-    """Rows of the three baselines on a scene; only the first for a table that is not the paper's."""
+    """Timings of the three baselines on a scene; only of the first for a table that is not in the paper."""
     rng = np.random.default_rng(2)
     shape: dict[str, Any] = dict(SCENES.get(name, {}))
     map = scene(name)
@@ -370,7 +371,7 @@ def baseline_rows(name: str, runs: int) -> Iterable[SceneTiming]:
 
 
 def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:
-    """The largest error of parameter or angle over the first particles, in units of 2**-52."""
+    """The largest error of parameter or exit angle over the first few particles, in units of 2**-52."""
     exact = ExactMap(map, DIGITS)
     mp, worst = exact.context, 0.0
     for i in range(MEASURED):

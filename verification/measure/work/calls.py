@@ -1,7 +1,7 @@
-"""Times of whole calls, as users make them, relative to the kernel that does their work; and of tables, to the egg.
+"""Times of whole calls, as users make them, relative to the kernel that they use; times of tables, relative to the egg.
 
-Each ratio has a bar that it should not pass. Seconds differ between machines, ratios hardly: the two times of a ratio
-are the best of runs that take turns, in processor time, which other work does not lengthen. All run on one thread.
+Each ratio has an upper limit. Seconds differ between machines, ratios hardly: the two times of a ratio are the best of
+alternating runs, in processor time, which other work does not lengthen. All run on one thread.
 """
 
 from collections.abc import Callable, Iterable
@@ -59,7 +59,7 @@ BARS: dict[str, tuple[str, float | None]] = {  # table: the one that its bounce 
 
 
 class Call(NamedTuple):
-    """A call and its reference, in seconds for one bounce; `bar` is the largest ratio that is accepted."""
+    """The time of a call and of its reference, in seconds per bounce; `bar` is the largest accepted ratio."""
 
     scene: str
     call: str
@@ -70,7 +70,7 @@ class Call(NamedTuple):
 
     @property
     def ratio(self) -> float:
-        """The time of the call over that of its reference.
+        """The time of the call divided by that of its reference.
 
         >>> Call("egg", "a call", 3e-9, "the kernel", 2e-9, 2.0).ratio
         1.5
@@ -83,13 +83,13 @@ class Call(NamedTuple):
 
 
 def taking_turns(one: Callable[[], object], other: Callable[[], object], runs: int) -> tuple[float, float]:
-    """The shortest times of two actions that take turns."""
+    """The shortest times of two actions, whose runs alternate."""
     times = [(best(one, 1), best(other, 1)) for _ in range(runs)]
     return min(first for first, _ in times), min(second for _, second in times)
 
 
 def call_rows(name: str, runs: int) -> Iterable[Call]:
-    """The calls on one of the paper's tables; on a table given by its radius, only particles at rest."""
+    """Timed calls on one of the paper's tables; on another table, only those for particles that come to rest."""
     if name not in SCENES:
         yield at_rest(name, min(runs, 3), FEW_AT_REST)
         return
@@ -99,7 +99,7 @@ def call_rows(name: str, runs: int) -> Iterable[Call]:
 
 
 def single_rows(name: str, runs: int) -> Iterable[Call]:
-    """Times of calls for one particle in microseconds, and of its orbit relative to the kernel."""
+    """Timed calls for one particle, in microseconds, and for its orbit, relative to the kernel."""
     map = made(name)
     starts = phase_starts(map, 1, seed=1)
     one = float(starts.theta[0]), float(starts.phi[0]), int(starts.component[0])
@@ -125,7 +125,7 @@ def single_rows(name: str, runs: int) -> Iterable[Call]:
 
 
 def batch_rows(name: str, runs: int) -> Iterable[Call]:
-    """Calls for many particles, relative to the kernel; on the circle only `step`, since its bounce is so cheap."""
+    """Timed calls for many particles, relative to the kernel; on the circle only `step`, as its bounce is so cheap."""
     map = made(name)
     starts = phase_starts(map, MANY, seed=1)
     at, phi, where = starts.theta, starts.phi, starts.component
@@ -164,13 +164,13 @@ def made(name: str) -> PinballMap:
 
 
 def pieces_at_rest(runs: int) -> Iterable[Call]:
-    """The calls for particles at rest on tables of straight sides and discs."""
+    """Timed calls for particles that come to rest, on tables with straight sides or discs."""
     for table in (tables.square(), tables.regular(6), discs(6)):
         yield at_rest(table.name, runs, FEW_AT_REST, PinballMap(table, lam="9/10"))
 
 
 def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: PinballMap | None = None) -> Call:
-    """Times a bounce of particles that come to rest, in a long run against a short one: no subnormal numbers occur."""
+    """Time per bounce in a long run of particles that come to rest, against a short run: tests for subnormals."""
     count, short, long = sizes
     map = map or scene(name, "9/10")
     starts = phase_starts(map, count, seed=1)
@@ -187,7 +187,7 @@ def at_rest(name: str, runs: int, sizes: tuple[int, int, int] = REST, map: Pinba
 
 
 def compared(name: str, lam: Any = WANDERING) -> PinballMap:
-    """The map of the table, and for `egg_...` of the law, that a key of `BARS` names.
+    """The map that a key of `BARS` names: a table, or the egg with another law for `egg_...`.
 
     >>> compared("sinai").ir.table, compared("egg_sine").law
     ('sinai', 'formula')
@@ -212,10 +212,10 @@ def compared(name: str, lam: Any = WANDERING) -> PinballMap:
 
 
 def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[SceneTiming]:
-    """A bounce on every table of `BARS`, by a kernel and in scalar numba: measured in turn, at one contraction.
+    """Timings of a bounce on every table in `BARS`, by a kernel and in scalar numba alternately.
 
-    It is close to 1: at a smaller one particles settle between parallel walls, and never meet anything between them.
-    Without numba there are rows for the kernels only.
+    All are at one contraction close to 1; at a smaller one, particles settle between parallel walls and miss all
+    obstacles. Without numba there are rows for the kernels only.
     """
     scalar, ways = module("scalar_numba") if baselines else None, dict[tuple[str, str], Callable[[], object]]()
     for name in names:

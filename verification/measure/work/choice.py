@@ -1,16 +1,16 @@
 """Uses of measured run times: the cheapest arithmetic for a number of digits, and a comparison of two runs.
 
-The table is `measured.json` beside this file, written by `benchmarks/work_precision.py`. A way counts for as many
-digits as it promises, and only if it kept its promise where its answer was compared with a certified ball. Seconds
-are those of one machine; their ratios carry over to others.
+The table is `measured.json` beside this file, written by `benchmarks/work_precision.py`. A method counts for as many
+digits as it promises, and only if it kept its promise where its answer was compared with a certified ball. Seconds are
+those of one machine; their ratios carry over to others.
 
-An orbit is followed in float64 while enough of its digits survive, and else as the table says. A bounce loses as many
-digits as the decimal logarithm of the factor by which its derivative stretches. The kernels say how many an orbit
-loses; float64 keeps the rest of what one bounce promises.
+An orbit is followed in float64 while enough of its digits survive, and otherwise as the table says. A bounce loses as
+many digits as the decimal logarithm of the factor by which its derivative stretches. The kernels compute how many an
+orbit loses in all; this is subtracted from the digits that float64 promises for one bounce.
 
-Two runs are compared by ratios of times within each, so that machines and their load cancel. How much longer a run
-took is the median over the rows of a question, and over the questions; reported is what differs from that. Lower
-quartiles are compared, which other work on a machine disturbs least.
+Two runs are compared by ratios of times within each, so that machines and their load cancel. The slowdown of a run is
+the median over the rows of each question, and over the questions; deviations from it are reported. The lower quartiles
+of times are compared, as other work on a machine disturbs them least.
 """
 
 import json
@@ -38,9 +38,10 @@ Rows = dict[tuple[str, str], MethodResult]
 
 
 def moved(before: Sequence[MethodResult], after: Sequence[MethodResult]) -> list[str]:
-    """A sentence for each row, or whole question, whose time changed by more than a factor 1.5 relative to the others.
+    """A sentence for each row or whole question whose time changed by a factor above 1.5, relative to the others.
 
-    Changes within the quartiles of both runs are not reported; errors that grew tenfold, and lost answers, are.
+    Changes within the quartiles of both runs are not reported. Errors that grew tenfold, and lost answers, are
+    reported.
     """
     pairs = {name: (_of(before, name), _of(after, name)) for name in dict.fromkeys(row.question for row in after)}
     units = {name: _unit(old, new) for name, (old, new) in pairs.items()}
@@ -56,7 +57,7 @@ def moved(before: Sequence[MethodResult], after: Sequence[MethodResult]) -> list
 
 
 def changes(old: MethodResult, new: MethodResult, unit: float) -> list[str]:
-    """Sentences on the changes of a row, when everything took `unit` times as long."""
+    """Sentences on what changed in a row; times are compared after a general slowdown by the factor `unit`."""
     if old.error is not None and new.error is None:
         return [f"has no answer any more: {new.failure}"]
     told = []
@@ -79,13 +80,13 @@ def _of(rows: Sequence[MethodResult], name: str) -> Rows:
 
 
 def _unit(old: Rows, new: Rows) -> float:
-    """The median factor by which the times of the rows changed that both runs have."""
+    """The median factor by which times changed, over the rows that both runs have."""
     ratios = [new[key].quartiles[0] / old[key].quartiles[0] for key in new if key in old and old[key].quartiles[0]]
     return median(ratios) if ratios else 1.0
 
 
 def of_bench(rows: Iterable[Mapping[str, Any]]) -> list[MethodResult]:
-    """The rows in a JSON document of `pinball bench`: a question for each table, a method for each way to bounce."""
+    """The rows in a JSON document of `pinball bench`: each table is a question, each kernel a method."""
     return [
         timed(
             row["scene"],
@@ -149,7 +150,7 @@ TABLE = Path(__file__).with_name("measured.json")
 
 @dataclass(frozen=True)
 class MeasuredWay:
-    """A way that kept its promise: the digits that it promises, and its seconds for one answer."""
+    """A method that kept its promise: its arithmetic and setting, the digits promised, the seconds for one answer."""
 
     method: str
     arithmetic: str
@@ -161,7 +162,7 @@ class MeasuredWay:
 
 @dataclass(frozen=True)
 class ArithmeticChoice:
-    """The way chosen for a number of digits, and the reason."""
+    """The method chosen for a number of digits, and the reason for the choice."""
 
     arithmetic: str
     method: str
@@ -172,7 +173,9 @@ class ArithmeticChoice:
 
 
 def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
-    """The ways among some rows that can be chosen: no textbook ones, and none that was not compared with the truth."""
+    """The methods in some rows that may be chosen: no textbook methods, and none that was not compared with the
+    truth.
+    """
     made = []
     for row in rows:
         if row.kept and row.promise and not row.textbook and row.method != "mpmath, no gmpy2":
@@ -182,7 +185,7 @@ def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
 
 
 def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
-    """The table of some rows as the text of a file."""
+    """The methods in some rows that may be chosen, as the text of a JSON file."""
     kept: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
         kept.setdefault(row.question, []).extend(
@@ -197,7 +200,7 @@ def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
 
 @cache
 def table() -> Mapping[str, tuple[MeasuredWay, ...]]:
-    """The table that was measured: for each question, the ways that kept their promise."""
+    """The table of measured methods: for each question, those that kept their promise."""
     document = json.loads(TABLE.read_text(encoding="utf-8"))
     return {name: tuple(MeasuredWay(**each) for each in found) for name, found in document["questions"].items()}
 
@@ -205,9 +208,9 @@ def table() -> Mapping[str, tuple[MeasuredWay, ...]]:
 def cheapest(
     question: str, digits: int, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
 ) -> ArithmeticChoice:
-    """The cheapest way to answer `question` to `digits` decimal digits; with `proof` only ways that prove it.
+    """The cheapest method for `question` with `digits` decimal digits; with `proof`, the cheapest one that is proved.
 
-    Beyond the digits of the table, it is the cheapest at the most that the table has.
+    If no method has so many digits, the cheapest one with the most digits is taken.
 
     >>> kernel = MeasuredWay("kernel", "float64", "4 particles", 14, 1e-6, False)
     >>> ball = MeasuredWay("balls", "arb", "100 digits", 100, 1e-3, True)
@@ -241,7 +244,7 @@ def cheapest(
 def crossovers(
     question: str, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
 ) -> list[tuple[int, ArithmeticChoice]]:
-    """The quickest methods: pairs of a number of digits and the method from there on."""
+    """Pairs of a number of digits, and the method that is the cheapest from this number of digits on."""
     known = tuple(_known(question) if measured is None else measured)
     edges = sorted({1, *(entry.digits + 1 for entry in known)})
     most, found = max(entry.digits for entry in known), list[tuple[int, ArithmeticChoice]]()
@@ -269,7 +272,7 @@ HOPELESS = 400.0  # digits: an orbit that loses more counts as losing all
 def for_orbit(
     map: PinballMap, start: tuple[float, float, int], bounces: int, digits: int, proof: bool = False
 ) -> ArithmeticChoice:
-    """The way to follow a particle from `start` (parameter, exit angle, component) that leaves `digits` at its end.
+    """A method to follow a particle from `start` (parameter, exit angle, component) that leaves `digits` at the end.
 
     >>> circle = PinballMap("circle", lam="0.5")
     >>> for_orbit(circle, (0.3, 0.2, 0), 10, 10).arithmetic, for_orbit(circle, (0.3, 0.2, 0), 10, 20).arithmetic
@@ -291,9 +294,9 @@ def for_orbit(
 
 
 def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) -> float:
-    """Decimal digits by which a rounding error on an orbit grows, wherever it is made; infinite if the orbit stops.
+    """The number of digits that rounding errors made anywhere on an orbit can cost; infinite if the orbit stops.
 
-    It is the largest rise of the logarithm of a tangent vector's length, sampled at most `LOOKS` times.
+    This is the largest rise of the logarithm of a tangent vector's length, sampled at most `LOOKS` times.
     """
     growth = Growth(map, *start)
     sizes, block = [0.0], max(1, bounces // LOOKS)
@@ -307,7 +310,7 @@ def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) 
 
 
 def digits_for(tolerance: Decimal | float | str) -> int:
-    """The number of decimal digits that keeps an error below a tolerance.
+    """The number of decimal digits that are needed for an error below `tolerance`.
 
     >>> digits_for(1e-12), digits_for(Decimal("3e-1000"))
     (12, 1000)

@@ -1,4 +1,4 @@
-"""Benchmarks on cycles of period 2, 3 and 64, a fold, doublings: the chord system against shooting and iteration."""
+"""Benchmarks on cycles of period 2, 3 and 64, a fold, and doublings; chord equations against shooting and iteration."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -39,7 +39,7 @@ STRIDE = 0.2  # step, over the distance in the contraction from its birth
 def cycle(
     name: str, title: str, table: Table, at: Rational, start: tuple[float, ...], own: PinballMap, settles: bool
 ) -> Question:
-    """Benchmark on the bounces of a cycle at `lam = at`; `own` is its map, `settles` says if particles reach it."""
+    """Benchmark on the bounces of a cycle at `lam = at`, for the map `own`; `settles` says if particles reach it."""
     problem = Problem(table, (0,) * len(start), lam=at)
     usual = textbook_cycle(own, (start[0], first_exit(problem, start)), len(start), settles)
     what = f"a cycle of period {len(start)} of the {table.name}, lam = {at}"
@@ -55,7 +55,7 @@ def cycle_question(
     usual: Sequence[Method],
     here: bool = False,
 ) -> Question:
-    """Benchmark on the bounces of a cycle in every arithmetic and by `usual` ways; with `here`, in this process."""
+    """Benchmark on the bounces of a cycle, in every arithmetic, against `usual` methods; if `here`, in this process."""
 
     def certified(digits: int) -> list[arb]:
         return list(whole(proof_near(problem, list(start), digits)).enclosure.zero)
@@ -71,20 +71,20 @@ def here_alone(methods: Iterable[Method]) -> list[Method]:
 
 
 def whole(proof: UniqueCycle) -> UniqueCycle:
-    """The proof itself; `ValueError` where its checklist is not complete."""
+    """The proof itself; `ValueError` if an item of its checklist is open."""
     if not proof.proved:
         raise ValueError(f"{proof.label}: not proved: {', '.join(proof.open)}")
     return proof
 
 
 def first_exit(problem: Problem, start: tuple[float, ...]) -> float:
-    """The exit angle at the first bounce of a cycle, to three decimals; to nine for long cycles."""
+    """The exit angle at the first bounce of a cycle, to three decimals, or to nine for long cycles."""
     out, _ = problem.ring.angles(np.array(floats(problem, start)), {"lam": float(problem.lam)})
     return round(float(out[0]), 3 if problem.period < 10 else 9)
 
 
 def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, settles: bool) -> list[Method]:
-    """The methods of single shooting on the compiled step, and for an attracting cycle of iterating a particle."""
+    """Textbook methods for a cycle: single shooting on the compiled step, and iteration if the cycle attracts."""
     book = module("textbook")
     if book is None:
         return []
@@ -107,38 +107,38 @@ def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, 
 
 
 def period_2() -> Question:
-    """Benchmark: the vertical cycle of the cardioid, between `pi/3` and `-pi/3`: unstable."""
+    """Benchmark: the vertical cycle of the cardioid between `pi/3` and `-pi/3`, which is unstable."""
     own = PinballMap("cardioid", lam="1/2")
     return cycle("cycle-2", "A cycle of period 2, cardioid", tables.cardioid, HALF, (1.05, -1.05), own, False)
 
 
 def period_3() -> Question:
-    """Benchmark: the attracting triangle of the egg, which turns as `lam` falls from 1 to the fold."""
+    """Benchmark: the attracting triangle of the egg at `lam = 1/2`."""
     own = PinballMap("egg", lam="1/2", alpha="2/25")
     return cycle("cycle-3", "A cycle of period 3, egg", EGG, HALF, triangle_start(), own, True)
 
 
 def triangle_start() -> tuple[float, ...]:
-    """The bounces of the triangle at `lam = 1/2`, to three decimals."""
+    """The bounces of the egg's triangle at `lam = 1/2`, to three decimals."""
     first = float(N(polygons.near_flat().subs({lam: HALF, alpha_symbol: ALPHA})))
     return tuple(round(math.remainder(first + k * math.tau / 3, math.tau), 3) for k in range(3))
 
 
 def period_64() -> Question:
-    """Benchmark: the cycle of period 64 of the cascade, far from where it is born: strongly unstable."""
+    """Benchmark: a strongly unstable cycle of period 64 of the cascade, far from where it is born."""
     own = PinballMap("egg", lam=str(FAR), alpha="2/25")
     return cycle("cycle-64", "A cycle of period 64, egg", EGG, FAR, far_cycle(), own, False)
 
 
 @cache
 def members() -> tuple[Doubling, ...]:
-    """The doublings `lambda_3` to `lambda_6` in float64."""
+    """The period doublings `lambda_3` to `lambda_6` of the egg's cascade, in float64."""
     return tuple(islice(cascade(ALPHA), HIGHEST - FIRST + 1))
 
 
 @cache
 def far_cycle() -> tuple[float, ...]:
-    """The bounces of the cycle of period 64, followed in the contraction from its birth, to six decimals."""
+    """The bounces of the cycle of period 64, to six decimals; it is followed in the contraction from its birth."""
     birth, below = members()[-1], members()[-2]
     here, lam = doubled(birth.problem, birth.start, 0.06 * (birth.lam - below.lam))
     before, last_step = here, 1.0
@@ -174,7 +174,7 @@ def fold() -> Question:
 
 
 def textbook_fold() -> list[Method]:
-    """Bisection on whether shooting still finds the cycle, as a method."""
+    """A textbook method for the fold: bisection on whether shooting still finds the cycle."""
     book = module("textbook")
     if book is None:
         return []
@@ -212,7 +212,7 @@ def doublings() -> Question:
 
 
 def _together(methods: tuple[Method, ...]) -> Method:
-    """One method for several questions at once; its promise is the weakest."""
+    """One method that answers several questions at once; it promises the largest of their errors."""
 
     def call(setting: Any) -> list[Any]:
         return [x for method in methods for x in method.call(setting)]
@@ -225,7 +225,7 @@ def _together(methods: tuple[Method, ...]) -> Method:
 
 
 def textbook_doublings() -> list[Method]:
-    """The methods of brentq on the multiplier of a cycle found by shooting, and of periods after a transient."""
+    """Textbook methods: `brentq` on the multiplier of a cycle found by shooting, and periods after a transient."""
     book = module("textbook")
     if book is None:
         return []

@@ -1,6 +1,6 @@
-"""Benchmark problems on one number: Lyapunov exponents of a cycle and of a chaotic attractor, both proved; arc length.
+"""Benchmarks on single numbers: proved Lyapunov exponents of a cycle and a chaotic attractor; arc length of the egg.
 
-Arc length is that of the egg, and its inverse: the parameter at a given arc length.
+The inverse of arc length, the parameter at a given arc length, is a benchmark too.
 """
 
 from collections.abc import Callable
@@ -68,7 +68,7 @@ def of_a_cycle() -> Question:
 def read_off(
     problem: Problem, start: tuple[float, ...]
 ) -> tuple[Callable[[Arithmetic, Vector], list[Any]], Callable[[int], list[arb]]]:
-    """Functions for the larger exponent of a cycle: from a solution of its equations, and proved to so many digits."""
+    """Two functions that give the larger exponent of a cycle: from a solution of its equations, and as proved balls."""
 
     def read(arithmetic: Arithmetic, z: Vector) -> list[Any]:
         trace, determinant = trace_and_determinant(Linearised(problem, arithmetic, z).terms.rows)
@@ -148,14 +148,14 @@ def numpy_map(map: PinballMap) -> PinballMap:
 
 
 def run(map: PinballMap, orbits: int, bounces: int) -> Estimate:
-    """The exponent over some orbits, with its error from batch means."""
+    """The exponent over several orbits, with its standard error from batch means."""
     growth = Growth(map, *fixed_starts(map, orbits))
     growth.advance(ALIGNED)
     return grown(growth, bounces)
 
 
 def grown(growth: Growth, bounces: int) -> Estimate:
-    """The exponent over so many more bounces of each orbit, with its error."""
+    """The exponent over the next bounces of each orbit, with its standard error."""
     count = Count(growth, most=64)
     for _ in count.until(bounces):
         pass
@@ -173,12 +173,12 @@ def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
 
 
 def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
-    """Parameter, exit angle and component of particles on the attractor."""
+    """Parameters, exit angles and components of particles on the attractor."""
     return _arrived(map.ir.table, float(map.lam), orbits)
 
 
 def textbook(map: PinballMap, particle: tuple[float, float]) -> list[Method]:
-    """The methods of two neighbouring particles, and of QR of one matrix after the other."""
+    """Textbook methods for the exponent: two neighbouring particles; QR of one matrix after the other."""
     book = module("textbook")
     if book is None:
         return []
@@ -232,7 +232,7 @@ def length(x: Any) -> Any:
 
 
 def enclosed_length(x: arb) -> arb:
-    """Arc length in balls, by FLINT's integral: for a ball up to its middle, plus the speed times the radius."""
+    """Arc length in balls, by FLINT's integral up to the midpoint of `x`, plus the speed times the radius of `x`."""
     middle = x.mid()
     whole: arb = acb.integral(analytic_speed, acb(0), acb(middle)).real
     rest: arb = (x - middle) * load(speed_kernel(), balls(bits_of(30)))(x)[0]
@@ -240,7 +240,7 @@ def enclosed_length(x: arb) -> arb:
 
 
 def analytic_speed(z: acb, analytic: bool) -> acb:
-    """The speed at a complex ball; with `analytic`, not finite where the root might not be analytic."""
+    """The speed at a complex ball; with `analytic`, not finite if the square root might not be analytic on the ball."""
     words = replace(complex_balls(ctx.prec), sqrt=lambda w: acb(w).sqrt(analytic=analytic))
     found: acb = load(speed_kernel(), words)(z)[0]
     return found
@@ -253,7 +253,7 @@ class Inverse:
     label: str = "egg, the parameter at an arc length"
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Each arc length less the given one."""
+        """Differences between the arc lengths at the parameters `z` and the given arc lengths."""
         return [length(x) - s for x, s in zip(z, AT, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
@@ -262,18 +262,18 @@ class Inverse:
         return [e / own(x)[0] for e, x in zip(r, z, strict=True)]
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Newton's corrections at `z`."""
+        """Newton's corrections at `z`, computed from the residual there."""
         return self.solved(arithmetic, z, self.value(arithmetic, z))
 
 
 def certified(digits: int) -> list[arb]:
-    """The arc lengths, enclosed."""
+    """The arc lengths at the benchmark's parameters, enclosed in balls."""
     with working(bits_of(digits, 32)):
         return [enclosed_length(arb(x)) for x in AT]
 
 
 def lengths() -> Question:
-    """Benchmark: arc length at some parameters."""
+    """Benchmark: the egg's arc length at some parameters."""
     map = PinballMap("egg", alpha="2/25")
     map.arclength.s(np.array(AT))
 
@@ -308,7 +308,7 @@ def lengths() -> Question:
 
 
 def parameters() -> Question:
-    """Benchmark: the parameters at some arc lengths."""
+    """Benchmark: the parameters of points at given arc lengths in the egg."""
     map = PinballMap("egg", alpha="2/25")
     start = tuple(round(float(x), 3) for x in map.arclength.theta(np.array(AT)))
     sought = Sought(Inverse(), start, per=len(AT))
@@ -343,7 +343,7 @@ def _speed(map: PinballMap) -> Any:
 
 
 def textbook_lengths(map: PinballMap) -> list[Method]:
-    """The methods `scipy.integrate.quad`, and the trapezoidal rule on a grid."""
+    """Textbook methods for arc length: `scipy.integrate.quad`, and the trapezoidal rule on a grid."""
     book, own = module("textbook"), _speed(map)
     if book is None:
         return []
@@ -354,7 +354,7 @@ def textbook_lengths(map: PinballMap) -> list[Method]:
 
 
 def textbook_parameters(map: PinballMap) -> list[Method]:
-    """The methods brentq over quad, and interpolation of the trapezoidal rule."""
+    """Textbook methods for the parameter: `brentq` over `quad`, and interpolation of sums of the trapezoidal rule."""
     book, own = module("textbook"), _speed(map)
     if book is None:
         return []

@@ -1,8 +1,8 @@
-"""The work-precision diagram of a question: error against seconds, one line for each method.
+"""The work-precision diagram of a question: error against seconds, with one line for each method.
 
-Errors run from 1 down to 1e-1000 and beyond: where they do, the upward scale is the logarithm of the number of
-digits, so that float64 and a thousand digits fit on one page. Marks and dashes differ, not only colours.
-Sentences made from the same rows say which method wins where, what a proof costs, and what the usual methods lose.
+Errors can go from 1 down to 1e-1000 and below; the vertical scale is then the logarithm of the number of digits, so
+that float64 and a thousand digits fit on one page. Marks and dashes differ, not only colours. Sentences from the same
+rows say which method is best, what a proof costs, and how usual methods compare.
 """
 
 import math
@@ -36,10 +36,10 @@ KNOWN = (
 def drawn(
     title: str, unit: str, rows: Sequence[MethodResult], known: dict[str, str], axes: "Axes | None" = None
 ) -> "Figure":
-    """The diagram of some rows; full marks are on the Pareto front, crossed ones break their claim.
+    """The diagram of some rows; full marks are on the Pareto front, crossed marks have a larger error than claimed.
 
-    Where errors are within the range of floats, the error that an answer claims is a bar above its mark. On given axes
-    the footer with the machine is left out.
+    If the errors are within the range of floats, a bar above a mark is the error that the answer claims. On given
+    `axes`, the footer with the machine is left out.
     """
     from matplotlib.figure import Figure
 
@@ -58,7 +58,7 @@ def drawn(
 
 
 def _diagram(axes: "Axes", title: str, unit: str, rows: Sequence[MethodResult]) -> None:
-    """Draws lines, front, scales and legend on one pair of axes."""
+    """Draws the lines of methods, the Pareto front, the scales and the legend on one pair of axes."""
     shown = [row for row in rows if row.error]
     wide = min((row.magnitude for row in shown), default=0.0) < WIDE
     for name, look in looks(shown).items():
@@ -73,7 +73,7 @@ def _diagram(axes: "Axes", title: str, unit: str, rows: Sequence[MethodResult]) 
 
 
 def looks(rows: Sequence[MethodResult]) -> dict[str, dict[str, Any]]:
-    """Colour, mark and dashes of each method: the usual ways in orange, float64 in black, more digits in blue."""
+    """Colour, mark and dashes of each method: usual methods in orange, float64 in black, more digits in blue."""
     names = {row.method: row for row in rows}
     others = [name for name in names if name not in KNOWN]
     found = {}
@@ -85,13 +85,13 @@ def looks(rows: Sequence[MethodResult]) -> dict[str, dict[str, Any]]:
 
 
 def image(figure: "Figure", ending: str = "svg") -> bytes:
-    """A figure as the bytes of a file, the same for the same figure; WebP files are small, for a page."""
+    """A figure as the bytes of an image file; equal figures give equal bytes. Pages use WebP: its files are small."""
     with styled():
         return encoded(figure, f".{ending}", **({"dpi": 110, **SMALL} if ending == "webp" else {}))
 
 
 def height(magnitude: float, wide: bool) -> float:
-    """Height in the diagram of an error with this decimal logarithm.
+    """The height in the diagram of an error with decimal logarithm `magnitude`; `wide` if errors span many decades.
 
     >>> height(-16.0, wide=False), height(-100.0, wide=True)
     (-16.0, -2.0)
@@ -133,7 +133,7 @@ def _bars(axes: "Axes", rows: list[MethodResult], x: list[float], y: list[float]
 
 
 def _front(axes: "Axes", best: list[MethodResult], wide: bool) -> None:
-    """Draws the front as a staircase: the least error reached within a time."""
+    """Draws the Pareto front as a staircase: the least error reached within a time."""
     x, y = [row.seconds for row in best], [height(row.magnitude, wide) for row in best]
     axes.step(x, y, where="post", color="0.8", lw=4, zorder=1, solid_joinstyle="round", label="Pareto front")
 
@@ -153,7 +153,7 @@ def _scale(axes: "Axes", rows: list[MethodResult], wide: bool) -> None:
 
 
 def _folded(text: str, width: int = 150) -> str:
-    """A long line broken into several."""
+    """A long line, broken into lines of at most `width` letters."""
     from textwrap import fill
 
     return fill(text, width)
@@ -176,7 +176,7 @@ def paragraph(rows: Sequence[MethodResult]) -> str:
 
 
 def quickest(rows: Sequence[MethodResult]) -> str:
-    """A sentence on the best float64 answer, in error and in time."""
+    """A sentence on the most accurate float64 answer, and on the quickest one of nearly the same accuracy."""
     own = [row for row in rows if row.arithmetic == "float64" and row.error is not None]
     finest = min(own, key=lambda row: row.error or 0, default=None)
     if finest is None or finest.error is None:
@@ -189,7 +189,7 @@ def quickest(rows: Sequence[MethodResult]) -> str:
 
 
 def picked(rows: Sequence[MethodResult]) -> str:
-    """A sentence on the cheapest way of this package, by digits."""
+    """A sentence on the quickest method for each number of digits."""
     from verification.measure.work.choice import crossovers, entries  # which needs the map
 
     known = entries(rows)
@@ -204,7 +204,7 @@ def picked(rows: Sequence[MethodResult]) -> str:
 
 
 def bars(rows: Sequence[MethodResult]) -> str:
-    """A sentence on the error bars by collisions, and the errors as shares of them."""
+    """A sentence on the 95 % error bars after some numbers of bounces, and on the ratios of errors to error bars."""
     own = [row for row in _with_bars(rows) if row.promise and row.error is not None]
     parts = [f"{short(row.promise)} after {row.setting}" for row in own if row.promise]
     shares = [f"{float(row.error / row.promise):.2f}" for row in own if row.error is not None and row.promise]
@@ -218,7 +218,7 @@ def _with_bars(rows: Sequence[MethodResult]) -> list[MethodResult]:
 
 
 def proofs(rows: Sequence[MethodResult]) -> str:
-    """A sentence on the time of a certificate."""
+    """A sentence on how long a proof takes."""
     at = {row.method: row for row in rows if row.digits == PLENTY}
     if "arb, certified" not in at:
         return ""
@@ -229,7 +229,7 @@ def proofs(rows: Sequence[MethodResult]) -> str:
 
 
 def integers(rows: Sequence[MethodResult]) -> str:
-    """A sentence on how much slower mpmath is without gmpy2."""
+    """A sentence on how much slower mpmath is if gmpy2 is missing."""
     own = {row.digits: row for row in rows if row.method == "mpmath" and row.error is not None}
     bare = {row.digits: row for row in rows if row.method == WITHOUT and row.error is not None}
     both = sorted(d for d in own.keys() & bare.keys() if d)
@@ -240,7 +240,7 @@ def integers(rows: Sequence[MethodResult]) -> str:
 
 
 def usual(rows: Sequence[MethodResult]) -> list[str]:
-    """A sentence for each usual way: its error, against this package's quickest way that is as accurate."""
+    """A sentence for each textbook method: its error, and this package's quickest method that is as accurate."""
     names = dict.fromkeys(row.method for row in rows if row.textbook)
     own = [row for row in rows if not row.textbook]
     return [_judged(name, [row for row in rows if row.method == name], own) for name in names]

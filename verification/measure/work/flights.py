@@ -1,4 +1,4 @@
-"""Benchmarks on one bounce and its derivative: the flight equation in every arithmetic, and textbook ways."""
+"""Benchmarks on one bounce and its derivative: the flight equation in every arithmetic, and textbook methods."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -41,27 +41,27 @@ MARGIN = 12  # digits that the flights lose at most in balls
 
 @dataclass(frozen=True)
 class ConvexFlights:
-    """Equations for the landings of `PARTICLES` on a convex table of one component: the chord has the exit angle."""
+    """Equations for the landings of `PARTICLES` on a convex table: each chord has the given exit angle."""
 
     table: Table
 
     @property
     def label(self) -> str:
-        """The name used in messages."""
+        """The name of the equations in messages."""
         return f"{self.table.name}, flights"
 
     def angles(self, arithmetic: Arithmetic, z: Vector) -> list[tuple[Any, ...]]:
-        """The exit angles of the chords to `z`, with derivatives."""
+        """The exit angles of the chords that end at the parameters `z`, with derivatives."""
         chord = load(chord_kernel(self.table, 0, 0, 1), arithmetic)
         return [chord(exactly(arithmetic, particle[0]), x) for particle, x in zip(PARTICLES, z, strict=True)]
 
     def value(self, arithmetic: Arithmetic, z: Vector) -> Vector:
-        """Exit angles of the chords to `z`, less the given ones."""
+        """The exit angles of the chords that end at `z`, minus the given exit angles."""
         found = self.angles(arithmetic, z)
         return [a[0] - exactly(arithmetic, particle[1]) for a, particle in zip(found, PARTICLES, strict=True)]
 
     def solved(self, arithmetic: Arithmetic, z: Vector, r: Vector) -> Vector:
-        """Newton's corrections for a residual `r`, each particle by itself."""
+        """Newton's corrections for a residual `r`; the particles are independent."""
         return [x / a[2] for x, a in zip(r, self.angles(arithmetic, z), strict=True)]
 
     def newton(self, arithmetic: Arithmetic, z: Vector) -> Vector:
@@ -84,13 +84,13 @@ class ConvexFlights:
 
 
 def exactly(arithmetic: Arithmetic, x: float) -> Any:
-    """A double, exactly, in any arithmetic."""
+    """The number `x`, without rounding, in any arithmetic."""
     return arithmetic.q(*x.as_integer_ratio())
 
 
 @cache
 def matrix_expressions(table: Table) -> dict[str, Expr]:
-    """The derivative `d(s1, phi1)/d(s0, phi0)` by both parameters of a flight. Paper: eq. (derivative_of_map)."""
+    """The derivative `d(s1, phi1)/d(s0, phi0)` in terms of both ends of a flight. Paper: eq. (derivative_of_map)."""
     (component,) = table.components
     ends = []
     for at in (theta0, theta1):
@@ -114,7 +114,7 @@ def matrix_kernel(table: Table) -> Kernel:
 
 @cache
 def scene(name: str) -> tuple[Table, PinballMap, tuple[float, ...]]:
-    """Exact table, compiled map, and starts for Newton's method: the landings to three decimals."""
+    """The exact table, its compiled map, and the landings to three decimals, as starts for Newton's method."""
     shape: dict[str, Any] = {"alpha": "2/25"} if name == "egg" else {}
     map = PinballMap(name, lam=LAM, **shape)
     table = tables.named(name).at(**shape)
@@ -177,7 +177,7 @@ def bounced(map: PinballMap, digits: int) -> list[arb]:
 
 
 def bracketing(map: PinballMap) -> Method:
-    """The method of the map's definition in mpmath: all zeros of the flight function bracketed, the first one taken."""
+    """The method of the map's definition in mpmath: brackets all zeros of the flight function and takes the first."""
 
     def call(digits: int) -> list[Any]:
         exact = ExactMap(map, digits, LAM)
@@ -188,7 +188,7 @@ def bracketing(map: PinballMap) -> Method:
 
 
 def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]], bound: float) -> list[Method]:
-    """The methods of the compiled kernel and of the same step on NumPy arrays, for a few particles to thousands."""
+    """The compiled kernel and the same step on NumPy arrays, as methods, for a few to thousands of particles."""
     shape: dict[str, Any] = dict(zip((entry.name for entry in map.ir.shape), map.exact_shape, strict=True))
     plain = PinballMap(map.ir.table, lam=LAM, kernels=False, **shape)
     promise = Decimal(f"{bound:.3g}")
@@ -204,7 +204,7 @@ def kernels(map: PinballMap, call: Callable[[PinballMap, Any, Any], list[float]]
 
 
 def running(map: PinballMap, bound: float) -> Method:
-    """The method of the compiled kernel within a long run of many particles, which has no overhead."""
+    """The compiled kernel as a method, timed in a long run of many particles, which makes its overhead negligible."""
     count, bounces = COUNTS[-1], 256
     starts = phase_starts(map, count, seed=1)
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
@@ -220,18 +220,18 @@ def running(map: PinballMap, bound: float) -> Method:
 
 
 def stepped(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """Parameter and exit angle of the first few particles after a step of all of them."""
+    """Parameter and exit angle of the first few particles after one step, which is made for all particles."""
     landed = map.step(theta, phi)
     return [float(x) for pair in zip(landed.theta[: len(PARTICLES)], landed.phi, strict=False) for x in pair]
 
 
 def turned(map: PinballMap, theta: Any, phi: Any) -> list[float]:
-    """The derivative matrices of the first few particles."""
+    """The derivative matrices of one bounce of the first few particles."""
     return [float(x) for x in map.derivative(theta, phi)[: len(PARTICLES)].ravel()]
 
 
 def textbook_steps(map: PinballMap) -> list[Method]:
-    """The methods that a reader of the paper would write: `numpy.roots` on the cardioid, `brentq` on the egg."""
+    """Textbook methods for a bounce: `numpy.roots` on the cardioid, `brentq` on the egg."""
     book, ways = module("textbook"), module("paper_ways")
     if book is None or ways is None:
         return []
@@ -259,7 +259,7 @@ def textbook_steps(map: PinballMap) -> list[Method]:
 
 
 def textbook_jacobians(map: PinballMap, table: Table) -> list[Method]:
-    """The methods of finite differences of the step, and of the formula through `sympy.lambdify`."""
+    """Textbook methods for the derivative: finite differences of the step, and the formula through `sympy.lambdify`."""
     book = module("textbook")
     if book is None:
         return []

@@ -1,7 +1,7 @@
-"""The time of commands and scripts as a user types them, each a new process, and of the shortest script for the same.
+"""The time of commands and scripts, each in a new process as users type them, against the shortest plain script.
 
-A script answers the same question to the same digits. Where the answer needs a search or a proof of this package, the
-time of importing SymPy, NumPy and SciPy takes its place.
+A script answers the same question to the same digits. If an answer needs a search or a proof that only this package
+has, the time of importing SymPy, NumPy and SciPy takes the script's place.
 """
 
 import json
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 
 def egg_orbit(start: Sequence[Any], bounces: int, digits: int, alpha: str, lam: str) -> list[tuple[Any, Any]]:
-    """Parameters and exit angles on the egg `r = 1 + alpha*cos(3*theta)`, the start first.
+    """Parameters and exit angles of an orbit in the egg `r = 1 + alpha*cos(3*theta)`; the start comes first.
 
-    The float64 kernel lands, a few Newton steps at full precision make the digits, and the exit angle is minus `lam`
+    The float64 kernel computes the landing, Newton steps refine it to full precision, and the exit angle is minus `lam`
     times the incidence angle.
 
     >>> mpmath.nstr(egg_orbit(("0.3", "0.2"), 1, 30, "0.08", "0.5")[1][0], 15)
@@ -58,19 +58,19 @@ def egg_orbit(start: Sequence[Any], bounces: int, digits: int, alpha: str, lam: 
 
 @cache
 def egg(alpha: str, lam: str) -> PinballMap:
-    """The map whose kernel lands, made once."""
+    """The egg's map, cached; its kernel computes the landings of `egg_orbit`."""
     return PinballMap("egg", alpha=alpha, lam=lam)
 
 
 def landing(bounces: int, digits: int) -> str:
-    """Where the egg's orbit of the table below lands last; a bounce loses less than a fifth of a digit."""
+    """The last landing of a benchmark particle in the egg, as text; a bounce loses less than 1/5 of a digit."""
     last, _ = egg_orbit(("0.3", "0.2"), bounces, digits + bounces // 5, "0.08", "0.5")[-1]
     own = last.context
     return str(own.nstr((last + own.pi) % (2 * own.pi) - own.pi, digits))
 
 
 def flower_length() -> str:
-    """The length of `r = 1 + cos(5*theta)/40`: the trapezoidal rule, which converges geometrically."""
+    """The length of the curve `r = 1 + cos(5*theta)/40` by the trapezoidal rule, which converges geometrically."""
     imports()
     at = [2 * mpmath.pi * k / 200 for k in range(200)]
     speeds = (mpmath.hypot(1 + mpmath.cos(5 * t) / 40, mpmath.sin(5 * t) / 8) for t in at)
@@ -78,7 +78,7 @@ def flower_length() -> str:
 
 
 def imports() -> str:
-    """Nothing but what most scripts begin with."""
+    """Imports NumPy, SciPy and SymPy, as most scripts do at first; returns their versions."""
     import numpy
     import scipy
     import sympy
@@ -92,7 +92,7 @@ def last_theta(said: str) -> str:
 
 
 class Asked(NamedTuple):
-    """A question, Python or a command; its script and the largest ratio to it; to how many digits both agree, or 0."""
+    """A command or Python code, the plain script to compare, the largest accepted ratio of times, the common digits."""
 
     typed: str
     script: str
@@ -131,7 +131,7 @@ QUESTIONS = (
 
 
 def waited(text: str) -> tuple[float, str]:
-    """The seconds of the processor of a command, or of Python in this module, in a process of its own; what it says."""
+    """Processor seconds of a command, or of Python code in this module, in a new process; and its output."""
     command, environment = own_command("verification", *text.split()[1:])
     if not text.startswith("pinball "):
         command[2:] = ["-c", text]
@@ -146,7 +146,7 @@ def waited(text: str) -> tuple[float, str]:
 
 
 def agree(one: str, other: str, digits: int) -> bool:
-    """Are two decimals the same to so many digits, up to one unit of the last?
+    """True if two decimals agree to so many digits, up to one unit in the last of them.
 
     >>> agree("1.2346", "1.23456", 5), agree("1.2346", "1.2344", 5)
     (True, False)
@@ -156,7 +156,7 @@ def agree(one: str, other: str, digits: int) -> bool:
 
 
 def asked_rows(runs: int, questions: Iterable[Asked] = QUESTIONS) -> "Iterable[Call]":
-    """Each question beside its script: the shortest of runs that take turns. `ValueError` where the digits differ."""
+    """Times each command against its script: the shortest of alternating runs. `ValueError` if their digits differ."""
     from verification.measure.work.calls import Call
 
     for one in questions:

@@ -1,4 +1,4 @@
-"""Benchmark problems: a question with its reference, the methods that answer it, rows of error and time.
+"""Benchmark problems: a question with its reference value, the methods that answer it, and rows of error and time.
 
 An answer is a list of numbers of any kind. Its error is the largest distance of one of them from the reference,
 a list of balls; the radius of the reference counts, so no error is understated. Times are processor time of one core,
@@ -44,11 +44,11 @@ class Claimed(list[Any]):
 
 @dataclass(frozen=True)
 class Method:
-    """One way to answer: `call(setting)` for each of its settings, from quick to exact.
+    """A method for a question: `call(setting)` answers it, for each of the `settings`, from quick to exact.
 
-    `unit` says what a setting is (`digits`, `xtol`, `bounces`), `promise(setting)` the largest error that the way
-    claims for itself, None when it claims none. A call gives `per` answers at a time, or as many as the setting says
-    where that counts particles or points. A method that is `elsewhere` runs in a process of its own.
+    `unit` names the kind of setting (`digits`, `xtol`, `bounces`). `promise(setting)` is the largest error that the
+    method claims, or None if it claims none. A call gives `per` answers at a time; if the setting counts particles or
+    points, it gives that many. A method that is `elsewhere` runs in a process of its own.
     """
 
     name: str
@@ -77,16 +77,16 @@ class Method:
         return int(setting) if self.unit in COUNTS else self.per
 
     def within(self, most_digits: int) -> tuple[Any, ...]:
-        """The settings that need at most so many digits."""
+        """The settings that need at most `most_digits` digits."""
         return tuple(s for s in self.settings if self.unit != "digits" or s <= most_digits)
 
 
 @dataclass(frozen=True)
 class Question:
-    """A question with its reference: `reference(digits)` are balls of radius below `10**-digits`, proved.
+    """A question with a function `reference(digits)`, which gives proved balls of radius below `10**-digits`.
 
-    Where no proof is known `certified` is False, and the balls are a measured value with its error.
-    `answers` describes the numbers, `unit` is that of the error.
+    If no proof is known, `certified` is False, and the balls are a measured value with its error. `answers` describes
+    the numbers, `unit` is the unit of the error.
     """
 
     name: str
@@ -117,7 +117,7 @@ def enclosed(value: Any) -> arb:
 
 
 def distance(answer: Answer, reference: Answer, digits: int) -> tuple[Decimal | None, Decimal | None]:
-    """Lower and upper bound of the largest distance of an answer from the reference; None when a number is not finite.
+    """Bounds (lower and upper) of the largest distance of an answer from the reference; None if one is not finite.
 
     >>> distance([0.5, 1], [arb("0.5"), arb("1.25")], 10)
     (Decimal('0.2500'), Decimal('0.2500'))
@@ -135,7 +135,7 @@ def distance(answer: Answer, reference: Answer, digits: int) -> tuple[Decimal | 
 
 
 def power(exponent: float) -> Decimal:
-    """The number `10**exponent`, also out of the range of floats.
+    """The number `10**exponent`, even if it is outside the range of floats.
 
     >>> power(-1000)
     Decimal('1E-1000')
@@ -151,13 +151,13 @@ Say = Callable[[str], None]
 
 
 def silent(_: str) -> None:
-    """Does nothing: no progress is shown."""
+    """Does nothing: the default for `say`."""
 
 
 def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say: Say = silent) -> list[MethodResult]:
     """The rows of a question, method by method; `say` is called with the name of each method before it runs.
 
-    A method that raises a `ValueError` or an arithmetical error has no answer at that setting, and its row says why.
+    If a method raises `ValueError` or an arithmetical error, it has no answer at that setting, and its row says why.
     """
     digits = min(most_digits, question.most_digits)
     say("the reference")
@@ -199,10 +199,10 @@ def _rows(
 
 
 def sample(method: Method, setting: Any, runs: int, warm: bool = False) -> tuple[Answer | None, list[float], str]:
-    """The answer at a setting, the seconds of some calls, and what went wrong; the first call warms up.
+    """The answer at a setting, the seconds of some calls, and what went wrong, if anything; the first call warms up.
 
-    A slow method is timed less often than `runs` times, at least once; when it is `warm` from another setting, its
-    first call may be that once.
+    A slow method is timed fewer than `runs` times, but at least once. If the method is `warm`, as after another
+    setting, its first call counts as timed.
     """
     clock = time.perf_counter(), time.process_time()
     answer, failure = None, ""
@@ -231,12 +231,12 @@ Sample = tuple[Answer | None, list[float], str]
 
 
 def available() -> bool:
-    """Is gmpy2 installed, so that running without it makes a difference?"""
+    """True if gmpy2 is installed, so that running without it makes a difference."""
     return find_spec("gmpy2") is not None
 
 
 def sampled(question: str, method: str, settings: Sequence[int], runs: int) -> list[Sample]:
-    """What `sample` gives for each setting, from a process in which mpmath uses Python's integers."""
+    """The results of `sample` for the settings, from a process where mpmath works with Python's integers."""
     words = question, method, str(runs), *map(str, settings)
     command, environment = own_command("verification.measure.work.question", *words)
     done = subprocess.run(command, env=environment | PLAIN, capture_output=True, text=True, check=False)

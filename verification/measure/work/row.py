@@ -41,7 +41,7 @@ class MethodResult:
 
     @property
     def kept(self) -> bool | None:
-        """Did the method keep its promise? None when it made none, or the reference is too wide to tell."""
+        """True if the error is within the promise; None if there is no promise or the reference is too wide."""
         if self.error is None:
             return False
         if self.promise is None:
@@ -51,7 +51,7 @@ class MethodResult:
 
     @property
     def magnitude(self) -> float:
-        """The decimal logarithm of the error, which may lie below every float; infinite without an answer.
+        """The decimal logarithm of the error, which may itself be too small for a float; infinite without an answer.
 
         >>> round(timed("q", "m", [1.0], error=Decimal("3e-900")).magnitude, 3)
         -899.523
@@ -62,11 +62,11 @@ class MethodResult:
 
     @property
     def spread(self) -> float:
-        """The upper quartile of the times over the lower one."""
+        """The upper quartile of the times divided by the lower quartile."""
         return self.quartiles[1] / self.quartiles[0] if self.quartiles[0] else 1.0
 
     def to_dict(self) -> dict[str, Any]:
-        """The row as JSON; a number that no float holds is a decimal string."""
+        """The row as JSON; a number outside the range of floats is a decimal string."""
         plain = {name: getattr(self, name) for name in self.__dataclass_fields__}
         plain |= {name: written(getattr(self, name)) for name in BALLS}
         plain["quartiles"] = list(self.quartiles)
@@ -94,7 +94,7 @@ def timed(question: str, method: str, seconds: Sequence[float], **more: Any) -> 
 
 
 def written(number: Decimal | None) -> float | str | None:
-    """An error as JSON: a float where one holds it, else a decimal string.
+    """An error as JSON: a float if it is in the range of floats, else a decimal string.
 
     >>> written(Decimal("1.5e-16")), written(Decimal("2e-1000"))
     (1.5e-16, '2E-1000')
@@ -123,7 +123,7 @@ MARKS = {True: "", False: "!", None: ""}
 
 
 def table(rows: Sequence[MethodResult], base: MethodResult | None = None) -> list[tuple[str, ...]]:
-    """Cells of a table, a row each: `*` on the Pareto front, `!` for a broken claim; ratios to the time of `base`."""
+    """Cells of a table, a row per result, with ratios to `base`; `*`: on the Pareto front, `!`: broken claim."""
     best, base = front(rows), base or baseline(rows)
     lines: list[tuple[str, ...]] = []
     for row in rows:
@@ -136,7 +136,7 @@ def table(rows: Sequence[MethodResult], base: MethodResult | None = None) -> lis
 
 
 def plain(rows: Sequence[MethodResult]) -> str:
-    """The table as text with aligned columns.
+    """The table of results as text with aligned columns.
 
     >>> from verification.measure.work.row import timed
     >>> print(plain([timed("q", "kernel", [2e-9], error=Decimal("1e-16"), promise=Decimal("1e-17"), setting="s")]))
@@ -152,7 +152,7 @@ def plain(rows: Sequence[MethodResult]) -> str:
 
 
 def markdown(rows: Sequence[MethodResult], base: MethodResult | None = None) -> str:
-    """The table in Markdown; each column has a head, which screen readers use."""
+    """The table of results in Markdown; each column has a heading, which screen readers use."""
     lines = [("front", *HEAD[1:-1], "broken"), ("---",) * len(HEAD), *table(rows, base)]
     return "\n".join(
         "| " + " | ".join(text.replace("|", "/").replace("*", "\\*") for text in line) + " |" for line in lines
@@ -160,13 +160,13 @@ def markdown(rows: Sequence[MethodResult], base: MethodResult | None = None) -> 
 
 
 def baseline(rows: Sequence[MethodResult]) -> MethodResult | None:
-    """The row that times are compared with: this package's quickest float64 method, at its finest setting."""
+    """The row whose time the others are compared with: this package's first float64 method, at its finest setting."""
     own = [row for row in rows if row.arithmetic == "float64" and not row.textbook and row.error is not None]
     return [row for row in own if row.method == own[0].method][-1] if own else None
 
 
 def short(number: Decimal) -> str:
-    """Two digits of a number, which may be out of the range of floats.
+    """A number to two digits, as text; it may be outside the range of floats.
 
     >>> short(Decimal("1.234e-1000")), short(Decimal("0.02"))
     ('1.2e-1000', '2e-2')
@@ -178,7 +178,7 @@ def short(number: Decimal) -> str:
 
 
 def facts() -> dict[str, str]:
-    """The machine, the versions and the load of the machine, by name."""
+    """The machine, the package versions and the machine's load, by name."""
     from verification.measure.work.bench import machine_facts
 
     load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
@@ -196,7 +196,7 @@ Point = tuple[float, Decimal | None]  # seconds, and an error in units of 2**-52
 
 
 def duration(seconds: float) -> str:
-    """A time in a suitable unit.
+    """A time as text in a suitable unit.
 
     >>> duration(7.5e-9), duration(2e-3)
     ('7.5 ns', '2 ms')
@@ -208,7 +208,7 @@ def duration(seconds: float) -> str:
 
 
 def magnitude(error: Decimal) -> float:
-    """The decimal logarithm of an error given in units of 2**-52, which may lie below every float.
+    """The decimal logarithm of an error that is given in units of 2**-52 and may be too small for a float.
 
     >>> round(magnitude(Decimal("4.5036e-984")), 3)
     -999.0
@@ -217,9 +217,9 @@ def magnitude(error: Decimal) -> float:
 
 
 def diagram(points: Sequence[Point], front: Collection[int] = ()) -> str:
-    """A text diagram of error (upwards) against time (to the right), both logarithmic; capitals are on the front.
+    """A text diagram of error (upwards) against time (to the right), both logarithmic; capitals mark the front.
 
-    Where errors span hundreds of decades the upward scale is the logarithm of the number of digits that are right.
+    If errors span hundreds of decades, the vertical scale is the logarithm of the number of correct digits.
 
     >>> print(diagram([(1e-9, Decimal(1)), (1e-3, Decimal("1e-90"))], front={1}).splitlines()[0].strip())
     1e-16 |a
@@ -264,7 +264,7 @@ def _power(y: float) -> str:
 
 @dataclass(frozen=True)
 class WorkDiagram:
-    """The diagram of a question, for a page, not drawn yet: its rows, and the machine they were measured on."""
+    """The work-precision diagram of a question, to be drawn when a page needs it: its rows, and machine facts."""
 
     name: str
     caption: str

@@ -1,10 +1,11 @@
 """Efficiency of sweeps with several workers, and accuracy of the predicted cost: rows of `pinball bench`.
 
-A worker loses time where it is idle between tasks, or waits within one for the interpreter's lock. Waiting for a core
-that other work has is measured by Linux and not counted as loss, so a busy machine shows the efficiency too.
+A worker loses time when it is idle between tasks, or waits within a task for the interpreter's lock. Time in which
+other processes have the core is measured by Linux and not counted as loss, so the efficiency can be measured on a busy
+machine too.
 
-More workers than cores are tested with tasks that only wait, for a second each, and return as much as others do: this
-shows the cost of distributing, sending, gathering and writing into a store on a machine of any size.
+More workers than cores are tested with tasks that only wait, a second each, and return as much data as real ones. This
+shows the cost of distributing, sending, gathering and writing to a store on a machine of any size.
 """
 
 import threading
@@ -33,7 +34,7 @@ NOTES = 6  # of a task: worker, begin, end, waiting time of its thread before an
 
 
 def waited() -> float:
-    """Seconds for which this thread had work and no core, since it began; 0 where the system does not say."""
+    """Seconds for which this thread has been ready to run but had no core; 0 if the system does not tell."""
     try:
         text = Path(f"/proc/self/task/{threading.get_native_id()}/schedstat").read_text()
     except OSError:
@@ -43,7 +44,7 @@ def waited() -> float:
 
 @dataclass(frozen=True)
 class Watched:
-    """A task that notes its worker, its begin and end, how long it had no core, and its processor time."""
+    """A task that also records its worker, its begin and end, how long it had no core, and its processor time."""
 
     task: Task
 
@@ -57,7 +58,7 @@ class Watched:
 
 
 class Busy(NamedTuple):
-    """Seconds of all workers from their first task to their last without waiting, processor seconds of tasks, tasks."""
+    """The workers' wall time (except waiting for a core), the processor time of their tasks, the number of tasks."""
 
     seconds: float
     spent: float
@@ -65,7 +66,7 @@ class Busy(NamedTuple):
 
 
 def busy(results: Results) -> Busy:
-    """The time of workers, each from the end of its first task on, which includes loading."""
+    """The time of the workers, each from the end of its first task, since that task includes loading."""
     rows = np.array([found["notes"].flat[:NOTES] for _, found in results])
     seconds, spent, tasks = 0.0, 0.0, 0
     for worker in np.unique(rows[:, 0]):
@@ -78,21 +79,21 @@ def busy(results: Results) -> Busy:
 
 
 def watched(bounces: int) -> Sweep:
-    """A small parameter space of the egg, with tasks that take equally long and note their times."""
+    """A sweep over a small parameter space of the egg; all tasks take equally long, and record their times."""
     return with_watch(
         parameter_space(np.linspace(0.08, 0.0801, TASKS), np.linspace(0, 1, 20), PARTICLES // 20, bounces, 0)
     )
 
 
 def with_watch(plain: Sweep) -> Sweep:
-    """The sweep, with a field for the notes of each task."""
+    """The sweep, with an extra field for the record of each task's times."""
     notes = Field("notes", tuple(axis.name for axis in plain.axes), "float64", "s", "of the worker")
     return replace(plain, task=Watched(plain.task), fields=(*plain.fields, notes))
 
 
 @dataclass(frozen=True)
 class Waiting:
-    """A task that waits instead of computing, and returns arrays of its fields."""
+    """A task that waits instead of computing, and returns arrays for its fields."""
 
     fields: tuple[Field, ...]
     seconds: float
@@ -104,14 +105,14 @@ class Waiting:
 
 
 def waiting(workers: int, python: bool = False, seconds: float = WAIT) -> Sweep:
-    """A parameter space with `ROUNDS` waiting tasks for each worker; by processes if `python`."""
+    """A sweep with `ROUNDS` waiting tasks for each worker; if `python`, in processes."""
     alphas = np.linspace(0.08, 0.0801, ROUNDS * workers)
     plain = parameter_space(alphas, np.linspace(0, 1, 1000), 1, 400, 0)
     return with_watch(replace(plain, task=Waiting(plain.fields, seconds), python=python))
 
 
 def by_waiting(sweep: Sweep, workers: int, scheduler: str | None = None) -> float:
-    """Seconds of a worker's time for one waiting task, in a whole sweep into a store."""
+    """The worker time per waiting task in seconds, in a sweep that writes to a store."""
     with TemporaryDirectory() as folder:
         done = run(sweep, Path(folder) / "waiting.zarr", scheduler, workers)
         notes = np.asarray(done["notes"])
@@ -120,7 +121,7 @@ def by_waiting(sweep: Sweep, workers: int, scheduler: str | None = None) -> floa
 
 
 def waiting_rows(workers: int = WORKERS) -> Iterator[Call]:
-    """Times of waiting tasks with more workers than cores: threads, processes and workers of Dask."""
+    """Times of waiting tasks with more workers than cores, as threads, as processes and as workers of Dask."""
 
     def row(name: str, seconds: float) -> Call:
         call = f"a task that waits by one of {workers} {name}"
@@ -134,7 +135,7 @@ def waiting_rows(workers: int = WORKERS) -> Iterator[Call]:
 
 
 def sweep_rows() -> Iterable[Call]:
-    """Times of a sweep by two threads, processes and workers of Dask; and its predicted over its measured time."""
+    """Times of sweeps with two threads, two processes and two Dask workers; predicted against measured time."""
     short, long = (busy(on_threads(watched(bounces), watched(bounces).indices(), 1)).spent for bounces in LENGTHS)
     rise = max((long - short) / (TASKS - 1) / (LENGTHS[1] - LENGTHS[0]), 1e-9)
     sweep = watched(round(WORTH / rise / 4) * 4)
@@ -157,7 +158,7 @@ def sweep_rows() -> Iterable[Call]:
 
 @contextmanager
 def clustered(workers: int) -> Iterator[str | None]:
-    """The address of a Dask cluster of so many processes on this machine; None where Dask is not installed."""
+    """The address of a Dask cluster of `workers` processes on this machine; None if Dask is not installed."""
     try:
         dask: Any = import_module("distributed")  # untyped
     except ImportError:
@@ -168,7 +169,7 @@ def clustered(workers: int) -> Iterator[str | None]:
 
 
 def foretold() -> Call:
-    """Predicted and measured seconds of a sweep: the larger, with the smaller as the reference."""
+    """A sweep's predicted and measured seconds: the larger is reported as time, the smaller as its reference."""
     grid = np.linspace(0, 1, 60)
     sweep = parameter_space((grid / 10).round(9), grid, 20, 1000, 1000)
     expected, begun = cost(sweep, 1, stored=False).seconds, time.process_time()

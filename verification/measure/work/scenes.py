@@ -1,4 +1,4 @@
-"""Error against run time for one's own scene: one bounce, its derivative, an orbit, a cycle, a fold, an exponent.
+"""Error against run time for a user's scene: one bounce, its derivative, an orbit, a cycle, a fold, an exponent.
 
 >>> from verification import work_precision
 >>> found = work_precision("ellipse", "step", a="3/2", lam="1/2", digits=20, runs=1)
@@ -56,14 +56,14 @@ Entries = Callable[
 
 @dataclass(frozen=True, repr=False)
 class WorkPrecision:
-    """The rows of a question, each a way to answer it with its error and its seconds; `.plot()` draws their diagram."""
+    """The rows of a question: each is a method with its error and its seconds; `.plot()` draws their diagram."""
 
     question: Question = field(compare=False)
     rows: tuple[MethodResult, ...]
     machine: dict[str, str]
 
     def plot(self, axes: "Axes | None" = None) -> "Figure":
-        """The figure of error against seconds, one line for each way, on the axes given or new."""
+        """The figure of error against seconds, one line for each method, on the given axes or new ones."""
         asked = self.question
         results = asked.title, asked.unit, self.rows, self.machine
         made: Figure = plotted("verification.measure.work.figure.drawn", *results, axes=axes)
@@ -92,12 +92,13 @@ def work_precision(
     say: Say = silent,
     **shape: Any,
 ) -> WorkPrecision:
-    """Error against run time for a question on one's own scene, in float64, mpmath and balls up to so many digits.
+    """Error against run time for a question on a given scene, in float64, mpmath and balls of up to `digits` digits.
 
-    `question` is `step` or `jacobian` (one bounce of a few particles, its derivative), `orbit` (ten bounces), `cycle`
-    (the bounces of a cycle), `fold` (a contraction at which cycles are born) or `exponent` (the larger one of the
-    attractor that most orbits reach). Errors are distances from a proved ball, of chaos from a long run. Each row is
-    the median of `runs`. A scene, a table, a map or a name is taken; numbers are exact, as for `Scene`.
+    `question` is `step` or `jacobian` (one bounce of a few particles, or its derivative), `orbit` (ten bounces),
+    `cycle` (the bounces of a cycle), `fold` (a contraction at which cycles are born) or `exponent` (the larger exponent
+    of the attractor that most orbits reach). Errors are distances from a proved ball, or for chaos from a long run.
+    Each row is the median of `runs` runs. `table` is a scene, a table, a map or a name; numbers are exact, as for
+    `Scene`.
     """
     if question not in QUESTIONS:
         raise ValueError(f"work_precision: question = {question!r}; accepted: {', '.join(QUESTIONS)}")
@@ -165,7 +166,7 @@ def jacobians(scene: Scene, seed: int) -> Question:
 
 
 def known_starts(scene: Scene, map: PinballMap, seed: int, bounces: int) -> Iterator[Start]:
-    """The first few random particles for which balls prove every bounce."""
+    """The first few random particles for which every bounce is proved in balls."""
     drawn, found = phase_starts(map, 16 * PARTICLES, seed), 0
     own = EnclosedMap(map, scene.lam, 64 + 32 * bounces)
     for component, theta, phi in zip(drawn.component, drawn.theta, drawn.phi, strict=True):
@@ -227,7 +228,7 @@ def in_every_arithmetic(
     call: Callable[..., list[float]],
     entries: Entries,
 ) -> Iterator[Method]:
-    """The methods of the compiled kernel, NumPy, mpmath and balls."""
+    """Methods in every arithmetic: the compiled kernel, NumPy, mpmath and balls."""
 
     def ran(own: PinballMap, count: int) -> list[float]:
         theta, phi, component = np.tile(np.array(starts), (count // len(starts), 1)).T
@@ -252,7 +253,7 @@ def in_every_arithmetic(
 
 
 def of_cycle(scene: Scene, seed: int) -> Question:
-    """Benchmark: the bounces of a cycle of a small period, attracting if there is one."""
+    """Benchmark: the bounces of a cycle of a small period; an attracting cycle if one is found."""
     orbit = some_cycle(scene, seed)
     name, title = f"cycle-{scene.name}", f"A cycle of period {orbit.period}, {scene.name}"
     what = f"a cycle of period {orbit.period}: {scene}"
@@ -260,14 +261,14 @@ def of_cycle(scene: Scene, seed: int) -> Question:
 
 
 def usual(scene: Scene, orbit: PeriodicOrbit) -> list[Method]:
-    """The methods of single shooting, and of iterating if the cycle attracts; for one closed curve, in a checkout."""
+    """Textbook methods for a cycle on one closed curve: single shooting and, if the cycle attracts, iterating."""
     if len(scene.table.components) > 1:
         return []
     return textbook_cycle(PinballMap(scene), (orbit.theta[0], orbit.phi[0]), orbit.period, orbit.stable)
 
 
 def some_cycle(scene: Scene, seed: int) -> PeriodicOrbit:
-    """A cycle of the least of the `PERIODS` that has one, an attracting one if there is one."""
+    """A cycle of the smallest period in `PERIODS` that has one, preferably attracting."""
     for period in PERIODS:
         found = [orbit for orbit in find_cycles(scene, period=period, seed=seed) if not orbit.one_sided]
         if found:
@@ -282,7 +283,7 @@ def problem_of(scene: Scene, orbit: PeriodicOrbit) -> tuple[Problem, tuple[float
 
 
 def of_fold(scene: Scene, seed: int) -> Question:
-    """Benchmark: a contraction at which two cycles are born, the first fold that cycles meet when followed in `lam`."""
+    """Benchmark: a contraction at which two cycles are born, the first fold met when cycles are followed in `lam`."""
     for beginning in BEGINNINGS:
         here = scene if beginning == "own" else scene.at(lam=beginning)
         if not 0 < here.lam < 1:
@@ -318,7 +319,7 @@ def _fold(scene: Scene, period: int, ring: Chords, start: tuple[float, ...]) -> 
 
 
 def of_exponent(scene: Scene, seed: int) -> Question:
-    """Benchmark: the larger exponent of the attractor that most orbits reach; for chaos compared with a long run."""
+    """Benchmark: the larger exponent of the attractor that most orbits reach; if chaotic, against a long run."""
     map = PinballMap(scene)
     attractor = find(map, ORBITS, seed)[0]
     if attractor.kind is Kind.CYCLE:
@@ -378,7 +379,7 @@ def _of_chaos(scene: Scene, map: PinballMap, attractor: Attractor) -> Question:
 
 
 def on(map: PinballMap, attractor: Attractor, bounces: int) -> Estimate:
-    """The larger exponent over some orbits on an attractor, with its error from batch means."""
+    """The larger exponent over several orbits on an attractor, with its standard error from batch means."""
     points = attractor.points.only(np.linspace(0, attractor.points.size - 1, ORBITS).astype(int))
     growth = Growth(map, points.theta, points.phi, points.component)
     growth.settle(ALIGNED)

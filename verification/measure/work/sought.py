@@ -1,8 +1,8 @@
 """Benchmark: one system of equations, solved in every arithmetic.
 
-Newton's method on the same generated formulas in float64, in NumPy's long doubles, in mpmath with digits that double
-at each step, in the midpoints of balls, and in balls with a proof. All start from the same few decimals. Two problems
-of this kind stand here: `lambda*` of the cuspless cardioid, and the least expansion of the cardioid's slap map.
+Newton's method on the same generated formulas in float64, in NumPy's long doubles, in mpmath with digits that double at
+each step, in the midpoints of balls, and in balls with a proof. All start from the same few decimals. Two such problems
+are defined here: `lambda*` of the cuspless cardioid, and the least expansion of the cardioid's slap map.
 """
 
 from collections.abc import Callable, Sequence
@@ -65,18 +65,18 @@ ROUNDINGS = 16  # units in the last place: error of a residual and of the values
 
 
 def unknowns(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
-    """The whole solution `z` of a system, for a question that asks for each of its unknowns."""
+    """The whole solution `z` of a system, for a question about all unknowns."""
     return z
 
 
 def last(arithmetic: Arithmetic, z: list[Any]) -> list[Any]:
-    """The last unknown of the solution `z`, which is the free parameter."""
+    """The last unknown of the solution `z`, which is the free parameter of the system."""
     return z[-1:]
 
 
 @dataclass(frozen=True)
 class Sought:
-    """Values that `read` takes from the solution of a system near a start; `per` answers come from one solution."""
+    """The values that `read` takes from the solution of `system` near `start`: `per` answers from one solution."""
 
     system: System
     start: tuple[float, ...]
@@ -84,7 +84,7 @@ class Sought:
     per: int = 1
 
     def methods(self, certified: Callable[[int], list[arb]] | None = None) -> tuple[Method, ...]:
-        """The methods of every arithmetic; `certified(digits)` is the whole proof, by default of the zero alone."""
+        """Methods in every arithmetic; `certified(digits)` gives the proof, by default that of the system's zero."""
         proof = certified or self.enclosed
         exact = Method("mpmath", "mpmath", "digits", DIGITS, self.in_mpmath, to_digits, self.per)
         found = [
@@ -99,7 +99,7 @@ class Sought:
         return tuple(found)
 
     def in_floats(self, setting: Any = None) -> list[float]:
-        """The values by Newton's method in float64, until steps no longer shorten."""
+        """The values by Newton's method in float64, iterated until the corrections stop shrinking."""
         return self.read(FLOAT64, floats(self.system, self.start))
 
     def in_long(self, setting: Any = None) -> list[Any]:
@@ -122,7 +122,7 @@ class Sought:
             return [x.mid() for x in self.read(balls(bits_of(digits + GUARD)), z)]
 
     def middle(self, digits: int) -> list[arb]:
-        """An approximate solution in arb's floats, by Newton's method with digits that double at each step."""
+        """An approximate solution in arb's floating-point numbers; Newton's method doubles the digits at each step."""
         z = [arb(x) for x in floats(self.system, self.start)]
         for level in levels(digits):
             bits = bits_of(level, 8)
@@ -132,7 +132,7 @@ class Sought:
         return z
 
     def enclosed(self, digits: int) -> list[arb]:
-        """Balls that hold the values at the one zero near the start, which the interval Newton operator proves."""
+        """Balls that hold the values at the unique zero near the start, proved by the interval Newton operator."""
         bits = bits_of(digits, 64 + 8 * len(self.start).bit_length())
         with working(bits):
             radius = (arb(10) ** -(digits + 5)).mid()
@@ -143,7 +143,7 @@ class Sought:
             return self.read(balls(bits), found.zero)
 
     def condition(self) -> float:
-        """Condition number: the largest move of the solution for a residual of one."""
+        """The condition number: the largest change of the solution for a residual of size one."""
         return norm_of_inverse(self.system, FLOAT64, floats(self.system, self.start))
 
     def rounding(self, setting: Any = None) -> Decimal:
@@ -156,7 +156,7 @@ class Sought:
 
 
 def scripted(scene: Scene, starts: Sequence[Sequence[Any]], bounces: int) -> list[Method]:
-    """The plain script for where particles are after some bounces; of the egg with the paper's law alone."""
+    """A plain mpmath script for the last bounces, as a method, in the egg with the paper's law; otherwise empty."""
     if scene.name != "egg" or scene.K != POINTS or not scene.law.uniform:
         return []
     alpha, lam = str(scene.shape["alpha"]), str(scene.lam)
@@ -194,7 +194,7 @@ def corner_orbit() -> Question:
 
 
 def textbook_corner() -> list[Method]:
-    """The methods of a brentq for the contraction around a brentq for the landing, and of mpmath's findroot."""
+    """Textbook methods for `lambda*`: nested `brentq` (contraction outside, landing inside); mpmath's `findroot`."""
     book = module("textbook")
     if book is None:
         return []
@@ -213,7 +213,7 @@ def textbook_corner() -> list[Method]:
 
 @cache
 def criticality() -> tuple[Kernel, Kernel]:
-    """Kernels: logarithmic slope of the expansion along the branch that changes halves, its derivative; expansion."""
+    """Two kernels: the logarithmic slope of the expansion of `T0^2`, with its derivative; the expansion itself."""
     x = Symbol("landing", real=True)
     first, second = slope_squared(x), slope_squared(-sqrt(LAUNCH_Q2.subs(q, x)))
     slope = first.diff(x) / first + second.diff(x) / second
@@ -223,7 +223,7 @@ def criticality() -> tuple[Kernel, Kernel]:
 
 @dataclass(frozen=True)
 class StationaryExpansion:
-    """The equation that the expansion is stationary in the landing point `q`. See `symbolic.cycles.cardioid_slap`."""
+    """The equation that the expansion of `T0^2` is stationary at a landing. See `symbolic.cycles.cardioid_slap`."""
 
     label: str = "cardioid, the least expansion"
 
@@ -247,7 +247,7 @@ def expansion(arithmetic: Arithmetic, z: Vector) -> Vector:
 
 
 def slap_infimum() -> Question:
-    """Benchmark: the least slope `|(T0^2)'|`, `T0` the cardioid's slap map. Paper: section 4.2, from a plot."""
+    """Benchmark: the least slope `|(T0^2)'|` of the cardioid's slap map `T0`. Paper: section 4.2, from a plot."""
     sought = Sought(StationaryExpansion(), (LEAST,), expansion)
     return Question(
         "slap-infimum",
@@ -260,7 +260,7 @@ def slap_infimum() -> Question:
 
 
 def by_polynomial() -> list[Method]:
-    """The method of a polynomial of degree 22, whose zero FLINT isolates with a proof."""
+    """A method for the least slope: a polynomial of degree 22, one of whose zeros FLINT isolates with a proof."""
     book = module("textbook")
     if book is None:
         return []
@@ -277,7 +277,7 @@ def by_polynomial() -> list[Method]:
 
 
 def textbook_infimum() -> list[Method]:
-    """The methods of a grid, a search, and roots of the polynomial by NumPy and mpmath."""
+    """Textbook methods for the least slope: a grid, a search, and roots of the polynomial by NumPy and mpmath."""
     book = module("textbook")
     if book is None:
         return []

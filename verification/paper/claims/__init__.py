@@ -1,4 +1,4 @@
-"""A paper's claims as printed, the folder that holds them, and the verdicts of judges."""
+"""A paper's claims as printed, the folder that holds them, and the verdicts on them."""
 
 import lazy_loader
 

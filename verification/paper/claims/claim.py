@@ -1,4 +1,4 @@
-"""A claim of a paper as printed, and the judgement of it."""
+"""A claim of a paper as printed, and the judgement on it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ class Verdict(Enum):
 
 
 class Costing(Protocol):
-    """A claim or a picture, with an estimate of its computing time."""
+    """A claim or a picture, which has an estimate of its computing time."""
 
     @property
     def seconds(self) -> float:
@@ -38,7 +38,7 @@ class Costing(Protocol):
 
 
 def seconds(items: Iterable[Costing]) -> float:
-    """The estimated time to judge claims and draw pictures, in seconds."""
+    """The estimated seconds to judge claims and draw pictures, in total."""
     return sum(each.seconds for each in items)
 
 
@@ -46,9 +46,9 @@ def seconds(items: Iterable[Costing]) -> float:
 class Claim:
     """One sentence of a paper, transcribed with its misprints.
 
-    `letters` are those of the paper's formulas besides the letters of tables and laws. `home` is the module that judges
-    the claim: its dotted name or, outside this package, its path. `seconds` is the time to judge it and `spares` the
-    time that its results save other claims; they serve to order the work. `unsettled` is the reason why the claim is
+    `letters` are the symbols of the paper's formulas besides those of tables and laws. `home` is the module that judges
+    the claim, as a dotted name or, outside this package, as a path. `seconds` is the time to judge it, and `spares` the
+    time that its results save other claims; both serve to order the work. `unsettled` is the reason why the claim is
     not settled.
     """
 
@@ -67,7 +67,7 @@ class Claim:
 
     @cached_property
     def names(self) -> dict[str, Symbol]:
-        """The letters that the formulas may contain, by name."""
+        """The symbols that the formulas may contain, by name."""
         return LETTERS | {name: Symbol(name, real=True) for name in self.letters}
 
     @property
@@ -79,7 +79,7 @@ class Claim:
 
     @cached_property
     def formula(self) -> Expr | Matrix:
-        """The printed text as an expression; a list or a table of formulas as a matrix."""
+        """The printed text as a formula; a list or a table of formulas as a matrix."""
         if isinstance(self.printed, str):
             return parse(self.printed, self.names)
         rows = [[row] if isinstance(row, str) else row for row in self.printed]
@@ -87,7 +87,7 @@ class Claim:
 
     @cached_property
     def box(self) -> dict[Symbol, Interval]:
-        """The range that the paper states, for the letters whose range is a plain interval or a point."""
+        """The range that the paper states for each symbol, if it is a plain interval or a point."""
         found = {}
         for name, text in self.over:
             interval = parse_interval(text)
@@ -100,8 +100,8 @@ class Claim:
 class Judgement:
     """The finding on the printed claim, the derived statement, and the finding on the corrected claim (`mended`).
 
-    `value` is the number of a claim about digits, exact or as a function from a number of digits to a ball; `evidence`
-    is a sentence that supports a claim which is not proved.
+    `value` is the number of a claim about digits: exact, or a function from a number of digits to a ball. `evidence` is
+    a sentence that supports a claim which is not proved.
     """
 
     printed: SignFinding
@@ -121,9 +121,9 @@ class Judgement:
         return Verdict.SUPPORTED if self.evidence else Verdict.OPEN
 
     def witness(self, claim: Claim) -> dict[Symbol, Expr]:
-        """A counterexample to a corrected or refuted claim: a value for each letter; else empty.
+        """A counterexample to a corrected or refuted claim: a value for each symbol; empty for other verdicts.
 
-        A letter whose printed range is one point has this value.
+        A symbol whose printed range is one point has this value.
         """
         if self.verdict not in (Verdict.CORRECTED, Verdict.REFUTED):
             return {}

@@ -34,7 +34,7 @@ JUDGED, QUOTED = re.compile(r"^@judges\(([^)]*)\)", re.MULTILINE), re.compile(r"
 
 @dataclass(frozen=True)
 class Paper:
-    """A paper from a folder: citation, sections in order (each with a source, if it has its own), and claims in order.
+    """A paper read from a folder: citation, sections in order (with their own source, if any), and claims in order.
 
     `judges` are modules and `figures` is a module with a function `pictures`. `seconds` is a record of computing times,
     `unsettled` has the reasons why claims are not settled, and `certified` the certificates of claims; all are paths,
@@ -66,7 +66,7 @@ class Paper:
         return "; ".join(filter(None, (", ".join(self.authors), self.citation)))
 
     def certificates(self) -> dict[str, tuple[Path, ...]]:
-        """The certificates of each claim, by its id, where all their files exist.
+        """The certificates of each claim, by the claim's id, if all their files exist.
 
         >>> [path.name for path in paper().certificates()["egg.doubling.3"]]
         ['doubling-3.json']
@@ -133,7 +133,7 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def _checked(where: Path, entry: Any, kinds: Mapping[str, Any], needed: Iterable[str], name: str = "") -> None:
-    """`ValueError` where a table has a missing, unknown or wrong key; it says what is accepted."""
+    """Raises `ValueError` if a table of the file has a missing, unknown or wrong key, and says what is accepted."""
     label = f"{where}{f', claim {name!r}' if name else ''}"
     if not isinstance(entry, dict):
         raise ValueError(f"{label}: a claim is a table [[claim]], not {entry!r}")
@@ -241,7 +241,7 @@ def _with_judges(found: Paper) -> Paper:
 
 
 def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """The recorded seconds of each claim, and those that it saves each other claim, to order the work; often empty."""
+    """The recorded seconds of each claim, and those that its results save each other claim; empty if not recorded."""
     if not found.seconds:
         return {}, {}
     record = json.loads(Path(found.seconds).read_text(encoding="utf-8"))
@@ -249,7 +249,7 @@ def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]
 
 
 def begin(folder: Path) -> list[Path]:
-    """Writes the folder of a paper with one claim and its judge, and returns the files; `ValueError` when it exists."""
+    """Writes a folder for a paper with one claim and its judge; returns the files. `ValueError` if it exists."""
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ValueError(f"{folder} is there already; accepted: a new folder, or an empty one")
     try:
@@ -279,14 +279,14 @@ def judge_of(claim: Claim) -> Judge:
 
 
 class _AsItStands(SourceFileLoader):
-    """A loader that reads the source of a module and ignores bytecode, which may belong to an earlier source."""
+    """A loader that reads a module from its source and ignores bytecode, which may be out of date."""
 
     def get_code(self, fullname: str) -> CodeType:
         return self.source_to_code(self.get_data(self.path), self.path)
 
 
 def module(home: str) -> ModuleType:
-    """A module of this package by its dotted name, or another by its path, imported again when its text changes."""
+    """A module of this package by its dotted name, or another by its path, reloaded if its text has changed."""
     if not home.endswith(".py"):
         return import_module(home)
     path = Path(home)

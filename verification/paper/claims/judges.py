@@ -1,7 +1,7 @@
-"""The decorator that registers judges, and common steps of judgements.
+"""The decorator that registers judges, and steps that many judgements share.
 
-An identity is proved by reduction or refuted by a ball at a witness; a printed range is judged with its ends; a
-correction counts only when it is proved too.
+An identity is proved by reduction, or refuted by a ball at a witness. Printed ranges are judged including their end
+points. A correction counts only if it is proved too.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -25,7 +25,8 @@ WITHOUT_VALUE = (zoo, nan, oo, -oo, AccumBounds)  # SymPy's results at a pole
 def judges(*ids: str) -> Callable[[Judge], Judge]:
     """Registers a function as the judge of the claims with these ids.
 
-    The ids are read from the source before anything runs, so they are literals, and the decorator begins its line.
+    The ids are read from the source text before any code runs. So they must be literals, and the decorator must be at
+    the beginning of its line.
     """
 
     def enter(judge: Judge) -> Judge:
@@ -36,7 +37,7 @@ def judges(*ids: str) -> Callable[[Judge], Judge]:
 
 
 def identity(claim: Claim, derived: Expr | Matrix, mend: tuple[str, str] | None = None, erratum: str = "") -> Judgement:
-    """The judgement on a printed formula, from the derived one; `mend` replaces misprinted text."""
+    """The judgement on a printed formula, by comparison with the derived one; `mend` replaces misprinted text."""
     finding = equal(claim.formula, derived, claim.box)
     if mend is None:
         return Judgement(finding, text_of(derived))
@@ -44,7 +45,7 @@ def identity(claim: Claim, derived: Expr | Matrix, mend: tuple[str, str] | None 
 
 
 def mended(claim: Claim, wrong: str, right: str) -> Claim:
-    """The claim with one piece of printed text replaced, in each formula that contains it once.
+    """The claim after a replacement of `wrong` by `right`, in each printed formula that contains it once.
 
     >>> mended(Claim("t.x", "1", "", "identity", "a + 2"), "2", "3").printed
     'a + 3'
@@ -97,7 +98,7 @@ def equal(left: Expr | Matrix, right: Expr | Matrix, box: Box) -> SignFinding:
 
 
 def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
-    """A few rational points inside the given ranges, or in (0, 1) for letters without one."""
+    """A few rational points inside the given ranges, or in (0, 1) for symbols without a range."""
     points: list[dict[Symbol, Expr]] = [{}, {}, {}]
     for n, x in enumerate(sorted(letters, key=str)):
         interval = box.get(x, Interval(0, 1))
@@ -109,7 +110,7 @@ def witnesses(letters: Iterable[Symbol], box: Box) -> list[dict[Symbol, Expr]]:
 
 
 def digits(claim: Claim, value: Number, mend: tuple[str, str] | None = None) -> Judgement:
-    """The judgement on a printed decimal, from the true value; `mend` is the misprint and its correction."""
+    """The judgement on a printed decimal, by the true value; `mend` has the misprint and its correction."""
     shown_value = text_of(value) if isinstance(value, Expr) else real_ball(value, 20).str(15, radius=False) + "..."
     finding = rounded(str(claim.printed), value)
     if mend is None:
@@ -146,7 +147,7 @@ def on_range(
     right: Mapping[Symbol, Interval] | None = None,
     erratum: str = "",
 ) -> Judgement:
-    """The judgement on a statement over the printed range; `right` is the range where it holds."""
+    """The judgement on a statement over the printed range; `right` is the range over which it does hold."""
     finding = prove(claim.box)
     if right is None:
         return Judgement(finding, derived)
@@ -154,15 +155,15 @@ def on_range(
 
 
 def by(argument: str, *findings: SignFinding) -> SignFinding:
-    """The finding of an argument in one sentence that rests on `findings`: proved when all of them are."""
+    """The finding on an argument that rests on `findings`: proved if all of them are proved."""
     whole = conjunction(*findings)
     return SignFinding(whole.outcome, f"{argument} [{whole.reason}]" if whole else whole.reason)
 
 
 def counterexample(argument: str, *findings: SignFinding, at: Mapping[Symbol, Expr] | None = None) -> SignFinding:
-    """The finding that the printed claim is refuted, when all `findings` on the counterexample are proved.
+    """The finding that refutes the printed claim, if all `findings` on the counterexample are proved.
 
-    `at` is the point where the claim fails, with a value for each letter whose printed range is more than a point.
+    `at` is the point at which the claim fails: a value for each symbol whose printed range is not a single point.
     """
     whole = conjunction(*findings)
     witness = tuple((at or {}).items())
@@ -170,7 +171,7 @@ def counterexample(argument: str, *findings: SignFinding, at: Mapping[Symbol, Ex
 
 
 def greater(left: Expr, right: Expr) -> SignFinding:
-    """The finding that one real number is larger than another, decided in balls.
+    """The finding that `left` is larger than `right` (two real numbers), decided in balls.
 
     >>> from sympy import pi
     >>> greater(pi, S(3)).outcome.name
@@ -185,13 +186,13 @@ def greater(left: Expr, right: Expr) -> SignFinding:
 
 
 def shown(argument: str, holds: bool | None) -> SignFinding:
-    """The finding of an exact decision of SymPy: `True`, `False`, or `None` for undecided."""
+    """The finding from an exact decision by SymPy: `True`, `False`, or `None` if undecided."""
     outcome = {True: Outcome.PROVED, False: Outcome.REFUTED}.get(holds, Outcome.UNKNOWN)  # type: ignore[arg-type]
     return SignFinding(outcome, argument)
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a proof in balls, where a proof that fails refutes nothing.
+    """The finding from a proof in balls: proved or, if the proof fails, unknown (never refuted).
 
     >>> answer(True, "").outcome.name, answer(False, "").outcome.name
     ('PROVED', 'UNKNOWN')
@@ -205,7 +206,7 @@ def sampled(derived: str, evidence: str, agrees: bool) -> Judgement:
 
 
 def implied(argument: str, proposition: Boolean) -> SignFinding:
-    """The finding of a logical step: proved when `proposition` is a tautology, refuted by an assignment otherwise.
+    """The finding on a logical step: proved if `proposition` is a tautology, otherwise refuted by an assignment.
 
     >>> from sympy.abc import p, q
     >>> implied("", (p & q) >> p).outcome.name, implied("", p >> (p & q)).outcome.name
@@ -218,7 +219,7 @@ def implied(argument: str, proposition: Boolean) -> SignFinding:
 
 
 def zero(argument: str, *expressions: Expr) -> SignFinding:
-    """The finding of an argument that holds if all expressions vanish identically."""
+    """The finding on an argument that holds if all the expressions vanish identically."""
     whole = conjunction(*(equal(expression, S.Zero, {}) for expression in expressions))
     return SignFinding(whole.outcome, argument if whole and argument else whole.reason)
 

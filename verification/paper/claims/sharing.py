@@ -1,6 +1,6 @@
-"""The division of claims among processes: claims that share results go together, while the load stays even.
+"""The division of claims among processes: claims that share results stay together, and the load is balanced.
 
-The bounds are relative to the work of one process: the fewer processes there are, the less sharing costs.
+The bounds on groups are relative to the work of one process: with fewer processes, claims can be grouped more.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ SMALL, HANDFUL = 0.01, 0.12  # groups below SMALL are bundled up to HANDFUL, by 
 
 
 def sharing(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
-    """The claims in groups that share results, each in the given order, for `jobs` processes.
+    """The claims grouped so that those which share results are together, for `jobs` processes.
 
     >>> from verification.paper.report.report import catalogue
     >>> [len(group) for group in sharing(catalogue()[:3])]
@@ -31,7 +31,7 @@ def sharing(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
 
 
 def shared_out(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
-    """The groups of `sharing`, the most expensive first, with small groups of one module bundled."""
+    """The groups of `sharing`, with small groups of one module joined; the most expensive group comes first."""
     share = seconds(claims) / jobs
     group = {claim.id: own for own in sharing(claims, jobs) for claim in own}
     handful: dict[str, list[Claim]] = {}
@@ -45,7 +45,7 @@ def shared_out(claims: Sequence[Claim], jobs: int = MANY) -> list[list[Claim]]:
 
 
 def _listed(group: Mapping[str, list[Claim]], claims: Sequence[Claim]) -> list[list[Claim]]:
-    """The distinct groups, with their claims in the given order."""
+    """The different groups, with their claims in the given order."""
     found: dict[int, list[Claim]] = {}
     for claim in claims:
         found.setdefault(id(group[claim.id]), []).append(claim)

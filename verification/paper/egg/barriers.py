@@ -2,10 +2,10 @@
 
 At `lam = 0.66` a curve around phase space, a *barrier* above `phi = 0`, is mapped strictly below itself: no orbit that
 starts below it reaches the attracting triangle with `phi > 0`. With its mirror image it encloses a trapping region. At
-0.6623 an orbit crosses. Beyond the crisis there are windows in which other cycles attract.
+0.6623 an orbit crosses from below to above. Beyond the crisis there are windows in which other cycles attract.
 
-The barriers do not prove that the region holds one chaotic attractor, nor that this vanishes where they are lost: an
-attractor with a smaller basin may remain.
+The barriers do not prove that the region holds one chaotic attractor, nor that this attractor vanishes when the
+barriers break: an attractor with a smaller basin may remain.
 """
 
 from fractions import Fraction
@@ -38,13 +38,13 @@ LONG, BITS = 10, 160
 
 @cache
 def barrier(contraction: str = AT) -> Barrier:
-    """The barrier at one contraction."""
+    """The barrier at one contraction: a curve above `phi = 0` that the map sends strictly below itself."""
     return Barrier(Scene("egg", alpha=SHAPE), (Fraction(contraction), Fraction(contraction)))
 
 
 @cache
 def triangles(contraction: str = AT) -> SignFinding:
-    """The finding that of two cycles of period 3, mirror images, one is above both barriers and one below."""
+    """The finding on two attracting triangles, mirror images: one is above the barrier, one below its mirror image."""
     found, divides, sides = cycles(egg(contraction), 3), barrier(contraction), []
     for cycle in found:
         place = bounces(contraction, cycle.points)
@@ -57,7 +57,7 @@ def triangles(contraction: str = AT) -> SignFinding:
 
 
 def bounces(contraction: str, near: PhasePoints) -> Boxes | None:
-    """The bounces of a cycle that is proved near some phase points, as boxes; None where it is not proved."""
+    """The bounces of the cycle near the points `near`, as boxes; None if the cycle is not proved."""
     shape = Rational(SHAPE)
     proof = certificate(tables.egg(3).at(alpha=SHAPE), Rational(contraction), near)
     if not proof.proved:
@@ -70,7 +70,7 @@ def bounces(contraction: str, near: PhasePoints) -> Boxes | None:
 
 @cache
 def divided(contraction: str = AT) -> SignFinding:
-    """The finding that no orbit crosses the barrier upwards or its mirror image downwards."""
+    """The finding that no orbit crosses the barrier upwards, or its mirror image downwards."""
     divides = barrier(contraction)
     return by(
         f"at lam = {contraction} a curve above phi = 0, in {divides.columns * divides.turns} steps, is mapped strictly "
@@ -85,8 +85,9 @@ def divided(contraction: str = AT) -> SignFinding:
 def above_below(claim: Claim) -> Judgement:
     """The basins lie beyond the barriers, and an attractor that is its own mirror image lies between them.
 
-    Its dense orbit comes below the upper barrier, since the mirror image of a point above it is below the lower one,
-    and similarly above the lower barrier; there it stays.
+    Such an attractor has a dense orbit with points below the upper barrier: the mirror image of a point above it is
+    below the lower one. For the same reason it has points above the lower barrier. Orbits between the barriers stay
+    there.
     """
     return Judgement(
         divided(),
@@ -98,7 +99,7 @@ def above_below(claim: Claim) -> Judgement:
 
 @judges("egg.basins_separate")
 def separate(claim: Claim) -> Judgement:
-    """The basins are proved disjoint; that the basin of one chaotic attractor is between them is sampled."""
+    """The basins are proved disjoint; only samples show that the basin of one chaotic attractor lies between them."""
     attractors = egg(AT)
     inner = chaotic(attractors)
     shares = ", ".join(str(a.share.count) for a in attractors if a.share)
@@ -112,7 +113,7 @@ def separate(claim: Claim) -> Judgement:
 
 @cache
 def barrier_ends() -> SignFinding:
-    """The finding that the last barrier between `phi = 0` and the triangles is lost between two contractions."""
+    """The finding that the barrier between `phi = 0` and the triangles breaks between two given contractions."""
     breaks = BarrierBreaks(barrier(), Fraction(LOST), SINK, CROSSES)
     return by(
         f"a first contraction above {AT}, and not above {LOST}, has no barrier between phi = 0 and the upper triangle",
@@ -123,7 +124,7 @@ def barrier_ends() -> SignFinding:
 
 @judges("egg.another_crisis")
 def another_crisis(claim: Claim) -> Judgement:
-    """The barrier between `phi = 0` and the triangles exists at 0.66 and is lost soon after."""
+    """The barrier between `phi = 0` and the triangles exists at 0.66, and is broken at 0.6623."""
     return Judgement(
         barrier_ends(),
         f"at {AT} a curve above phi = 0 is mapped below itself, so that no orbit from phi = 0 comes to a triangle; at "
@@ -133,7 +134,7 @@ def another_crisis(claim: Claim) -> Judgement:
 
 @judges("egg.crisis_below")
 def crisis_below(claim: Claim) -> Judgement:
-    """The barrier exists at 0.66 and is lost at 0.6623; that an attractor vanishes with it is sampled."""
+    """The barrier exists at 0.66 and is broken at 0.6623; only samples show that an attractor vanishes with it."""
     bracket = barrier_ends()
     before, after = (len(chaotic(egg(x))) for x in (AT, GONE))
     return sampled(
@@ -146,7 +147,7 @@ def crisis_below(claim: Claim) -> Judgement:
 
 @cache
 def window() -> SignFinding:
-    """The finding of another attracting cycle beyond the crisis, in the region between the former barriers."""
+    """The finding that, beyond the crisis, another cycle attracts within the region between the former barriers."""
     map = PinballMap("egg", lam=WINDOW, alpha=SHAPE)
     orbit = map.orbit(*STAYS, 1000 + LONG)
     near = phase_points(orbit.theta[-LONG:], orbit.phi[-LONG:])
@@ -161,7 +162,7 @@ def window() -> SignFinding:
 
 @judges("egg.after_crisis")
 def beyond(claim: Claim) -> Judgement:
-    """The word "all", read as almost all, fails in each window, where the basin of another cycle is open."""
+    """The word "all" is wrong even if read as "almost all": in each window, another cycle has an open basin."""
     others = window()
     return Judgement(
         counterexample("an open set of starts goes elsewhere", others, at={lam: Rational(WINDOW)}),

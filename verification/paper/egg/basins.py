@@ -1,7 +1,7 @@
 """Judges of claims on basins of attraction, and on the absence of cycles of short periods.
 
-The basin of an attracting cycle is open, so no two such basins are intermingled at every point; pictures show a fractal
-boundary, whose dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
+The basin of an attracting cycle is open, so two such basins cannot be intermingled at every point. Pictures show a
+fractal boundary, whose dimension is measured. Paper: sections 5.2, 5.4, 6.2, 6.4, 6.7 and 7.
 """
 
 from dataclasses import replace
@@ -55,13 +55,13 @@ def boundary(name: str, contraction: str, distances: tuple[float, ...]) -> Uncer
 
 
 def told(law: Uncertainty) -> str:
-    """The dimension with its error and the range of distances, as text."""
+    """The dimension of the basin boundary with its error, and the range of distances, as text."""
     return f"{law.dimension:.3f} +- {law.error:.3f} for eps from {law.largest:g} to {law.smallest:g}"
 
 
 @cache
 def division() -> Division:
-    """The data at `lam = 9/100`: the tube around period 2, and the annulus around the unstable cycle of period 4."""
+    """The theorem's data at `lam = 9/100`: a tube around period 2, and an annulus around an unstable 4-cycle."""
     entries = (0.14, 0.006), (0.1, 0.01)
     tube = AbsorbingTube(1, 0.0885142, -0.0312524, 1e-4, inner=0.04, outer=0.15, cells=1600, entry_tubes=entries)
     annulus = ExpandingAnnulus(0.1395, 0.216, slope=0.08551, offset=0.000347, width=6e-4, cone=0.003, growth=1.001)
@@ -69,13 +69,13 @@ def division() -> Division:
 
 
 def alternating() -> Alternating:
-    """The theorem on strips of both basins next to the stable manifold of the vertical orbit."""
+    """The theorem that strips of both basins alternate next to the stable manifold of the vertical orbit."""
     return Alternating(Fraction(9, 100), division().tube)
 
 
 @judges("cuspless.basins_intermingled")
 def cuspless_intermingled(claim: Claim) -> Judgement:
-    """Strips of both basins alternate next to the whole stable manifold of a saddle."""
+    """Strips of both basins are proved to alternate next to the whole stable manifold of a saddle."""
     found = alternating()
     return Judgement(
         by(
@@ -96,7 +96,7 @@ def cuspless_intermingled(claim: Claim) -> Judgement:
 
 @judges("cuspless.two_basins")
 def two_basins(claim: Claim) -> Judgement:
-    """Almost every start is in one of two basins; that the chaotic set is one attractor is not proved."""
+    """Almost every start is in one of two basins; it is not proved that the chaotic set is one attractor."""
     found = division()
     rate = f"each orbit that misses the joins has nu_+ >= {found.rate}"
     return Judgement(
@@ -114,7 +114,7 @@ def two_basins(claim: Claim) -> Judgement:
 
 
 def beyond_the_crisis() -> CommonBoundary:
-    """The theorem on the triangle near the vertices at 0.7, with an orbit to each attracting triangle."""
+    """The theorem that, at 0.7, orbits lead from the saddle triangle near the vertices to both attracting triangles."""
     sink, saddle = (1.16897116, 0.43119899), replace(TRIANGLE, start=(-0.14235898,))
     sinks, turns = (sink, (-sink[0], -sink[1])), (Fraction(1, 3), Fraction(2, 3))
     starts = 0.9, 0.21125  # middles of pieces of the branch that were sampled to end on one triangle
@@ -127,7 +127,7 @@ MIDDLE = (Fraction(0), Fraction(1, 50)), (Fraction(0), Fraction(1, 20))  # betwe
 
 @cache
 def common() -> tuple[SignFinding, SignFinding]:
-    """The findings that both basins hold open discs between the triangles, and share a boundary: a stable manifold."""
+    """The findings that both basins contain open discs, and that both have a stable manifold in their boundary."""
     found = beyond_the_crisis()
     checks = found.checks
     cycles = answer(bool(checks["discs"] and checks["apart"]), "two cycles attract a disc each, apart from the other")
@@ -140,9 +140,9 @@ def common() -> tuple[SignFinding, SignFinding]:
 
 @judges("egg.basins_intermingled")
 def egg_intermingled(claim: Claim) -> Judgement:
-    """A sampled boundary has a dimension near 2, and both basins are proved to accumulate at a stable manifold.
+    """A sample gives a boundary dimension near 2; both basins are proved to accumulate at a stable manifold.
 
-    Basins of attracting cycles are open, so neither is dense in a disc of the other: no sample can show that.
+    Basins of attracting cycles are open, so neither is dense in a disc of the other, whatever a sample may suggest.
     """
     law = boundary("egg", "0.7", (1e-3, 1e-5, 1e-7))
     open_, both = common()
@@ -162,7 +162,7 @@ BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
 
 @cache
 def without_triangles(shape: Expr, most: Expr) -> SignFinding:
-    """The finding that there is no cycle of period 3 for `0 <= lam <= most`, by interval exclusion."""
+    """The finding that no cycle of period 3 exists for `0 <= lam <= most`, proved by interval exclusion."""
     found = no_triangles(shape, most, tick=telling(f"triangles excluded at alpha = {shape}"))
     if not found.excluded:
         return answer(None, f"{found.share:.0%} of the triangles excluded")
@@ -171,7 +171,7 @@ def without_triangles(shape: Expr, most: Expr) -> SignFinding:
 
 @judges("egg.slap_no_period3")
 def slap_no_period3(claim: Claim) -> Judgement:
-    """No cycle of period 3 exists at both shapes of the figure."""
+    """There is no cycle of period 3 at either of the two shapes in the figure."""
     findings = without_triangles(Rational(1, 20), Rational(1, 16)), without_triangles(EXACT_SHAPE, BELOW)
     return Judgement(
         by("exclusion of every triangle", *findings), "none for alpha = 0.05 and 0.08, and lam up to 0.378 at 0.08"
@@ -179,7 +179,7 @@ def slap_no_period3(claim: Claim) -> Judgement:
 
 
 def triangle_at(contraction: Rational) -> SignFinding:
-    """The finding of an attracting cycle of period 3 at `alpha = 0.08`, by interval Newton."""
+    """The finding that a cycle of period 3 attracts at `alpha = 0.08`, proved by interval Newton."""
     bounce = float(near_flat().subs({alpha: EXACT_SHAPE, lam: contraction}))
     near = phase_points([bounce + k * tau / 3 for k in range(3)], 0.0)
     proof = certificate(egg(3).at(alpha=EXACT_SHAPE), contraction, near)
@@ -188,7 +188,7 @@ def triangle_at(contraction: Rational) -> SignFinding:
 
 @judges("egg.no_period3_caption")
 def no_period3_caption(claim: Claim) -> Judgement:
-    """The printed limit 0.4 is too large: the fold of period 3 lies below it."""
+    """The printed limit 0.4 is too large: cycles of period 3 are born below it."""
     fold = saddle_node().subs(alpha, EXACT_SHAPE)
     return Judgement(
         counterexample(
@@ -205,7 +205,7 @@ def no_period3_caption(claim: Claim) -> Judgement:
 
 @judges("egg.projection_misses")
 def projection_misses(claim: Claim) -> Judgement:
-    """Two counterexamples: orbits that return to their first position after three bounces."""
+    """Two counterexamples: orbits that return after three bounces to their first position, but at another angle."""
     free, produced = witness(EXACT_SHAPE, Rational(0), *SLAP), witness(EXACT_SHAPE, Rational(3, 10), *PRODUCED)
     proved = bool(free.exists and produced.exists and produced.produced)
     met = answer(proved, "both orbits proved by interval Newton")
@@ -232,7 +232,7 @@ def points_of_period_4() -> PeriodicPoints:
 
 @judges("cuspless.slap_no_period4")
 def slap_no_period4(claim: Claim) -> Judgement:
-    """Four intervals hold at most one point each of period dividing 4; the two 2-cycles are these points."""
+    """Fixed points of `T0^4` lie in four intervals, at most one in each; these are the points of the two 2-cycles."""
     found = points_of_period_4()
     known = [cuspless_horizontal(), cuspless_vertical()]
     return Judgement(

@@ -41,13 +41,13 @@ STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # neighb
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @cache
 def chaotic_lams() -> dict[str, list[float]]:
-    """For each shape the contractions of a grid at which at least a quarter of 20 particles are chaotic."""
+    """For each shape, the contractions on a grid at which at least a quarter of 20 particles are chaotic."""
     shapes = np.array([float(shape) for shape in TONGUE])
     found = in_memory(parameter_space(shapes, LAMS, starts=20, bounces=2000, transient=3000, seed=1), 1)
     rows = zip(TONGUE, found["chaotic"], strict=True)
@@ -62,7 +62,7 @@ def listed() -> str:
 
 @judges("egg.alpha_destabilises")
 def destabilises(claim: Claim) -> Judgement:
-    """The stability number of the diameters falls with alpha; that chaos spreads is sampled."""
+    """The stability number of the diameters is proved to fall with alpha; only samples show that chaos spreads."""
     falls = positive(tilt().diff(alpha), {alpha: SHAPES})
     counts = [len(row) for row in chaotic_lams().values()]
     said = (
@@ -80,7 +80,7 @@ def destabilises(claim: Claim) -> Judgement:
 
 @judges("egg.tongue")
 def tongue(claim: Claim) -> Judgement:
-    """The range of contractions with chaos, for each shape, from a sample."""
+    """The range of contractions with chaos, for each shape, is determined from a sample."""
     rows = chaotic_lams()
     ends = [(min(rows[x]), max(rows[x])) for x in ("0.08", "0.09", "0.1") if rows[x]]
     starts_lower = [low for low, _ in ends]
@@ -91,7 +91,7 @@ def tongue(claim: Claim) -> Judgement:
 
 @judges("egg.small_basins")
 def small_basins(claim: Claim) -> Judgement:
-    """The probability that 100 independent starts all miss a basin is computed exactly."""
+    """Computes exactly the probability that 100 independent random starts all miss a basin."""
     missed = Rational(999, 1000) ** 100
     return Judgement(
         by(
@@ -104,7 +104,7 @@ def small_basins(claim: Claim) -> Judgement:
 
 @judges("egg.representative")
 def representative(claim: Claim) -> Judgement:
-    """The same bifurcations occur in the same order at two other shapes, except for the fold of the triangles."""
+    """At two other shapes the same bifurcations occur in the same order, except for the fold of the triangles."""
     said, good = [], True
     for shape in (OTHERS[0], SHAPE, OTHERS[1]):
         events = [located("symmetry-breaking", alpha=shape)]
@@ -124,7 +124,7 @@ def representative(claim: Claim) -> Judgement:
 
 @cache
 def cycles_for_small_lam() -> SignFinding:
-    """The finding that for every contraction up to `PROVED` all cycles but at most three are unstable."""
+    """The finding that, for every contraction up to `PROVED`, all cycles but at most three are unstable."""
     ends, scene = [PROVED * k / 3 for k in range(4)], Scene("egg", alpha=SHAPE)
     return answer(
         all(FewAttractingCycles(scene, band, (12288, 256), 32, 3).proved for band in pairwise(ends)),
@@ -135,7 +135,7 @@ def cycles_for_small_lam() -> SignFinding:
 
 @judges("egg.only_period4")
 def only_period4(claim: Claim) -> Judgement:
-    """Proved for small contractions by a cover of phase space; beyond, random starts reach certified cycles only."""
+    """A cover of phase space proves the claim for small contractions; for larger ones it is sampled."""
     alone = all([a.period for a in egg(x)] == [4, 4, 4] and unsettled(egg(x)) == 0 for x in SMALL)
     proofs = [proved_at(x, 4) for x in SMALL]
     said = (
@@ -154,7 +154,7 @@ def only_period4(claim: Claim) -> Judgement:
 
 @cache
 def attracting_without_mirror() -> SignFinding:
-    """The finding of attracting asymmetric cycles of period 4 from the loss of symmetry to the doubling."""
+    """The finding that asymmetric cycles of period 4 attract, from the loss of symmetry to the period doubling."""
     table, (lam, ends) = table_of(3).at(alpha=SHAPE), BETWEEN
     start = attractor(table, lam, (0.05, 3.1))
     away = abs(np.remainder(start[0] + start[2] + np.pi, 2 * np.pi) - np.pi) > 0.01
@@ -165,7 +165,7 @@ def attracting_without_mirror() -> SignFinding:
 
 @judges("egg.period4_doubles")
 def period4_doubles(claim: Claim) -> Judgement:
-    """There are two bifurcations: a pitchfork that breaks the symmetry, and a doubling of the asymmetric orbits."""
+    """Two bifurcations are found: a pitchfork that breaks the symmetry, and a doubling of the asymmetric cycles."""
     breaks, doubles = located("symmetry-breaking", alpha=SHAPE), located("doubling", alpha=SHAPE, n=Integer(3))
     stable = breaks.proof.supercritical if breaks.proof else None  # type: ignore[union-attr]  # a cycle's proof
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]
@@ -196,7 +196,7 @@ def period4_doubles(claim: Claim) -> Judgement:
 
 @judges("egg.negative_exponents")
 def negative_exponents(claim: Claim) -> Judgement:
-    """A counterexample: an attracting cycle at a bifurcation has a multiplier of modulus 1 and the exponent 0."""
+    """A counterexample: a cycle that attracts at its period doubling has a multiplier -1 and the exponent 0."""
     doubles = located("doubling", alpha=SHAPE, n=Integer(3))
     flips = doubles.proof.supercritical if doubles.proof else None  # type: ignore[union-attr]  # a cycle's proof
     return Judgement(
@@ -218,7 +218,7 @@ def negative_exponents(claim: Claim) -> Judgement:
 
 @judges("egg.tolerance_sensitive")
 def tolerance_sensitive(claim: Claim) -> Judgement:
-    """The apparent end of period 4, for flights solved with larger and smaller tolerances."""
+    """Period 4 seems to end at contractions that depend on the tolerance with which flights are solved."""
     ends = seen_ends()
     true = float(located("doubling", alpha=SHAPE, n=Integer(3)).ball.mid())
     said = ", ".join(f"{f'{end:.5f}' if end else 'above 0.3725'} with {stop:g}" for stop, end in ends.items())
@@ -234,7 +234,7 @@ def tolerance_sensitive(claim: Claim) -> Judgement:
 
 @cache
 def seen_ends() -> dict[float, float | None]:
-    """For each tolerance the first contraction of a grid whose orbit misses its start after four bounces, or None."""
+    """For each tolerance, the first contraction on a grid whose orbit does not close after four bounces, or None."""
     settled = PinballMap("egg", lam="0.36", alpha=str(SHAPE)).orbit(0.05, 0.0, 1000)
     start, lams = (float(settled.theta[-1]), float(settled.phi[-1])), np.arange(0.3705, 0.3725, 1e-4)
     found = ends_of_period(4, lams, 0.08, STOPS, start, 2000, 1e-4)
@@ -243,7 +243,7 @@ def seen_ends() -> dict[float, float | None]:
 
 @judges("egg.isolated_resolution")
 def isolated_resolution(claim: Claim) -> Judgement:
-    """A strip of chaos that a grid meets at one shape continues at neighbouring shapes."""
+    """A strip of chaos that a coarse grid meets at one shape continues at other shapes."""
     said, good = [], True
     for shape, lam, period, step in STRIPS:
         found = cascade(Rational(shape), Rational(lam), period, step)

@@ -1,6 +1,6 @@
 """Judges of the claims in the paper's conclusions. Paper: section 7.
 
-They use results proved elsewhere; a summary with one sampled part is supported, not confirmed.
+The judges use results proved elsewhere. A summary with one sampled part is supported, not confirmed.
 """
 
 from functools import cache
@@ -48,13 +48,13 @@ EVEN, ODD = (4, 6), (5, 7)
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @judges("map.mixture")
 def mixture(claim: Claim) -> Judgement:
-    """Both statements with "only" are proved; the generic mixture is sampled on the egg and the cuspless cardioid."""
+    """The two statements with "only" are proved; the mixture in the egg and the cuspless cardioid is sampled."""
     periodic = by(LIMIT, *lyapunov())
     kinds = {x: (bool(chaotic(egg(x))), bool(cycles(egg(x)))) for x in MIXED}
     cuspless = found("cuspless", "0.09")
@@ -75,7 +75,7 @@ def mixture(claim: Claim) -> Judgement:
 
 @judges("map.sudden_creation")
 def sudden_creation(claim: Claim) -> Judgement:
-    """The chaotic attractor born at the orbit through both joins."""
+    """A chaotic attractor is born at the orbit through both joins, where the contraction passes `lambda-star`."""
     return Judgement(
         by(
             "an orbit joins the two jumps of the curvature at lam = lambda*, and a chaotic attractor is next to it "
@@ -118,7 +118,7 @@ def kink_structure(claim: Claim) -> Judgement:
 
 @judges("map.cascades_of_different_periods")
 def different_periods(claim: Claim) -> Judgement:
-    """The first doublings of cycles of three periods are certified."""
+    """The first two doublings of cycles of three different periods are certified."""
     cascades = doublings()
     told = "; ".join(f"{', '.join(map(str, c.periods))} at {', '.join(f'{x:.6f}' for x in c.lams)}" for c in cascades)
     return sampled(
@@ -130,7 +130,7 @@ def different_periods(claim: Claim) -> Judgement:
 
 @cache
 def doublings() -> list[Cascade]:
-    """For each cycle of `DIFFERENT` the first two doublings of the period-doubling cascade that starts there."""
+    """For each cycle in `DIFFERENT`, the first two doublings of the cascade that starts there."""
     return [cascade(Rational(SHAPE), Rational(at), period, step, 2) for at, period, step in DIFFERENT]
 
 
@@ -184,7 +184,7 @@ def weak_shows_elliptic(claim: Claim) -> Judgement:
 
 
 def elastic(cycle: Attractor) -> bool:
-    """True if an elliptic cycle of the elastic map is proved near an attracting one."""
+    """True if a cycle of the elastic map is proved to exist near an attracting cycle, and to be elliptic."""
     proof = certificate(tables.egg(3).at(alpha=SHAPE), S.One, cycle.points, 20)
     discrete = all(proof.checks[item] is True for item in ("exists", "unique", "admissible", "minimal_period"))
     apart = max(abs(near(theta, x)) for theta, x in zip(proof.theta, cycle.points.theta, strict=True))
@@ -192,13 +192,13 @@ def elastic(cycle: Attractor) -> bool:
 
 
 def near(theta: arb, x: float) -> float:
-    """The difference of two angles, modulo full turns."""
+    """The difference between the midpoint of an angle `theta` and `x`, modulo full turns."""
     return float(np.remainder(float(theta.mid()) - x + np.pi, 2 * np.pi) - np.pi)
 
 
 @judges("map.weak_chaos")
 def weak_chaos(claim: Claim) -> Judgement:
-    """No attracting set is a cycle, and every orbit of it off cusp and joins is unstable."""
+    """No cycle is an attracting set; on any attracting set, orbits that miss cusp and joins are unstable."""
     return Judgement(
         by(
             "in the cardioid, for every lam < 1, every orbit that misses the cusp stretches in one direction and "
@@ -216,7 +216,7 @@ def weak_chaos(claim: Claim) -> Judgement:
 
 @judges("map.other_K")
 def other_K(claim: Claim) -> Judgement:
-    """The diameters never double for even K; for odd K they double supercritically, along one curve."""
+    """For K = 4, 6 the diameters never double their period; for K = 5, 7 they do, supercritically."""
     even = [even_stability_numbers(K) for K in EVEN]
     squares = [
         zero("", P - root**2)

@@ -1,7 +1,7 @@
 """Judges of claims on the egg's crises, and on its growing attractor and basins of period 3. Paper: section 6.7.
 
-A crisis is found as a tangency of manifolds and by particles that escape. That the period-3 orbits attract is proved;
-all else is sampled. The merging crisis is in `merging`.
+A crisis is computed as a tangency of manifolds, and from particles that escape. It is proved that the period-3 orbits
+attract; all else is sampled. The merging crisis is in `merging`.
 """
 
 from dataclasses import dataclass
@@ -38,19 +38,19 @@ BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions where the attractor's distance
 
 @cache
 def located(kind: str) -> KnownCrisis:
-    """A crisis to ten digits, by both methods of `manifolds.known`."""
+    """A crisis: its parameter to ten digits, by both methods of `manifolds.known`."""
     return crisis(kind, EXACT_SHAPE, 10)
 
 
 @cache
 def seen(kind: str) -> crises.Crisis:
-    """A crisis, by the escape of particles, to about 3e-4, since few particles escape close to it."""
+    """A crisis: its parameter to about 3e-4, from particles that escape (few do close to the crisis)."""
     return crises.crisis(kind, str(EXACT_SHAPE), tolerance=1e-4, budget=10**7)
 
 
 @judges("egg.boundary_crisis")
 def values(claim: Claim) -> Judgement:
-    """The tangency of the manifolds by two methods, and the contraction where particles begin to escape."""
+    """Compares the parameter of the tangency, by two methods, with that at which particles begin to escape."""
     printed, found, particles = "0.66", located("boundary"), seen("boundary")
     gap, unit = float(found.parameter) - float(printed), 10.0 ** -len(printed.partition(".")[2])
     value = f"{mpmath.nstr(found.parameter, 12)} +- {mpmath.nstr(found.error, 1)}"
@@ -109,7 +109,7 @@ def distance(lam: float) -> float:
 
 
 def sides(lam: float, offset: float = 1e-5) -> tuple[float, float]:
-    """The shares of points just outside and just inside `boundary(lam)` that end on period 3."""
+    """The fractions of points that end on period 3, just outside `boundary(lam)` and just inside it."""
     x, y = boundary(lam)
     map = PinballMap("egg", lam=lam, alpha=str(EXACT_SHAPE))
     shares = []
@@ -128,7 +128,7 @@ LEFT = "0.7"
 
 @dataclass(frozen=True)
 class AttractorExtent:
-    """The largest `|sin(phi)|` on the chaotic attractors, and the share of the cells of phase space that they meet."""
+    """The largest `|sin(phi)|` on the chaotic attractors, and the fraction of phase space cells that they meet."""
 
     height: float
     share: float
@@ -154,7 +154,7 @@ def extent(lam: str) -> AttractorExtent:
 
 @cache
 def period_3(lam: str) -> float:
-    """The share of 4000 random starts that the two period-3 orbits attract."""
+    """The fraction of 4000 random starts that the two period-3 orbits attract."""
     map = PinballMap("egg", lam=lam, alpha=SHAPE)
     start = interior_starts(map, MANY, SEED)
     found = followed(map, start, (200, 1000))
@@ -166,19 +166,19 @@ def period_3(lam: str) -> float:
 
 
 def grows(lams: tuple[str, ...]) -> bool:
-    """True if height and share of the attractor both grow from each contraction to the next."""
+    """True if the height and the share of the attractors grow from each contraction in the list to the next."""
     found = [extent(lam) for lam in lams]
     return all(a.height < b.height and a.share < b.share for a, b in pairwise(found))
 
 
 def listed(lams: tuple[str, ...]) -> str:
-    """The extents at contractions, as text."""
+    """The extents at the given contractions, as text."""
     return "; ".join(f"{extent(x).height:.3f}, {extent(x).share:.2%} at {x}" for x in lams)
 
 
 @judges("egg.both_grow")
 def both_grow(claim: Claim) -> Judgement:
-    """The attractor's extent and the share of starts that period 3 attracts both grow, by samples."""
+    """Samples show that the attractor's extent and the fraction of starts that period 3 attracts both grow."""
     shares = [period_3(lam) for lam in ONE]
     error = 3 * np.sqrt(0.25 / MANY)
     rises = shares[-1] - shares[0] > error and all(b > a - error for a, b in pairwise(shares))
@@ -192,7 +192,7 @@ def both_grow(claim: Claim) -> Judgement:
 
 @judges("egg.transient")
 def transient(claim: Claim) -> Judgement:
-    """Just beyond the crisis orbits stay for long where the attractor was, and escape at a constant rate."""
+    """Just beyond the crisis, orbits stay for long near the former attractor, and then leave it one by one."""
     beyond, before = "0.67", "0.66"
     map = PinballMap("egg", lam=beyond, alpha=SHAPE)
     start = np.random.default_rng(SEED).uniform(-0.05, 0.05, (2, STARTS))
@@ -215,7 +215,7 @@ def transient(claim: Claim) -> Judgement:
 
 @judges("egg.just_two", "egg.region_taken_over")
 def just_two(claim: Claim) -> Judgement:
-    """Both orbits of period 3 are proved to attract; every random start reaches one of them."""
+    """Both orbits of period 3 are proved to attract; in a sample, every start reaches one of them."""
     found = egg(LEFT)
     threes = cycles(found, 3)
     alone = len(found) == len(threes) == 2 and unsettled(found) == 0

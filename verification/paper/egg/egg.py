@@ -49,7 +49,7 @@ BOUNDARY = egg(3).components[0]
 
 @judges("egg.polar")
 def radius(claim: Claim) -> Judgement:
-    """The printed polar equation, from the distance to the centre in the direction `theta`."""
+    """Judges the printed polar equation by the distance to the centre in the direction `theta`."""
     x, y = BOUNDARY.point
     return identity(claim, trigonometric(x * cos(theta) + y * sin(theta)))
 
@@ -73,7 +73,7 @@ def symmetry(claim: Claim) -> Judgement:
 
 @judges("egg.nonconvex")
 def nonconvex(claim: Claim) -> Judgement:
-    """The sign of the turning at the flat points is that of `(1 - alpha)*(1 - 10*alpha)`."""
+    """For `1/10 < alpha < 1` the boundary turns right at the flat points, as `(1 - alpha)*(1 - 10*alpha) < 0`."""
     flat = turning_polynomial().subs(COSINE, -1)
     return Judgement(
         by(
@@ -87,7 +87,7 @@ def nonconvex(claim: Claim) -> Judgement:
 
 @judges("egg.convex")
 def convex(claim: Claim) -> Judgement:
-    """The egg is convex on the closed range of `alpha`, but focusing only without the end 1/10."""
+    """The egg is convex on the closed range of `alpha`, but strictly focusing only without the end point 1/10."""
     flat_end = turning_polynomial().subs({COSINE: -1, alpha: Rational(1, 10)})
     focusing = convexity(egg(3), {alpha: Interval.Ropen(0, Rational(1, 10))}, strictly=True)
     return Judgement(
@@ -103,7 +103,7 @@ def convex(claim: Claim) -> Judgement:
 
 
 def regular() -> SignFinding:
-    """The finding that the speed of the parametrisation vanishes nowhere."""
+    """The finding that the parametrisation has non-zero speed everywhere."""
     return by("rho^2 + rho'^2 > 0", positive(squared_speed_polynomial(), {COSINE: FULL, alpha: SHAPES}))
 
 
@@ -146,19 +146,19 @@ def extrema(claim: Claim) -> Judgement:
 
 @judges("egg.curvature_min")
 def flat_curvature(claim: Claim) -> Judgement:
-    """The printed curvature at a flat point, one end of a diameter."""
+    """Judges the printed curvature at a flat point, which is one end of a diameter."""
     return identity(claim, egg_diameter().frames[1].curvature)
 
 
 @judges("egg.curvature_max")
 def vertex_curvature(claim: Claim) -> Judgement:
-    """The printed curvature at a vertex, the other end of a diameter."""
+    """Judges the printed curvature at a vertex, which is the other end of a diameter."""
     return identity(claim, egg_diameter().frames[0].curvature)
 
 
 @judges("egg.integrable_at_zero")
 def integrable(claim: Claim) -> Judgement:
-    """The elastic circle preserves `phi`."""
+    """In the circle with elastic collisions, `phi` is a constant of motion."""
     return Judgement(
         by("at alpha = 0, lam = 1 the map keeps phi", zero("", flight()[1].subs(lam, 1) - phi)), "phi1 = phi"
     )
@@ -166,7 +166,7 @@ def integrable(claim: Claim) -> Judgement:
 
 @judges("egg.slap_limit")
 def slap_limit(claim: Claim) -> Judgement:
-    """The limit `alpha -> 0` is the circle's slap map, continuous because landings are transversal."""
+    """The limit as `alpha -> 0` is the circle's slap map; it is continuous because all landings are transversal."""
     return identity(claim, flight(theta, S.Zero)[0])
 
 
@@ -207,7 +207,7 @@ SOON, EARLY = 250, 1000  # bounces after which many, and most, orbits have reach
 
 @judges("egg.period3_direction")
 def period3_direction(claim: Claim) -> Judgement:
-    """The bounces of the two triangles move in opposite directions, by the sign of a derivative along the branch."""
+    """The bounces of the two triangles move in opposite directions, as a derivative along the branch shows."""
     c = Symbol("c", real=True)
     rho = 1 + alpha * cos(3 * theta)
     return Judgement(
@@ -224,7 +224,7 @@ def period3_direction(claim: Claim) -> Judgement:
 
 @judges("egg.stays_long")
 def stays_long(claim: Claim) -> Judgement:
-    """The mean number of bounces of an orbit before it changes to another diameter."""
+    """Measures the mean number of bounces of an orbit before it changes to another diameter."""
     mean = stay(changed_axis, str(SHAPE), 0.45, 10**6)
     said = f"an orbit at lam = 0.45 makes {mean:.0f} bounces on average near one diameter, over 10^6 bounces"
     return sampled(f"{mean:.0f} bounces", said, mean > 100)
@@ -232,7 +232,7 @@ def stays_long(claim: Claim) -> Judgement:
 
 @cache
 def side_cascade(period: int) -> tuple[UniqueCycle, ...]:
-    """The first doublings of another cascade than the paper's, each flip certified."""
+    """The first doublings of a cascade that is not the paper's; each is certified."""
     table, (lam_at, (theta, phi)) = tables.egg(3).at(alpha=SHAPE), SIDE[period]
     settled = PinballMap("egg", lam=lam_at, alpha=str(SHAPE)).orbit(theta, phi, 4000)
     found = doublings(table, settled.theta[-period:].tolist(), lam_at, 2e-4)
@@ -241,7 +241,7 @@ def side_cascade(period: int) -> tuple[UniqueCycle, ...]:
 
 @judges("egg.noise")
 def noise(claim: Claim) -> Judgement:
-    """Two cascades of other cycles: their first doublings are proved, chaos and its end are sampled."""
+    """For two cascades of other cycles, the first doublings are proved; chaos and its end are sampled."""
     sentences, holds = [], True
     for period, chaotic, gone in ((12, "0.375", "0.3765"), (8, "0.382", "0.3835")):
         proofs = side_cascade(period)
@@ -257,7 +257,7 @@ def noise(claim: Claim) -> Judgement:
 
 
 def chaotic_share(lam_text: str) -> float:
-    """The share of random starts with a positive exponent after a long time."""
+    """The fraction of random starts with a positive exponent after a long time."""
     map = PinballMap("egg", lam=lam_text, alpha=str(SHAPE))
     starts = interior_starts(map, STARTS, SEED)
     rest = followed(map, starts, (SOON, EARLY))

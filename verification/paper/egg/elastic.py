@@ -36,7 +36,7 @@ TRIED = ("0.005", "0.01", "0.02", "0.05", "0.08", "0.1")
 
 @judges("egg.period2_islands")
 def period2_islands(claim: Claim) -> Judgement:
-    """Islands around the diameter, by its twist, which is exact in alpha."""
+    """For small alpha, islands surround the diameter, since its twist coefficient, known exactly, is not 0."""
     _, trace, turn = diameter_twist()
     return Judgement(
         by(
@@ -55,7 +55,7 @@ def period2_islands(claim: Claim) -> Judgement:
 
 @cache
 def isosceles() -> tuple[bool, Twist]:
-    """The enclosed elliptic isosceles triangle of the egg with `alpha = 1/10`: True if proved, and its twist."""
+    """The elliptic isosceles triangle at `alpha = 1/10`: True if it is proved, and its twist coefficient."""
     table = egg(3).at(alpha=END)
     proof = certificate(table, S.One, phase_points(list(ISOSCELES), 0.0), 20)
     needed = ("exists", "unique", "admissible", "minimal_period")
@@ -64,7 +64,7 @@ def isosceles() -> tuple[bool, Twist]:
 
 @judges("egg.no_full_chaos")
 def no_full_chaos(claim: Claim) -> Judgement:
-    """Caustics exist near the boundary while the curvature is not 0, and an island exists where it is 0."""
+    """Caustics exist near the boundary if its curvature is nowhere 0; an island exists at `alpha = 1/10`."""
     proved, turn = isosceles()
     island = SignFinding(
         Outcome.PROVED if proved and turn.islands else Outcome.UNKNOWN,
@@ -86,7 +86,7 @@ def no_full_chaos(claim: Claim) -> Judgement:
 
 @judges("egg.elastic_mixed")
 def elastic_mixed(claim: Claim) -> Judgement:
-    """The share of chaotic orbits in the invariant measure, for `alpha > 0` (the paper itself excepts `alpha = 0`)."""
+    """Measures the fraction of chaotic orbits in the invariant measure, for `alpha > 0` as in the paper."""
     found = chaotic_shares(("0.02", "0.05", "0.08"))
     circle = zero("", flight()[1].subs(lam, 1) - phi)
     said = f"of 300 random orbits each, {', '.join(f'{share:.0%} at alpha = {a}' for a, share in found)} are chaotic"
@@ -100,7 +100,7 @@ def elastic_mixed(claim: Claim) -> Judgement:
 
 @judges("egg.elastic_chaos")
 def elastic_chaos(claim: Claim) -> Judgement:
-    """Positive exponents near the saddle triangle through the vertices, in the first stochastic layer."""
+    """Orbits near the saddle triangle through the vertices have positive exponents, in a stochastic layer."""
     found = [(a, *layer(a)) for a in TRIED]
     said = ", ".join(f"{nu:.4f} +- {error:.0e} at alpha = {a}" for a, nu, error, _ in found)
     return sampled(
@@ -112,7 +112,7 @@ def elastic_chaos(claim: Claim) -> Judgement:
 
 
 def layer(shape: str) -> tuple[float, float, bool]:
-    """The largest exponent of orbits next to the triangle through the vertices, its error, and True if positive."""
+    """The largest exponent of orbits next to the triangle through the vertices, its error, True if it is positive."""
     map = PinballMap("egg", lam=1, alpha=shape)
     near = phase_points(1e-4 * np.linspace(-1, 1, 16), np.pi / 6)
     x, y = map.states.point(near.component, near.theta)
@@ -123,7 +123,7 @@ def layer(shape: str) -> tuple[float, float, bool]:
 
 
 def chaotic_shares(shapes: tuple[str, ...]) -> list[tuple[str, float]]:
-    """For each shape the share of random orbits, in the invariant measure, with a clearly positive exponent."""
+    """For each shape, the fraction of random orbits in the invariant measure whose exponent is clearly positive."""
     shares = []
     for shape in shapes:
         map = PinballMap("egg", lam=1, alpha=shape)
@@ -147,7 +147,7 @@ def elliptic(shape: str) -> SignFinding:
 
 @judges("egg.alternating_points")
 def alternating(claim: Claim) -> Judgement:
-    """Elliptic and hyperbolic points alternate, at the angles of the cycles."""
+    """Elliptic and hyperbolic points alternate in phase space, which the polar angles of the cycles show."""
     P, low = cancel(stability_number(egg_diameter())), {alpha: Interval.Lopen(0, ELLIPTIC)}
     between = {c: Interval.Ropen(Rational(-2, 9), 0)}
     return Judgement(
@@ -172,7 +172,7 @@ def alternating(claim: Claim) -> Judgement:
 
 @judges("egg.period3_bias")
 def bias(claim: Claim) -> Judgement:
-    """To first order in alpha the length of a polygon depends on its position only for three bounces."""
+    """To first order in alpha, the length of a polygon depends on its position only if it has three corners."""
     delta, c0, c1, z, n = (Symbol(name, real=True) for name in ("delta", "c0", "c1", "z", "n"))
     square = (1 + alpha * c0) ** 2 + (1 + alpha * c1) ** 2 - 2 * (1 + alpha * c0) * (1 + alpha * c1) * cos(delta)
     slope = square.diff(alpha).subs(alpha, 0) - (c0 + c1) * square.subs(alpha, 0)
@@ -197,13 +197,13 @@ def bias(claim: Claim) -> Judgement:
 
 
 def powers(total: Expr, z: Symbol, n: Symbol) -> Expr:
-    """The residual of the induction step `total(n + 1) = total(n) + z**n` of a formula for `1 + z + ... + z**(n-1)`."""
+    """The residual of `total(n + 1) = total(n) + z**n`, the induction step for `1 + z + ... + z**(n-1)`."""
     return simplify(total.subs(n, n + 1) - total - z**n)
 
 
 @judges("egg.period3_islands")
 def period3_islands(claim: Claim) -> Judgement:
-    """Islands around the triangle, by the twist of one flight, which is exact in alpha."""
+    """At the paper's shapes, islands surround the triangle, since the twist coefficient of one flight is not 0."""
     trace, twist, drift = flat_triangle()
     told, findings = [], [zero("the map preserves area", drift)]
     for shape in PANELS:
@@ -224,7 +224,7 @@ def period3_islands(claim: Claim) -> Judgement:
 
 @judges("egg.chaotic_sea_panels", "egg.transition_to_chaos")
 def sea(claim: Claim) -> Judgement:
-    """The share of random orbits with a positive exponent grows from panel to panel."""
+    """Samples show that the fraction of random orbits with a positive exponent grows from panel to panel."""
     shares = chaotic_shares(PANELS)
     first, second, third = (share for _, share in shares)
     said = ", ".join(f"{share:.1%} at alpha = {shape}" for shape, share in shares)

@@ -1,14 +1,14 @@
-"""Judges of claims that the egg's attractor expands with the contraction, by bounds of its exit angles. Section 6.7.
+"""Judges of claims that the egg's attractor expands as the contraction grows, by bounds of exit angles. Section 6.7.
 
 Between a barrier and its mirror image there is a *maximal attractor*: it attracts all orbits there and contains every
 attractor and every cycle. One barrier bounds its largest exit angle (its *extent*) from above for a range of
 contractions. Cycles between the barriers bound it from below at single contractions. At each of these the extent is
-larger than on a range of smaller contractions. That the chaotic attractor has the same extent is sampled: it may be a
-part.
+larger than on a range of smaller contractions. Only samples show that the chaotic attractor, which may be a part of the
+maximal one, has the same extent.
 
-The attractor is not unique at every contraction between the crises, at 0.4434 and 0.6621: in a window several cycles
-attract, all of them between the barriers. (In other windows, as of period 9 at 0.493, the cycles lie beyond the
-barriers.)
+The attractor is not unique at every contraction between the crises at 0.4434 and 0.6621: in one window several cycles
+attract, all of them between the barriers. (In other windows, such as that of period 9 at 0.493, the cycles lie beyond
+the barriers.)
 """
 
 from fractions import Fraction
@@ -49,7 +49,7 @@ Array = NDArray[np.float64]
 
 @cache
 def saddle() -> Boxes | None:
-    """The bounces of the unstable cycle as boxes, if proved between the barriers of its contraction; else None."""
+    """The bounces of an unstable cycle as boxes, if it is proved to lie between the barriers; else None."""
     orbit, map = CONTACTS[NAME].unstable, table(Rational(SHAPE))
     with working(BITS):
         try:
@@ -64,38 +64,38 @@ def saddle() -> Boxes | None:
 
 @cache
 def kept() -> tuple[Boxes, ...]:
-    """The bounces of the cycles in the window that are proved to attract and to lie between its barriers."""
+    """The bounces of the cycles in the window that are proved to attract and to lie between the barriers."""
     found = [bounces(WINDOW, cycle.points) for cycle in cycles(egg(WINDOW, STARTS), PERIOD)]
     return tuple(boxes for boxes in found if boxes and np.all(barrier(WINDOW).between(boxes)))
 
 
 def reach() -> dict[str, float]:
-    """Lower bounds of the extent by contraction, in order; 0 where none is proved."""
+    """A lower bound of the extent at each contraction, in order; 0 if none is proved."""
     found = {SADDLE: [boxes for boxes in (saddle(),) if boxes], WINDOW: kept()}
     return {lam: max(map(height, some), default=0.0) for lam, some in found.items()}
 
 
 def height(boxes: Boxes) -> float:
-    """A lower bound of the largest modulus of exit angles in the boxes."""
+    """A lower bound of the largest `|phi|` in the boxes."""
     return float(np.max(np.maximum(boxes.y[0], -boxes.y[1])))
 
 
 @cache
 def ceiling(low: str, high: str) -> float:
-    """An upper bound of the extent for every contraction of a range; infinite where none is proved."""
+    """An upper bound of the extent for every contraction in a range; infinite if none is proved."""
     found = Barrier(Scene("egg", alpha=SHAPE), (Fraction(low), Fraction(high)))
     return inf if found.heights is None or not found.mirrored else float(np.max(found.heights))
 
 
 def before(lam: str) -> tuple[str, float]:
-    """The last contraction of `STOPS` below this one, and an upper bound of the extent from `FIRST` to it."""
+    """The last contraction in `STOPS` below `lam`, and an upper bound of the extent between `FIRST` and it."""
     ranges = [(low, high) for low, high in pairwise(STOPS) if Fraction(high) < Fraction(lam)]
     return ranges[-1][1], max(ceiling(low, high) for low, high in ranges)
 
 
 @cache
 def expands() -> SignFinding:
-    """The finding that the extent at each listed contraction exceeds that at all from `FIRST` to a smaller one."""
+    """The finding that, at each listed contraction, the extent is larger than on a range of smaller contractions."""
     steps = []
     for lam, low in reach().items():
         stop, most = before(lam)
@@ -115,7 +115,7 @@ def several() -> SignFinding:
 
 
 def meet(one: Boxes, other: Boxes) -> bool:
-    """True if a box of one may have a point in common with a box of the other, modulo full turns.
+    """True if a box in `one` may meet a box in `other`, modulo full turns.
 
     >>> place = Boxes(np.zeros(1, dtype=int), (np.array([3.0]), np.array([3.5])), (np.zeros(1), np.ones(1)))
     >>> turned = place._replace(x=(place.x[0] - 2 * np.pi, place.x[1] - 2 * np.pi))
@@ -132,17 +132,17 @@ def meet(one: Boxes, other: Boxes) -> bool:
 
 
 def down(x: float) -> str:
-    """The number rounded down to four decimals, as text."""
+    """The number as text, rounded down to four decimals."""
     return f"{floor(x * 10**4) / 10**4:.4f}"
 
 
 def up(x: float) -> str:
-    """The number rounded up to four decimals, as text."""
+    """The number as text, rounded up to four decimals."""
     return f"{ceil(x * 10**4) / 10**4:.4f}" if x < inf else "nothing"
 
 
 def grown() -> str:
-    """The bounds of the extent, as text."""
+    """The bounds of the extent at the listed contractions, as text."""
     steps = [
         f"{down(low)} or more at {lam}, against {up(before(lam)[1])} at most before" for lam, low in reach().items()
     ]
@@ -151,7 +151,7 @@ def grown() -> str:
 
 @judges("egg.attractor_expands")
 def attractor_expands(claim: Claim) -> Judgement:
-    """The maximal attractor expands, before the three regions have merged and after."""
+    """The maximal attractor is proved to expand; only samples show that the chaotic attractor reaches as far."""
     seen = asin(crises.extent(SEEN).height)
     return sampled(
         f"proved from {FIRST}, where it holds three attractors or more, to {WINDOW}: of all that is kept between a "
@@ -164,7 +164,7 @@ def attractor_expands(claim: Claim) -> Judgement:
 
 @judges("egg.single_expands")
 def single_expands(claim: Claim) -> Judgement:
-    """The attractor is not unique in a window with several attracting cycles; the maximal attractor expands."""
+    """In a window several cycles attract, so that the attractor is not single; the maximal attractor expands."""
     return Judgement(
         counterexample(
             "in windows between the crises what attracts is not single",

@@ -1,9 +1,10 @@
 """Judges of claims on the egg's three attractors, one around each diameter, and on their merging crisis. Section 6.7.
 
 A set of boxes around an end of one diameter grows until it is mapped into itself. Up to `lam = 0.442` it is disjoint
-from its copies rotated by thirds; at 0.44345 an orbit goes from one diameter to another. The contractions with such a
-region, which holds all starts near an end of one diameter and is disjoint from its copies, are an open set; so there is
-a first one without in between. A tangency of manifolds is proved there, at 0.4434352.
+from its copies rotated by thirds; at 0.44345 an orbit goes from one diameter to another. The contractions at which such
+a region exists (it holds all starts near an end of one diameter and is disjoint from its copies) form an open set, so
+there is a first contraction without one in between. In the same interval, at 0.4434352, a tangency of manifolds is
+proved.
 """
 
 from fractions import Fraction
@@ -60,13 +61,13 @@ def about(theta: float = 0.0) -> Boxes:
 
 
 def together(first: Boxes, more: Boxes) -> Boxes:
-    """The boxes of both arrays."""
+    """The boxes of both arrays, as one array."""
     ends = [(np.append(a[0], b[0]), np.append(a[1], b[1])) for a, b in zip(first[1:], more[1:], strict=True)]
     return Boxes(np.append(first.chart, more.chart), *ends)
 
 
 def saddle_point() -> Boxes | None:
-    """A box around a phase point of the saddle at whose tangency strange attractors are proved."""
+    """A box around a point of the saddle whose tangency gives strange attractors; None if this is not proved."""
     around, orbit = strange(SHAPE, "interior-crisis-1")[1], CONTACTS["interior-crisis-1"].unstable
     with working(BITS):
         plane = table(EXACT_SHAPE).over(complex_balls(BITS))
@@ -75,7 +76,7 @@ def saddle_point() -> Boxes | None:
 
 
 def in_window(lam: str, period: int) -> Boxes | None:
-    """Boxes around a cycle that attracts near the first diameter; None where none is proved."""
+    """Boxes around a cycle that attracts near the first diameter; None if no such cycle is proved."""
     near = [a for a in cycles(egg(lam, STARTS), period) if vertices(a) == {0}]
     return bounces(lam, near[0].points) if near else None
 
@@ -84,7 +85,8 @@ def in_window(lam: str, period: int) -> Boxes | None:
 def region(lam: Range, grid: tuple[int, int, int], more: bool = False) -> SignFinding:
     """The finding of a trapping region around one diameter, disjoint from its rotated copies, for a range of `lam`.
 
-    It contains all starts near the end at `theta = 0`, and with `more` the saddle of a tangency and the cycles `ALONG`.
+    The region contains all starts near the end at `theta = 0`; with `more` also the saddle of a tangency and the cycles
+    `ALONG`.
     """
     places = [saddle_point(), *(in_window(*one) for one in ALONG)] if more else []
     known = [place for place in places if place is not None]
@@ -96,7 +98,7 @@ def region(lam: Range, grid: tuple[int, int, int], more: bool = False) -> SignFi
 
 @cache
 def apart() -> SignFinding:
-    """The finding of three disjoint trapping regions, one around each diameter, from 0.42 to 0.44."""
+    """The finding that, from 0.42 to 0.44, three disjoint regions around the diameters are trapping."""
     low, high = PARTS[0][0], PARTS[-1][1]
     return by(
         f"for {low} <= lam <= {high} the boxes that grow from those within {CLOSE} of an end of a diameter "
@@ -108,7 +110,7 @@ def apart() -> SignFinding:
 
 @judges("egg.three_attractors")
 def three(claim: Claim) -> Judgement:
-    """There are always at least three attractors; in windows cycles attract, at one contraction two in each region."""
+    """At each contraction there are at least three attractors; in a window, two cycles attract near each diameter."""
     near = [sorted(vertices(a)) for a in cycles(egg(WINDOW), PERIOD)]
     six = by(
         f"six cycles of period {PERIOD} attract at lam = {WINDOW}, in three regions",
@@ -132,7 +134,7 @@ def three(claim: Claim) -> Judgement:
 
 @cache
 def alternates() -> SignFinding:
-    """The finding of one trapping region that has attracting cycles, strange attractors and cycles as `lam` grows."""
+    """The finding that cycles and strange attractors alternate, as `lam` grows, in one trapping region."""
     low, high, grid = PARTS[0]
     chaos, tangency = strange(SHAPE, "interior-crisis-1")
     ends = [ball(ALONG[0][0]), tangency, ball(ALONG[1][0]), ball(high)]
@@ -148,7 +150,7 @@ def alternates() -> SignFinding:
 
 @judges("egg.windows_above")
 def windows(claim: Claim) -> Judgement:
-    """Cycles of long periods and strange attractors alternate, proved; that these are the observed ones is sampled."""
+    """Attracting cycles and strange attractors are proved to alternate; that these are the observed ones is sampled."""
     (first, one), (second, other) = ALONG
     calm = [proved_at(x, period, starts=STARTS) for x, period, _ in BEYOND]
     wild = [strange(SHAPE, kind) for *_, kind in BEYOND]
@@ -170,7 +172,7 @@ def windows(claim: Claim) -> Judgement:
 
 
 def goes_over(lam: str, start: tuple[float, float]) -> bool:
-    """True if an orbit in balls from near `(0, 0)` is proved to come near a rotated copy of it."""
+    """True if an orbit from near `(0, 0)` is proved, in balls, to come near the rotated image of its start."""
     map = EnclosedMap(PinballMap(Scene("egg", alpha=SHAPE), lam=float(lam)), Fraction(lam), LONG)
     if not max(abs(x) for x in start) < float(CLOSE):
         return False
@@ -186,7 +188,7 @@ def goes_over(lam: str, start: tuple[float, float]) -> bool:
 
 @cache
 def merges() -> SignFinding:
-    """The finding that the regions are lost between two contractions, with a tangency between."""
+    """The finding that the three regions exist at one contraction but not at a larger one; a tangency is in between."""
     chaos, tangency = strange(SHAPE, "merging")
     inside = bool(ball(LAST) < tangency) and bool(tangency < ball(MERGED))
     return by(
@@ -204,7 +206,7 @@ def merges() -> SignFinding:
 
 @judges("egg.parts_join")
 def parts_join(claim: Claim) -> Judgement:
-    """The three regions around the diameters are disjoint, and at a larger contraction connected by an orbit."""
+    """The regions around the diameters are disjoint; at a larger contraction, an orbit goes from one to another."""
     tangency = strange(SHAPE, "merging")[1]
     return Judgement(
         by("three regions are apart, and no longer", merges()),
@@ -216,7 +218,7 @@ def parts_join(claim: Claim) -> Judgement:
 
 @judges("egg.merging_crisis")
 def merging_crisis(claim: Claim) -> Judgement:
-    """The loss of the regions is proved; that it is a crisis of one attractor, and the first, is sampled."""
+    """It is proved that the three regions are lost; only samples show that this is a crisis of one attractor."""
     found, (_, tangency) = merges(), strange(SHAPE, "merging")
     gap = Fraction(str(claim.printed)) - Fraction(tangency.str(9, radius=False))
     counts = [len(chaotic(egg(x))) for x in ("0.442", "0.445")]

@@ -1,15 +1,15 @@
 """Judges of claims on nearly round eggs: for `lam <= most < 1` every orbit converges to a diameter. Sections 6.5, 7.
 
-It holds for `0 < alpha <= alpha0(most)`, with a bound `alpha0` that is not computed.
+This holds for `0 < alpha <= alpha0(most)`, where the bound `alpha0` is not computed.
 
 *An invariant curve.* The circle's map `(theta + pi - 2*phi, lam*phi)` has the derivative `[[1, -2], [0, lam]]`. Let
 `lam <= most < 1` and `K = (1 - most)/4`. The derivative maps slopes `abs(dphi/dtheta) <= K` to smaller ones and
 multiplies `dtheta` by `1 - 2*K > 0` or more; so graphs over the circle with slopes up to `K` are mapped to such graphs.
-The vertical distance `d` of two points becomes a distance from such a graph of at most `(lam + 2*K)*d`, which is less
-than `d`. These are strict inequalities on a compact set, `0 <= lam <= most` and `abs(phi) <= most*pi/2`, on which the
-egg's map and its derivative depend continuously on `alpha`, as the boundary is analytic, convex, and met at an angle.
-So they hold for `0 <= alpha <= alpha0(most)`, and there the egg has an invariant graph, to which every orbit converges,
-and on which the map is a homeomorphism of degree 1.
+The vertical distance `d` of a point from such a graph becomes at most `(lam + 2*K)*d`, which is less than `d`. These
+are strict inequalities on a compact set, `0 <= lam <= most` and `abs(phi) <= most*pi/2`, on which the egg's map and its
+derivative depend continuously on `alpha`, as the boundary is analytic, convex, and met at an angle. So they hold for `0
+<= alpha <= alpha0(most)`, and there the egg has an invariant graph, to which every orbit converges, and on which the
+map is a homeomorphism of degree 1.
 
 *The dynamics on it.* For `lam < 1` an orbit of period 2 is a double normal of the boundary, since the angles at both
 ends of its chord are `lam` times themselves, hence 0. Double normals are the critical points of the width, which is `2
@@ -45,7 +45,7 @@ SHAPES, LAMS = ("0.01", "0.02"), ("0.2", "0.4", "0.6", "0.8", "0.9")  # where pe
 
 
 def invariant_curve(cone: Expr = (1 - MOST) / 4) -> SignFinding:
-    """The finding of the circle's strict inequalities for every `most` in `[0, 1)`."""
+    """The finding that the circle's map satisfies the strict inequalities for every `most` in `[0, 1)`."""
     range, slope = {MOST: Interval.Ropen(0, 1)}, Symbol("slope")
     derivative = Matrix(flight()).jacobian([s, phi])
     carried = derivative * Matrix([1, slope])
@@ -61,7 +61,7 @@ def invariant_curve(cone: Expr = (1 - MOST) / 4) -> SignFinding:
 
 
 def double_normals(sixth: Expr = 9 * alpha**2) -> SignFinding:
-    """The finding of the egg's double normals, from its width in the direction `psi` to second order in `alpha`.
+    """The finding on the egg's double normals, from its width in the direction `psi` to second order in `alpha`.
 
     The width is even in `alpha`. The farthest boundary point in that direction is `shift` away; an error of `alpha^2`
     in `shift` changes the width by `alpha^4`, since the width is stationary in `shift`.
@@ -83,7 +83,7 @@ def double_normals(sixth: Expr = 9 * alpha**2) -> SignFinding:
 
 
 def _terms(expression: Expr, order: int) -> Expr:
-    """The Taylor polynomial in `alpha`."""
+    """The Taylor polynomial in `alpha` of the expression, to the given order."""
     return sum(expression.diff(alpha, k).subs(alpha, 0) * alpha**k / factorial(k) for k in range(order + 1))
 
 
@@ -100,7 +100,7 @@ def settles() -> SignFinding:
 
 @judges("egg.periodic_only_near_zero")
 def periodic_only(claim: Claim) -> Judgement:
-    """Proved at every `lam < 1` for all `alpha` close enough to 0; one bound on `alpha` for all `lam` is not proved."""
+    """Orbits converge to cycles for `lam` up to a bound below 1 and small `alpha`; one `alpha` for all is open."""
     found = {(a, x): periods_at(a, x, 60) for a in SHAPES for x in LAMS}
     seen = sorted({period for periods in found.values() for period in periods})
     return sampled(
@@ -123,7 +123,7 @@ def edge() -> BasinEdge:
 
 @judges("map.smooth_basin_boundaries")
 def smooth_boundaries(claim: Claim) -> Judgement:
-    """Proved at the figure's contraction and near it, and in nearly round eggs: open sets of parameters."""
+    """The basins have smooth boundaries near the contraction of the paper's figure, and in nearly round eggs."""
     return Judgement(
         by(
             "stable manifolds of saddles bound the basins: in the figure of the crisis and in nearly round eggs",

@@ -1,4 +1,4 @@
-"""Judges of claims on the egg's slap map and period-2 orbits, with ranges of parameters. Paper: sections 6.1 to 6.3."""
+"""Judges of claims on the egg's slap map and period-2 orbits for ranges of parameters. Paper: sections 6.1 to 6.3."""
 
 from functools import cache
 from typing import TYPE_CHECKING
@@ -49,13 +49,13 @@ FULL = Interval(-1, 1)  # the range of cos(3*theta)
 
 
 def at(numeral: str) -> Rational:
-    """The exact rational number that a decimal shows."""
+    """The exact rational number that a decimal stands for."""
     return Rational(numeral)
 
 
 @cache
 def squared_tilt() -> Expr:
-    """The square `1 - P` of the tilt `W`, with the stability number `P` of the diameters."""
+    """The square `W**2 = 1 - P` of the tilt `W`, with the stability number `P` of the diameters."""
     return tilt() ** 2
 
 
@@ -103,7 +103,7 @@ def crossings() -> "OneZero":
 
 @judges("egg.slap_critical_points")
 def critical_points(claim: Claim) -> Judgement:
-    """The sign of the slap map's slope at flat points decides: it is even about each, and positive at the vertices."""
+    """The slap map's slope is positive at the vertices; it has zeros only if it is not positive at the flat points."""
     shape, birth = {alpha: at("0.08")}, sqrt(82) - 9
     cover = crossings()
     return Judgement(
@@ -167,7 +167,7 @@ def slap_unstable(claim: Claim) -> Judgement:
 
 @judges("egg.other_period2")
 def other_period2(claim: Claim) -> Judgement:
-    """The other period-2 orbits exist for each `alpha`: it runs from 0 to 1/10 along the family; all have `P > 1`."""
+    """The other period-2 orbits exist for each `alpha` up to 1/10, and their stability number `P` is above 1."""
     family = egg_parallel()
     P = stability_number(family)
     left = {c: Interval.Ropen(Rational(-2, 9), 0)}
@@ -198,7 +198,7 @@ def diameters_exist(claim: Claim) -> Judgement:
 
 @judges("egg.monodromy")
 def egg_monodromy(claim: Claim) -> Judgement:
-    """The printed monodromy matrix at the vertex, in which one exponent is misprinted."""
+    """Judges the printed monodromy matrix at the vertex, in which one exponent is misprinted."""
     return identity(
         claim,
         monodromy(egg_diameter()),
@@ -213,7 +213,7 @@ def egg_monodromy(claim: Claim) -> Judgement:
 
 @judges("egg.mu_not_one")
 def mu_not_one(claim: Claim) -> Judgement:
-    """No multiplier is 1, since the characteristic polynomial at 1 is `(1+lam)**2*W**2`, `W` the `tilt`."""
+    """No multiplier is 1, since the characteristic polynomial at 1 is `(1+lam)**2*W**2`, where `W` is the tilt."""
     trace, det = diameter()
     return on_range(
         claim,
@@ -253,7 +253,7 @@ def mu_at_alpha_tilde(claim: Claim) -> Judgement:
 
 
 def on_the_curve() -> SignFinding:
-    """The finding that `W**2` is `2*(1+lam**2)/(1+lam)**2` at `alpha-tilde`, and `W`, the `tilt`, grows with alpha."""
+    """The finding that the tilt `W` grows with alpha, and `W**2 = 2*(1+lam**2)/(1+lam)**2` at `alpha-tilde`."""
     level = 2 * (1 + lam**2) / (1 + lam) ** 2
     return conjunction(
         zero("", squared_tilt().subs(alpha, alpha_tilde()) - level), positive(tilt().diff(alpha), {alpha: SHAPES})
@@ -262,7 +262,7 @@ def on_the_curve() -> SignFinding:
 
 @judges("egg.period2_unstable_above")
 def unstable_above(claim: Claim) -> Judgement:
-    """The diameters are unstable above `alpha-tilde`, since `P` falls with alpha."""
+    """The diameters are unstable above `alpha-tilde`, since the stability number `P` falls with alpha."""
     return Judgement(
         by("1 + trace + det = (1+lam)^2*P + (1-lam)^2 vanishes at alpha-tilde and falls with alpha", on_the_curve()),
         "mu_- < -1 for alpha > alpha-tilde(lam)",
@@ -271,13 +271,13 @@ def unstable_above(claim: Claim) -> Judgement:
 
 @judges("egg.alpha_tilde_0")
 def alpha_tilde_0(claim: Claim) -> Judgement:
-    """The printed digits of `alpha-tilde` at `lam = 0`."""
+    """Judges the printed digits of `alpha-tilde` at `lam = 0`."""
     return digits(claim, alpha_tilde().subs(lam, 0))
 
 
 @judges("egg.alpha_tilde_1")
 def alpha_tilde_1(claim: Claim) -> Judgement:
-    """The printed digits of `alpha-tilde` at `lam = 1`."""
+    """Judges the printed digits of `alpha-tilde` at `lam = 1`."""
     return digits(claim, alpha_tilde().subs(lam, 1))
 
 
@@ -297,7 +297,7 @@ def always_unstable(claim: Claim) -> Judgement:
 
 @judges("egg.period2_stable_below")
 def stable_below(claim: Claim) -> Judgement:
-    """The printed strict inequalities fail at `alpha = 0` and at `lam = 1`."""
+    """The printed strict inequalities fail at the ends `alpha = 0` and `lam = 1` of their ranges."""
     trace, det = diameter()
     return Judgement(
         counterexample(
@@ -319,13 +319,13 @@ def stable_below(claim: Claim) -> Judgement:
 
 @judges("egg.alpha_hat")
 def focus_curve(claim: Claim) -> Judgement:
-    """The printed `alpha-hat` equals the derived form, which has no 0/0 at `lam = 1`."""
+    """The printed `alpha-hat` equals the derived one, whose form does not become 0/0 at `lam = 1`."""
     return identity(claim, alpha_hat())
 
 
 @judges("egg.complex_region")
 def complex_region(claim: Claim) -> Judgement:
-    """Multipliers are complex between the curves, where `0 < P < 4*lam/(1+lam)**2`, as the `tilt` grows with alpha."""
+    """The multipliers are complex between the curves, where the stability number has `0 < P < 4*lam/(1+lam)**2`."""
     low = tilt().subs(alpha, alpha_hat()) - (1 - lam) / (1 + lam)
     high = tilt().subs(alpha, complex_up_to()) - 1
     trace, _ = diameter()

@@ -42,20 +42,20 @@ PLACE_RETURNS, ANGLE_RETURNS = symbols("place_returns angle_returns")  # theta_3
 
 
 def exit_sines(at_flat: bool) -> Matrix:
-    """The sines of the exit angle on an equilateral triangle, in both directions."""
+    """The sine of the exit angle on an equilateral triangle, for both directions of travel."""
     out, _ = egg_triangle(at_flat).sliding(0)
     return Matrix([out, -out])
 
 
 @judges("egg.period3_angle")
 def flat_angle(claim: Claim) -> Judgement:
-    """The exit angles of the flat triangle are 30 degrees either way."""
+    """The exit angles of the triangle at the flat points are 30 degrees in both directions of travel."""
     return identity(claim, exit_sines(True))
 
 
 @judges("egg.hyperbolic3_angle")
 def vertex_angle(claim: Claim) -> Judgement:
-    """The exit angles of the triangle of the vertices are 30 degrees either way."""
+    """The exit angles of the triangle at the vertices are 30 degrees in both directions of travel."""
     return identity(claim, exit_sines(False))
 
 
@@ -67,7 +67,7 @@ def limit_positive() -> SignFinding:
 
 @judges("egg.period3_created", "egg.period3_cease")
 def created(claim: Claim) -> Judgement:
-    """The closed form of the fold, for the equilateral triangles that section 6.4 follows from `lam = 1`."""
+    """Judges the fold's closed form for the equilateral triangles that section 6.4 follows from `lam = 1`."""
     return Judgement(
         by(
             "the equilateral orbits need |rho'/rho| = tan(pi/6*(1-lam)/(1+lam)), which no point reaches for lam < "
@@ -84,7 +84,7 @@ def created(claim: Claim) -> Judgement:
 
 
 def third_power(at_flat: bool) -> SignFinding:
-    """The finding that the trace over the period is that of the cube of a matrix of determinant 1."""
+    """The finding that the triangle's monodromy matrix has the trace of the cube of one flight's matrix."""
     single = elastic_trace(at_flat)
     return zero(
         "the monodromy is a cube", single**3 - 3 * single - trace_and_determinant(egg_triangle(at_flat), S.One)[0]
@@ -93,7 +93,7 @@ def third_power(at_flat: bool) -> SignFinding:
 
 @judges("egg.two_period3")
 def two_period3(claim: Claim) -> Judgement:
-    """The flat triangle is run in two directions."""
+    """The triangle at the flat points can be travelled in two directions, which gives two orbits."""
     return Judgement(
         counterexample(
             "at alpha = 0 every equilateral triangle is an orbit",
@@ -108,7 +108,7 @@ def two_period3(claim: Claim) -> Judgement:
 
 
 def flat_triangle() -> list[SignFinding]:
-    """The findings that the flat triangle obeys the elastic law, with multipliers on the unit circle."""
+    """The findings that the triangle at the flat points obeys the elastic law and has multipliers of modulus 1."""
     single = elastic_trace(True)
     return [
         shown("the law phi = -eta holds", is_elastic(egg_triangle(True))),
@@ -119,7 +119,7 @@ def flat_triangle() -> list[SignFinding]:
 
 @judges("egg.period3_pair")
 def pair(claim: Claim) -> Judgement:
-    """Elastic orbits run backwards are orbits, too."""
+    """An elastic orbit travelled backwards is an orbit, too."""
     return Judgement(
         by("an elastic orbit run backwards is an orbit with opposite angles", *flat_triangle()[:1]), "phi -> -phi"
     )
@@ -152,7 +152,7 @@ def period3_elliptic(claim: Claim) -> Judgement:
 
 
 def polygon_facts() -> list[SignFinding]:
-    """The findings on rotating triangles: the tilt of the normal, its largest value, and the law."""
+    """The findings on rotating triangles: the tilt of the normal, its largest value, and that the law holds."""
     slope = simplify(tilt_tangent() * (1 + alpha * cos(3 * theta)) / (3 * alpha)) - sin(3 * theta)
     squared = 9 * alpha**2 * (1 - COSINE**2) / (1 + alpha * COSINE) ** 2
     best = 9 * alpha**2 * (COSINE + alpha) ** 2 / ((1 - alpha**2) * (1 + alpha * COSINE) ** 2)
@@ -169,9 +169,9 @@ def polygon_facts() -> list[SignFinding]:
 
 @judges("egg.period3_attracting")
 def attracting(claim: Claim) -> Judgement:
-    """The triangle attracts near `lam = 1`: complex multipliers of modulus `det**(1/2)`, and `det` grows to 1.
+    """The triangle attracts near `lam = 1`: its multipliers are complex with modulus `det**(1/2) < 1`.
 
-    At `alpha = 1/10` both multipliers of a bounce are -1 at `lam = 1`, and the second order decides; the circle has no
+    At `alpha = 1/10` and `lam = 1` both multipliers of a bounce are -1, so second-order terms decide. The circle has no
     triangle for `lam < 1`.
     """
     gamma, single = half_turn(), elastic_trace(True)
@@ -203,7 +203,7 @@ def attracting(claim: Claim) -> Judgement:
 
 @judges("egg.period3_stay_equilateral")
 def stay(claim: Claim) -> Judgement:
-    """The triangles stay equilateral, since they solve one equation in `theta`."""
+    """The triangles stay equilateral as `lam` falls, since one equation in `theta` determines all three bounces."""
     return Judgement(
         by(
             "a triangle turned by 2*pi/3 at each bounce solves the one equation |rho'/rho| = tan(delta(lam))",
@@ -216,7 +216,7 @@ def stay(claim: Claim) -> Judgement:
 
 @judges("egg.period3_rotate")
 def rotate(claim: Claim) -> Judgement:
-    """The triangles rotate: `sin(3*theta) != 0` as soon as the tilt is not 0."""
+    """The triangles rotate: the tilt is not 0 for `lam < 1`, so `sin(3*theta) != 0`."""
     return Judgement(
         by(
             "delta = pi/6*(1-lam)/(1+lam) > 0 needs sin(3*theta) != 0",
@@ -229,13 +229,13 @@ def rotate(claim: Claim) -> Judgement:
 
 @judges("egg.period3_lambda_c")
 def fold_digits(claim: Claim) -> Judgement:
-    """The printed digits of `lambda_c`, from the closed form at `alpha = 0.08`."""
+    """Judges the printed digits of `lambda_c`, from the closed form at `alpha = 0.08`."""
     return digits(claim, saddle_node().subs(alpha, at("0.08")), ("0.39", "0.378"))
 
 
 @judges("egg.projection_argument")
 def projection(claim: Claim) -> Judgement:
-    """A point of period 3 returns in place, so where no place returns there is no cycle of period 3."""
+    """A cycle of period 3 returns to its position after three bounces; if no position returns, none exists."""
     return Judgement(
         implied(
             "T^3(theta, phi) = (theta, phi) says that the place returns and that the angle does; so where no place "
@@ -248,7 +248,7 @@ def projection(claim: Claim) -> Judgement:
 
 @judges("egg.projection_converse")
 def converse(claim: Claim) -> Judgement:
-    """A counterexample to the converse: in the circle `T^3` returns to a place with another angle."""
+    """A counterexample to the converse: in the circle, `T^3` can return to a position, with another angle."""
     angle = flight(*flight(*flight()))
     back = angle[0] - s - 2 * pi
     returning = pi / (2 * (1 + lam + lam**2))
@@ -264,7 +264,7 @@ def converse(claim: Claim) -> Judgement:
 
 @judges("egg.saddle_node")
 def fold(claim: Claim) -> Judgement:
-    """The two branches, from the flat points and the vertices, meet where the tilt is largest, with multiplier 1."""
+    """The branches from the flat points and the vertices meet where the tilt is largest; a multiplier is 1 there."""
     return Judgement(
         by(
             "for each lam in (lambda_c, 1) the equation for the tilt has one root on the side of the "

@@ -1,7 +1,7 @@
 """Judges of claims on stability over ranges of contractions, and on chaos in the egg. Paper: sections 6.2 to 6.6.
 
-Stability is proved. Chaos is sampled: an exponent counts as positive when it exceeds its error, and a claim that a
-sample contradicts stays open.
+Stability is proved. Chaos is sampled: an exponent counts as positive if it exceeds its error. A claim that a sample
+contradicts stays open.
 """
 
 from collections import Counter
@@ -43,7 +43,7 @@ PERIOD_4 = 0.2, (0.05, 3.1)  # a contraction, and a start whose orbit converges 
 
 @judges("egg.period4_created")
 def period4_created(claim: Claim) -> Judgement:
-    """The flip along `alpha-tilde` is supercritical, by the sign of a normal-form coefficient, in balls of `lam`."""
+    """The flip along `alpha-tilde` is supercritical, by the sign of a normal-form coefficient in balls of `lam`."""
     sign = doubling_curve(tick=telling("alpha-tilde"))
     supercritical = answer(sign.supercritical, f"the flip is supercritical for 0 <= lam < 1, in {sign.balls} balls")
     area = zero("det D(T^2) = 1 at lam = 1", trace_and_determinant(egg_diameter(), S.One)[1] - 1)
@@ -60,7 +60,7 @@ def period4_created(claim: Claim) -> Judgement:
 
 @cache
 def attracting_4() -> SignFinding:
-    """The finding of an attracting cycle of period 4 for every `0 <= lam <= 0.28` at `alpha = 0.08`."""
+    """The finding that a cycle of period 4 attracts for every `0 <= lam <= 0.28` at `alpha = 0.08`."""
     table = egg(3).at(alpha=SHAPE)
     start = attractor(table, *PERIOD_4)
     at = PERIOD_4[0]
@@ -73,13 +73,13 @@ def attracting_4() -> SignFinding:
 
 @judges("egg.slap_period4_stable", "egg.period4_small_lambda")
 def period4_small_lambda(claim: Claim) -> Judgement:
-    """A cycle of period 4 attracts, by interval Newton over balls of `lam`."""
+    """A cycle of period 4 is proved to attract for small `lam`, by interval Newton over balls of `lam`."""
     return Judgement(by("an attracting cycle of period 4", attracting_4()), "attracting for 0 <= lam <= 0.28")
 
 
 @judges("egg.period3_found")
 def period3_found(claim: Claim) -> Judgement:
-    """Jury's three conditions on one bounce of the triangle: by monotonicity, exactly, and in balls."""
+    """Jury's conditions show that the triangle is stable inside the printed range, but not at its ends."""
     jury = [
         answer(contracts(SHAPE), "det < 1, as x*cos(x) grows up to the largest incidence angle"),
         answer(flips_nowhere(SHAPE), "1 + trace + det > 0 on the closed branch, in balls"),
@@ -146,7 +146,7 @@ def figure_attractors(claim: Claim) -> Judgement:
 
 @judges("egg.cascade")
 def cascade_limit(claim: Claim) -> Judgement:
-    """Certified doublings, and their limit by two extrapolations, whose difference estimates the error."""
+    """The doublings are certified; their limit is extrapolated in two ways, whose difference estimates the error."""
     found = accumulation(SHAPE, 8)
     limit = f"{mpmath.nstr(found.limit.value, 10)} +- {float(found.limit.error):.0e}"
     return Judgement(
@@ -171,7 +171,7 @@ CASCADES = (("0.08", "0.3716", 12, 2e-4, "0.374"), ("0.056", "0.741", 8, 3e-4, "
 
 @judges("egg.no_chaos_below")
 def no_chaos_below(claim: Claim) -> Judgement:
-    """A coarse search sees no chaos, as the paper says; strange attractors are proved that it misses."""
+    """A coarse search finds no chaos, as in the paper, but misses strange attractors that are proved to exist."""
     limit = float(str(claim.printed))
     shapes, lams = np.linspace(0.2, 0.9, 4) * limit, np.linspace(0, 0.95, 20)
     chaotic = in_memory(parameter_space(shapes, lams, 20, seed=SEED), 1)["chaotic"]
@@ -194,7 +194,7 @@ def no_chaos_below(claim: Claim) -> Judgement:
 
 @cache
 def chaos_at(shape: str, lam: str) -> tuple[float, float, float]:
-    """The share of chaotic particles from random starts, the mean of their exponents, and its standard error."""
+    """The fraction of random starts that are chaotic, the mean of their exponents, and its standard error."""
     map = PinballMap("egg", lam=lam, alpha=shape)
     first = counted(followed(map, interior_starts(map, 600, SEED), (1000, 10_000)).growth, 4000)
     on = np.nonzero(first.chaotic)[0]
@@ -207,16 +207,16 @@ def chaos_at(shape: str, lam: str) -> tuple[float, float, float]:
 
 @cache
 def cut() -> tuple[np.ndarray, np.ndarray]:
-    """The contractions of a cut at `alpha = 0.08`, and the number of chaotic particles, of 40, at each."""
+    """The contractions of a cut at `alpha = 0.08`, and at each the number of chaotic particles out of 40."""
     pairs = parameter_space(np.array([0.08]), CUT, starts=40, bounces=2000, transient=4000, seed=SEED)
     return CUT, in_memory(pairs, 1)["chaotic"][0]
 
 
 @judges("egg.chaotic_interval")
 def chaotic_interval(claim: Claim) -> Judgement:
-    """The first and the last contraction at which most particles, or some, are chaotic, by a search.
+    """A search gives the first contraction at which most particles are chaotic, and the last at which some are.
 
-    Strange attractors that are proved near a tangency may be too small for a search, and do not refute its report.
+    The claim is about a search, so it is not refuted by strange attractors that are proved but too small to be found.
     """
     lams, chaotic = cut()
     first, last = lams[chaotic >= 20][0], lams[chaotic >= 4][-1]
@@ -243,7 +243,7 @@ def chaotic_interval(claim: Claim) -> Judgement:
 
 @judges("egg.chaos_beyond_cascade")
 def chaos_beyond_cascade(claim: Claim) -> Judgement:
-    """Between the cascade and the boundary crisis chaos is found except in windows with cycles."""
+    """Between the cascade and the boundary crisis, samples show chaos except in windows with attracting cycles."""
     lams, chaotic = cut()
     inside = (lams > 0.3936) & (lams < 0.662)
     periods = {float(lam): set(periods_at("0.08", str(lam), 40)) for lam in lams[inside & (chaotic == 0)]}
@@ -260,7 +260,7 @@ def chaos_beyond_cascade(claim: Claim) -> Judgement:
 
 @judges("egg.isolated_regions")
 def isolated_regions(claim: Claim) -> Judgement:
-    """The first doublings towards two of the regions are proved, with chaos just beyond their accumulation."""
+    """The first doublings towards two of the regions are proved; chaos just beyond is sampled."""
     said, good = [], True
     for shape, contraction, period, step, beyond in CASCADES:
         found = cascade(Rational(shape), Rational(contraction), period, step)
@@ -278,7 +278,7 @@ def isolated_regions(claim: Claim) -> Judgement:
 
 
 def periods_at(shape: str, lam: str, particles: int) -> Counter[int]:
-    """The number of random particles that end on a cycle of each period; 0 stands for none up to `LONGEST`."""
+    """How many random particles end on a cycle of each period; 0 stands for no period up to `LONGEST`."""
     map = map_of(shaped(3, float(shape)), float(lam))
     starts = interior_starts(map, particles, SEED)
     end = advanced(map, PhasePoints(*starts[:3]), 40_000).points

@@ -25,9 +25,9 @@ RED = (0.87, 0.55, 0.5)
 
 
 def basins(map: PinballMap, fine: float, angle: bool, transient: int = TRANSIENT) -> Panel:
-    """The attractor that a particle from each cell of phase space reaches, and the attractors, as a panel.
+    """A panel with the attractor that each cell of phase space reaches, and the attractors themselves.
 
-    The abscissa is `theta` where `angle` is true, else arc length; cells are equal in arc length in both cases.
+    The abscissa is `theta` if `angle` is true, else arc length; cells are equal in arc length in both cases.
     """
     grid = phase_grid(map, scaled(ACROSS, fine**0.5, 8), scaled(UP, fine**0.5, 6))
     particles = grid.starts
@@ -54,7 +54,7 @@ def paint(ax: "Axes", raster: Raster, colours: dict[str, Any]) -> None:
 
 
 def edges(centres: Array) -> Array:
-    """The borders of cells around their centres.
+    """The borders of cells whose centres are given.
 
     >>> edges(np.array([1.0, 2.0, 4.0])).tolist()
     [0.5, 1.5, 3.0, 5.0]
@@ -69,7 +69,7 @@ def cuspless(fine: float = 1.0) -> Panels:
 
 
 def draw_cuspless(panels: Panels) -> "Figure":
-    """Draws the chaotic attractor's basin shaded, the other blank, with both attractors."""
+    """Draws the chaotic attractor's basin shaded and the other one blank, and both attractors."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     (panel,) = panels
     assert panel.raster is not None
@@ -79,13 +79,13 @@ def draw_cuspless(panels: Panels) -> "Figure":
 
 
 def egg(fine: float = 1.0) -> Panels:
-    """The basins just below the boundary crisis and above it."""
+    """The basins of the egg just below the boundary crisis, and above it."""
     maps = [PinballMap("egg", lam=lam, alpha="0.08") for lam in ("0.66", "0.7")]
     return tuple(basins(map, fine, angle=True, transient=SOON) for map in maps)
 
 
 def draw_egg(panels: Panels) -> "Figure":
-    """Draws the chaotic basin shaded, or else that of one triangle, with the attractors."""
+    """Draws in each panel the chaotic basin (or, if there is none, that of one triangle) and the attractors."""
     figure, axes = sheet(panels, height=3.0)
     for ax, panel in zip(axes, panels, strict=True):
         assert panel.raster is not None

@@ -1,7 +1,7 @@
 """Figures on the cardioid and the cuspless cardioid. Paper: sections 4 and 5, appendix A.2.
 
-They show Lyapunov exponents against the contraction, and attractors: cycles as closed polygons or marks, chaotic sets
-as one long orbit.
+They show Lyapunov exponents against the contraction, and attractors: cycles as closed polygons or marks, chaotic
+attractors as one long orbit.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -70,7 +70,7 @@ def attractors(fine: float = 1.0) -> Panels:
 
 
 def draw_attractors(panels: Panels) -> "Figure":
-    """Draws two phase portraits, with the third panel as inset of the first."""
+    """Draws two phase portraits; the third panel is an inset in the first."""
     figure, axes = sheet(panels[:2])
     for ax, panel in zip(axes, panels[:2], strict=True):
         cloud(ax, panel.curves["attractor"], BLACK)
@@ -84,13 +84,13 @@ def draw_attractors(panels: Panels) -> "Figure":
 
 
 def exponents(fine: float = 1.0) -> Panels:
-    """Both exponents and their sum against `lam`, averaged over 100 orbits. Their sum at `lam = 1` is 0 exactly."""
+    """Both exponents and their sum against `lam`, averaged over 100 orbits. At `lam = 1` the sum is exactly 0."""
     lams = np.linspace(0.02, 1.0, scaled(50, min(fine, 2.0), 5))
     return (averaged("cardioid", lams, scaled(1000, fine, 50)),)
 
 
 def draw_exponents(panels: Panels) -> "Figure":
-    """Draws the exponents as filled and open circles, and their sum as a line."""
+    """Draws `nu_plus` as filled circles, `nu_minus` as open circles, and their sum as a line."""
     figure, (ax,) = sheet(panels, columns=1, height=3.0)
     (panel,) = panels
     ax.axhline(0, **FAINT)
@@ -110,7 +110,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Draws both graphs of the slap map, with the diagonal."""
+    """Draws the graphs of the slap map and its second iterate, with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure
@@ -120,9 +120,9 @@ ORBITS = 100  # the paper's number for each contraction
 
 
 def averaged(table: str, lams: Array, bounces: int, orbits: int = ORBITS) -> Panel:
-    """The means of both exponents over all orbits, and of `nu_plus` over those on cycles and over the others.
+    """Means of both exponents over all orbits, and of `nu_plus` over chaotic orbits and over the other orbits.
 
-    The standard errors over orbits come with the means; a mean over no orbit is a gap.
+    Standard errors over orbits are included; a mean over no orbits is a gap in the curve.
     """
     map = PinballMap(table, lam=np.repeat(lams, orbits))
     starts = interior_starts(map.at(1), orbits, SEED)
@@ -148,7 +148,7 @@ def averaged(table: str, lams: Array, bounces: int, orbits: int = ORBITS) -> Pan
 
 
 def _mean(values: Array, chosen: NDArray[np.bool_]) -> Array:
-    """The mean of the chosen entries of each row; NaN where there are none."""
+    """The mean of the chosen entries of each row; NaN if no entry is chosen."""
     count = chosen.sum(axis=1)
     total = np.where(chosen, values, 0.0).sum(axis=1)
     return np.asarray(np.divide(total, count, out=np.full(count.shape, np.nan), where=count > 0))
@@ -186,7 +186,7 @@ def draw_configurations(panels: Panels) -> "Figure":
 
 
 def phase_space(fine: float = 1.0) -> Panels:
-    """The chaotic attractor at nine contractions, three to a panel."""
+    """The chaotic attractor at nine contractions, three in each panel."""
     panels = []
     for lams in RANGES:
         curves, bounces = {}, scaled(200, fine, 20)
@@ -204,7 +204,7 @@ def phase_space(fine: float = 1.0) -> Panels:
 
 
 def draw_phase_space(panels: Panels) -> "Figure":
-    """Draws the attractors, the least contraction darkest and on top."""
+    """Draws the attractors; that of the smallest contraction is darkest and on top."""
     figure, axes = sheet(panels, columns=3, height=2.6)
     for ax, panel in zip(axes, panels, strict=True):
         for place in (-JOIN, 0.0, JOIN):
@@ -219,7 +219,7 @@ def draw_phase_space(panels: Panels) -> "Figure":
 
 
 def corner(fine: float = 1.0) -> Panels:
-    """The arc length of the fourth collision from the upper join, against the first angle, at three contractions."""
+    """The arc length after four bounces from the upper join, against the first angle, at three contractions."""
     phi = np.linspace(-0.25, 0.25, scaled(500, fine, 20))
     curves = {}
     for lam in ("0.05", STAR, "0.09"):
@@ -231,7 +231,7 @@ def corner(fine: float = 1.0) -> Panels:
 
 
 def draw_corner(panels: Panels) -> "Figure":
-    """Draws three graphs, with dotted lines at the joins and the centre of the wall."""
+    """Draws the graphs for three contractions, with dotted lines at the joins and at the centre of the wall."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     for place in (-JOIN, 0.0, JOIN):
         ax.axhline(place, **(FAINT | {"color": "0.3"}))
@@ -248,7 +248,7 @@ def draw_corner(panels: Panels) -> "Figure":
 
 
 def cuspless_exponents(fine: float = 1.0) -> Panels:
-    """Both exponents against `lam`, averaged over 100 orbits, and separately over cycles and chaotic sets."""
+    """Both exponents against `lam`, averaged over 100 orbits; `nu_plus` also over cycles and over chaotic orbits."""
     count = min(fine, 2.0)
     stretches = ((0.005, 0.055, 10), (0.06, 0.1, 30), (0.11, 1, 30))  # ranges of lam, and values in a draft
     lams = np.concatenate([np.linspace(low, high, scaled(many, count, 3)) for low, high, many in stretches])
@@ -256,7 +256,7 @@ def cuspless_exponents(fine: float = 1.0) -> Panels:
 
 
 def draw_cuspless_exponents(panels: Panels) -> "Figure":
-    """Draws averages as circles, and `nu_plus` of each kind of attractor as lines, with an inset."""
+    """Draws averages as circles, and `nu_plus` of chaotic and of periodic orbits as lines, with an inset."""
     figure, (ax,) = sheet(panels, columns=1, height=3.2)
     (panel,) = panels
     inset = ax.inset_axes((0.42, 0.08, 0.55, 0.46))
@@ -276,7 +276,7 @@ def draw_cuspless_exponents(panels: Panels) -> "Figure":
 
 
 def cuspless_slap(fine: float = 1.0) -> Panels:
-    """The slap map, its second and its fourth iterate."""
+    """The graphs of the slap map, its second and its fourth iterate."""
     map = PinballMap("cuspless", lam=0)
     named = ((1, "T_0"), (2, "T_0^2"), (4, "T_0^4"))
     curves = {name: slap_graph(map, n, scaled(400, fine, 20)) for n, name in named}
@@ -284,14 +284,14 @@ def cuspless_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_cuspless_slap(panels: Panels) -> "Figure":
-    """Draws the three graphs with the diagonal."""
+    """Draws the graphs of the slap map and its iterates, with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure
 
 
 def whole(ax: "Axes") -> None:
-    """Sets the abscissa to the whole boundary: `s` from -C to C."""
+    """Sets the range of the abscissa to the whole boundary: `s` from `-C` to `C`, where `C` is half its length."""
     ax.set_xlim(-9 * JOIN, 9 * JOIN)
 
 
@@ -314,7 +314,7 @@ def found(map: PinballMap, starts: int = STARTS) -> dict[str, Attractor]:
 
 
 def orbit_on(map: PinballMap, attractor: Attractor, bounces: int) -> Orbit:
-    """An orbit on the attractor, as one column; for a cycle, one closed round."""
+    """An orbit on the attractor, for one particle; for a cycle, one period, closed."""
     first, turns = attractor.points, attractor.period or bounces
     return map.orbit(first.theta[:1], first.phi[:1], turns, first.component[:1])
 
@@ -327,5 +327,5 @@ def cycle_points(map: PinballMap, attractor: Attractor) -> tuple[Curve, Curve]:
 
 
 def shares(named: dict[str, Attractor]) -> dict[str, float]:
-    """The share of the starts that each attractor attracts."""
+    """The fraction of the starts that each attractor attracts."""
     return {f"share of {name}": a.share.count / a.share.of for name, a in named.items() if a.share is not None}

@@ -1,4 +1,4 @@
-"""The catalogue of figures: for each the paper's caption, and the functions that compute and draw it."""
+"""The catalogue of figures: the paper's caption of each, and the functions that compute and draw it."""
 
 import re
 import tomllib
@@ -19,7 +19,7 @@ WORDS = {"pm": "+-", "times": "x", "defeq": ":="}  # LaTeX commands as text; oth
 
 
 class FigureSource(Protocol):
-    """A picture that is not drawn yet: a figure of the paper, or a diagram of a measurement."""
+    """A picture to be drawn on demand: a figure of the paper, or a diagram of a measurement."""
 
     @property
     def name(self) -> str:
@@ -27,22 +27,22 @@ class FigureSource(Protocol):
 
     @property
     def seconds(self) -> float:
-        """The estimated time to draw it, in seconds."""
+        """The estimated time to draw the picture, in seconds."""
 
     @property
     def module(self) -> str:
-        """The module that draws it."""
+        """The module that draws the picture."""
 
     def drawn(self) -> bytes:
-        """The image, as a file in some format that HTML pages show."""
+        """The image, as the bytes of a file in a format that HTML pages show."""
 
 
 @dataclass(frozen=True)
 class PaperFigure:
     """A figure of the paper: its name, the function that computes its data, and its place in the paper.
 
-    `labels` are the paper's, empty for a figure that it only mentions. The caption is quoted with its misprints;
-    `shows` describes the picture. A draft takes about `seconds`.
+    `labels` are those of the paper, empty for a figure that the paper only mentions. The caption is quoted with its
+    misprints; `shows` describes the picture. A draft takes about `seconds` to compute.
     """
 
     name: str
@@ -60,22 +60,22 @@ class PaperFigure:
 
     @property
     def module(self) -> str:
-        """The module that computes and draws it."""
+        """The module that computes and draws the figure."""
         return f"verification.paper.figures.{self.made_by.partition('.')[0]}"
 
     def data(self, fine: float = DRAFT) -> "Panels":
-        """The panels at a resolution; 1 is a draft."""
+        """The panels at the resolution `fine`, which is 1 for a draft."""
         return self._pair[0](fine)
 
     def image(self, panels: "Panels", ending: str) -> bytes:
-        """The drawn panels as a file in the format of `ending`; the same panels give the same bytes."""
+        """The drawn panels as the bytes of a file in the format of `ending`; equal panels give equal bytes."""
         from verification.plots.sheet import image, styled
 
         with styled():
             return image(self._pair[1](panels), ending)
 
     def drawn(self) -> bytes:
-        """A draft for a page, with transparent background: SVG for lines, WebP for many points."""
+        """A draft for a page with transparent background: SVG for lines, WebP for many points."""
         from verification.plots.sheet import SMALL
 
         panels = self.data()
@@ -108,7 +108,7 @@ class PaperFigure:
 
 
 def plain(text: str) -> str:
-    """LaTeX as plain text.
+    """LaTeX turned into plain text.
 
     >>> plain(r"$s_0 \\defeq -\\sqrt{3}/4$ and $\\mu_{\\pm}$ at $\\lambda = 0.3$")
     's_0 := -sqrt(3)/4 and mu_+- at lambda = 0.3'

@@ -1,4 +1,4 @@
-"""Figures on the circle and the ellipse (section 3), and the evolutes of the tables (section 2.2, not in the paper)."""
+"""Figures on the circle and the ellipse (section 3), and the evolutes of all tables, which the paper does not show."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +55,7 @@ def centres(map: PinballMap, theta: Array) -> tuple[Array, Array]:
 
 
 def evolutes(fine: float = 1.0) -> Panels:
-    """The evolutes (envelopes of the normals) and tangent slap-map flights; the straight cuspless wall has none."""
+    """The evolutes of the tables (envelopes of the normals), and flights of the slap map, which touch them."""
     panels = []
     for table, shape in TABLES:
         map = PinballMap(table, lam=0, **shape)
@@ -73,7 +73,7 @@ def evolutes(fine: float = 1.0) -> Panels:
 
 
 def draw_evolutes(panels: Panels) -> "Figure":
-    """Draws the evolutes thick, with the boundary and flights."""
+    """Draws the evolutes as thick lines, with the boundary and flights."""
     figure, axes = sheet(panels, columns=4, height=2.2)
     for ax, panel in zip(axes, panels, strict=True):
         ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -88,8 +88,8 @@ LONG = 5  # the semi-axis of the ellipse whose eigenvalues are shown
 def configuration(fine: float = 1.0) -> Panels:
     """One trajectory in the circle and one in the ellipse at `lam = 0.99`.
 
-    The start in the circle is random; that in the ellipse leaves an end of the major axis, a thousandth of a radian
-    from its direction.
+    In the circle the start is random; in the ellipse the particle leaves an end of the major axis, at a thousandth of a
+    radian to that axis.
     """
     circle, ellipse = PinballMap("circle", lam="0.99"), PinballMap("ellipse", lam="0.99", a="1.5")
     start = interior_starts(circle, 1, SEED)
@@ -104,7 +104,7 @@ def configuration(fine: float = 1.0) -> Panels:
 
 
 def draw_configuration(panels: Panels) -> "Figure":
-    """Draws the trajectories, later flights lighter."""
+    """Draws the trajectories, with later flights lighter."""
     from matplotlib.collections import LineCollection
 
     figure, axes = sheet(panels, height=3.0)
@@ -118,7 +118,7 @@ def draw_configuration(panels: Panels) -> "Figure":
 
 
 def eigenvalues(fine: float = 1.0) -> Panels:
-    """Both moduli on the minor axis at `a = 5`, from the stability number; and `lambda_-(5)`."""
+    """The moduli of both multipliers of the minor axis at `a = 5`, against `lam`; and `lambda_-(5)`."""
     from symbolic.expressions.text import kernel, load
     from verification.arithmetic.balls import ARRAYS
 
@@ -134,7 +134,7 @@ def eigenvalues(fine: float = 1.0) -> Panels:
 
 
 def draw_eigenvalues(panels: Panels) -> "Figure":
-    """Draws the two branches, which meet at the dotted line."""
+    """Draws the moduli of both multipliers, and a dotted line where they meet."""
     figure, (ax,) = sheet(panels, columns=1, height=3.0)
     (panel,) = panels
     ax.plot(*panel.curves["mu_plus"], color=BLACK, label=r"$|\mu_+|$")
@@ -154,7 +154,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Draws both graphs with the diagonal."""
+    """Draws the graphs of the slap map and its second iterate, with the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     graphs(ax, panels[0])
     return figure

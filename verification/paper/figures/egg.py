@@ -1,7 +1,7 @@
 """Figures on the egg with three vertices. Paper: section 6.
 
-They show elastic collisions, the slap map, cycles of period 3, the plane of parameters, and the attractors, also as the
-contraction grows.
+They show elastic collisions, the slap map, cycles of period 3, the parameter plane, and the attractors, also as
+functions of the contraction.
 """
 
 from typing import TYPE_CHECKING
@@ -53,7 +53,7 @@ TRIANGLES = ("1.0", "0.9", "0.8", "0.7", "0.6", "0.5", "0.45", "0.41", "0.40")
 
 
 def islands(fine: float = 1.0) -> Panels:
-    """Elastic orbits of many starts at three shapes, each orbit a curve of its own."""
+    """Elastic orbits from many starts, at three shapes; each orbit is a separate curve."""
     panels = []
     for alpha in ("0.02", "0.05", "0.08"):
         map, particles, bounces = PinballMap("egg", lam=1, alpha=alpha), 60, scaled(400, fine, 20)
@@ -66,7 +66,7 @@ def islands(fine: float = 1.0) -> Panels:
 
 
 def draw_islands(panels: Panels) -> "Figure":
-    """Draws the orbits; neighbouring ones differ in lightness."""
+    """Draws the orbits; neighbouring orbits differ in lightness, so that they can be distinguished."""
     figure, axes = sheet(panels, columns=3, height=2.6)
     for ax, panel in zip(axes, panels, strict=True):
         for i, curve in enumerate(panel.curves.values()):
@@ -86,7 +86,7 @@ def slap(fine: float = 1.0) -> Panels:
 
 
 def draw_slap(panels: Panels) -> "Figure":
-    """Draws four graphs to a panel, with the diagonal."""
+    """Draws in each panel the graphs of the slap map and its iterates, with the diagonal."""
     figure, axes = sheet(panels, height=4.0)
     for ax, panel in zip(axes, panels, strict=True):
         graphs(ax, panel)
@@ -116,7 +116,7 @@ def triangle(lam: str) -> float:
 
 
 def draw_period3(panels: Panels) -> "Figure":
-    """Draws the elastic triangle thick, the others lighter as `lam` falls, and the diameters dotted."""
+    """Draws the elastic triangle thick, the other triangles lighter as `lam` falls, and the diameters dotted."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -129,9 +129,9 @@ def draw_period3(panels: Panels) -> "Figure":
 
 
 def perturbed_slap(fine: float = 1.0) -> Panels:
-    """The third position against the first, from every first angle that a collision can produce, `|phi| <= lam*pi/2`.
+    """The position after three bounces against the first one, for all first angles that a collision can produce.
 
-    At `lam = 0` this is the graph of the slap map's third iterate.
+    These are the angles `|phi| <= lam*pi/2`; at `lam = 0` the result is the graph of the slap map's third iterate.
     """
     curves = {"0.0": slap_graph(PinballMap("egg", lam=0, alpha=ALPHA), 3, scaled(400, fine, 20))}
     rng, particles = np.random.default_rng(SEED), scaled(600, fine, 20)
@@ -145,7 +145,7 @@ def perturbed_slap(fine: float = 1.0) -> Panels:
 
 
 def draw_perturbed_slap(panels: Panels) -> "Figure":
-    """Draws a line, dots, plus signs and crosses, as in the paper, and the diagonal."""
+    """Draws the curve for contraction 0, points with a different mark for each other contraction, and the diagonal."""
     figure, (ax,) = sheet(panels, columns=1, height=4.2)
     (panel,) = panels
     ax.plot([-np.pi, np.pi], [-np.pi, np.pi], **(FAINT | {"color": "0.3"}))
@@ -164,7 +164,7 @@ RANGE = (0.36, 0.46)  # contractions of the bifurcation diagram
 
 
 def configurations(fine: float = 1.0) -> Panels:
-    """The attractors in the table at four contractions; chaotic ones by an orbit on them."""
+    """The attractors in the table at four contractions; a chaotic one is shown by an orbit on it."""
     panels = []
     for lam in ("0.1", "0.39", "0.43", "0.45"):
         map, bounces = PinballMap("egg", lam=lam, alpha=ALPHA), scaled(4000, min(fine, 1.0), 20)
@@ -179,7 +179,7 @@ def configurations(fine: float = 1.0) -> Panels:
 
 
 def along(curve: Curve, k: int) -> Curve:
-    """The flights nearest in direction to the diameter at `k*pi/3`, at most `SHOWN`, separated by gaps.
+    """The flights that are nearest in direction to the diameter at `k*pi/3`, at most `SHOWN`, with gaps between.
 
     >>> along(Curve(np.array([0.0, 1.0, 1.0]), np.array([0.0, 0.1, 2.0])), 0).x.tolist()
     [0.0, 1.0, nan]
@@ -192,7 +192,7 @@ def along(curve: Curve, k: int) -> Curve:
 
 
 def draw_configurations(panels: Panels) -> "Figure":
-    """Draws flights in one shade for each of the three diameters that they follow, and period 3 in black."""
+    """Draws flights in three shades, by the diameter that they follow, and period 3 in black."""
     figure, axes = sheet(panels, columns=4, height=2.1)
     for ax, panel in zip(axes, panels, strict=True):
         ax.plot(*panel.curves["boundary"], **OUTLINE)
@@ -222,7 +222,7 @@ def attractors(fine: float = 1.0) -> Panels:
 
 
 def draw_attractors(panels: Panels) -> "Figure":
-    """Draws the smaller set on top of the larger one, and period 3 as crosses."""
+    """Draws the attractors at 0.43 on top of the one at 0.45, period 3 as crosses, and the enlarged part."""
     figure, (left, right) = sheet(panels, height=3.0)
     whole, enlarged = panels
     for start, color, label in (("0.45", MIDDLE, r"$\lambda = 0.45$"), ("0.43", BLACK, r"$\lambda = 0.43$")):
@@ -283,11 +283,11 @@ FIRST = 8  # starts that are followed first: if one of them is chaotic, the pair
 
 
 def parameter_space(fine: float = 1.0) -> Panels:
-    """The pairs `(alpha, lam)` with a chaotic orbit among 100 random starts, and `alpha_tilde(lam)`.
+    """The pairs `(alpha, lam)` for which one of 100 random starts is chaotic, and the curve `alpha_tilde(lam)`.
 
-    An exponent counts when it exceeds twice its error (`numeric.sweeps.sweep`); a pair without a chaotic orbit, but
-    with an undecided one, is undecided. The starts differ from one `lam` to the next and are those of the elastic egg
-    of the middle shape, which are valid for every shape.
+    An exponent counts as positive if it exceeds twice its error (`numeric.sweeps.sweep`); a pair with no chaotic orbit,
+    but with an undecided one, is undecided. The starts differ between values of `lam`; they are those of the elastic
+    egg of the middle shape, which are valid for every shape.
     """
     from symbolic.expressions.text import kernel, load
     from verification.arithmetic.balls import ARRAYS
@@ -305,10 +305,11 @@ def parameter_space(fine: float = 1.0) -> Panels:
 
 
 def signs(table: PinballMap, lams: Array, starts: Starts, bounces: int) -> NDArray[np.int64]:
-    """For each contraction 1 where one of its starts is chaotic, 2 where that is undecided, else 0.
+    """For each contraction 1 if one of its starts is chaotic, 2 if this is undecided, else 0.
 
-    Orbits are measured over `bounces` bounces after as many. An orbit that is periodic after `EARLY` bounces is on an
-    attracting cycle and is dropped. Where one of the `FIRST` starts is chaotic, the others are not computed.
+    Exponents are measured over `bounces` bounces after a transient of the same length. An orbit that is periodic after
+    `EARLY` bounces is on an attracting cycle and is dropped. If one of the `FIRST` starts is chaotic, the others are
+    not computed.
 
     >>> starts = interior_starts(PinballMap("egg", lam=1, alpha="0.09"), 8, 1)
     >>> signs(PinballMap("egg", alpha="0.09"), np.array([0.1, 0.3]), starts, 400).tolist()
@@ -341,7 +342,7 @@ def _signs(map: PinballMap, lam: Array, starts: Starts, bounces: int) -> tuple[N
 
 
 def draw_parameter_space(panels: Panels) -> "Figure":
-    """Draws crosses and small plus signs, as in the paper, and the doubling of period 2 as a black curve."""
+    """Draws chaotic, regular and undecided pairs with different marks; the doubling of period 2 is a black curve."""
     figure, (ax,) = sheet(panels, columns=1, height=3.6)
     (panel,) = panels
     assert panel.raster is not None

@@ -24,7 +24,7 @@ TRANSIENT = 2000  # bounces before an orbit is shown
 
 
 class Settled(NamedTuple):
-    """Orbits after a transient, one particle in each column, and the larger exponent of each."""
+    """Orbits after a transient, with one particle in each column, and their larger exponents."""
 
     orbit: Orbit
     nu_plus: Array
@@ -49,12 +49,12 @@ def settled(map: PinballMap, particles: int, bounces: int, transient: int = TRAN
 
 
 def particles_of(orbit: Orbit, chosen: Any) -> Orbit:
-    """Some of the particles of an orbit, by an index of columns."""
+    """The particles of an orbit that an index of columns selects."""
     return Orbit(*(field[:, chosen] for field in orbit))  # type: ignore[arg-type]  # fields keep their types
 
 
 def arc_length(map: PinballMap, component: NDArray[np.int64], theta: Array) -> Array:
-    """The paper's arc length `s`, from `-L/2` to `L/2` with the perimeter `L`.
+    """The paper's arc length `s`, from `-L/2` to `L/2`, where `L` is the perimeter.
 
     >>> cuspless = PinballMap("cuspless")
     >>> arc_length(cuspless, np.array([0, 0]), np.array([-0.001, 0.001])).round(2).tolist()
@@ -80,23 +80,23 @@ def by_arc_length(map: PinballMap, orbit: Orbit) -> Curve:
 
 
 def by_angle(orbit: Orbit) -> Curve:
-    """The bounces as points `(theta, sin(phi))`, `theta` the polar angle."""
+    """The bounces as points `(theta, sin(phi))`, where `theta` is the polar angle."""
     return Curve(elementary.arctan2(orbit.y, orbit.x).ravel(), np.sin(orbit.phi).ravel())
 
 
 def flights(orbit: Orbit) -> Curve:
-    """The trajectories in the plane, with a gap between two particles."""
+    """The trajectories in the plane, with gaps between particles."""
     gap = np.full((1, orbit.x.shape[1]), np.nan)
     return Curve(*(np.concatenate([field, gap]).T.ravel() for field in (orbit.x, orbit.y)))
 
 
 def outline(map: PinballMap) -> Curve:
-    """The boundary of a table without holes, closed."""
+    """The boundary of a table without holes, as a closed curve."""
     return Curve(*(np.append(row, row[0]) for row in results.outline(map)))
 
 
 def facts(map: PinballMap, **more: Fact) -> dict[str, Fact]:
-    """Table, shape and contraction of a panel, and further data, by name."""
+    """Table, shape and contraction of a panel, and the given further data, by name."""
     shape = {entry.name: float(value) for entry, value in zip(map.ir.shape, map.shape, strict=True)}
     lam: dict[str, Fact] = {"lam": float(map.lam)} if map.lam.size == 1 else {}
     return {"table": map.ir.table, **shape, **lam, **more}
@@ -154,7 +154,7 @@ PARTICLES, FLIGHTS = 300, 3  # orbits in phase space, and orbits drawn in the ta
 
 
 def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
-    """The flights of a few particles and the bounces of many after a transient, as two panels.
+    """Two panels: the flights of a few particles, and the bounces of many, after a transient.
 
     >>> room, space = portrait(PinballMap("ellipse", lam="1/2", a=2), 0.1)
     >>> space.x, space.y
@@ -171,7 +171,7 @@ def portrait(map: PinballMap, fine: float = 1.0) -> Panels:
 
 
 def draw_portrait(panels: Panels) -> "Figure":
-    """Draws both panels side by side."""
+    """Draws the two panels of a portrait side by side."""
     figure, (room, space) = sheet(panels)
     room.plot(*panels[0].curves["flights"], color=BLACK, lw=0.3)
     room.plot(*panels[0].curves["outline"], **OUTLINE)

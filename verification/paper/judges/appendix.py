@@ -34,7 +34,7 @@ C = Symbol("C", real=True)  # cos(omega)
 
 @judges("appendix.ellipse_quadratic")
 def quadratic(claim: Claim) -> Judgement:
-    """The flight equation in the ellipse is quadratic: the ray inserted into `x**2/a**2 + y**2 = 1`."""
+    """The flight equation in the ellipse is quadratic: a ray is inserted into `x**2/a**2 + y**2 = 1`."""
     t = Symbol("t")
     x, y = ellipse.components[0].point
     met = Poly(expand(((x + t * cos(omega)) / a) ** 2 + (y + t * sin(omega)) ** 2 - 1), t)
@@ -54,7 +54,7 @@ def quadratic(claim: Claim) -> Judgement:
 
 @judges("appendix.cardioid_cubic")
 def cubic(claim: Claim) -> Judgement:
-    """The flight equation in the cardioid has the factor `U - u` and a cubic in `U`, the `exp(i*theta)` of its ends."""
+    """The flight equation in the cardioid, in `U = exp(i*theta)`, is `U - u` times a cubic; `u` is the start."""
     u, U, v = symbols("u U v")  # v = exp(i*omega)
     imaginary = (U - u) * (2 + u + U) / v - (1 / U - 1 / u) * (2 + 1 / u + 1 / U) * v
     rest = u**2 * U**2 * (2 + u + U) + v**2 * (2 * u * U + U + u)
@@ -71,7 +71,7 @@ def cubic(claim: Claim) -> Judgement:
 
 @judges("appendix.cuspless_plane")
 def plane(claim: Claim) -> Judgement:
-    """A counterexample: a vertical ray left of the pole passes the dent and never meets the wall's line."""
+    """A counterexample: a vertical ray left of the pole passes the dent and never meets the line of the wall."""
     cosines = [(-1 + sign * sqrt(1 + 4 * Rational(-1, 8))) / 2 for sign in (1, -1)]  # x = c*(1 + c) = -1/8
     kept, removed = cosines
     return Judgement(
@@ -92,7 +92,7 @@ def plane(claim: Claim) -> Judgement:
 
 @judges("appendix.incoming_angle")
 def incoming(claim: Claim) -> Judgement:
-    """The sign in the angle of incidence: `<v, n> = -cos(eta)` for the inward normal."""
+    """Judges the sign in the angle of incidence: `<v, n> = -cos(eta)` for the inward normal `n`."""
     v = Matrix([sin(eta), -cos(eta)])
     n = Matrix([0, 1])
     return Judgement(
@@ -116,7 +116,7 @@ def outgoing_angle(claim: Claim) -> Judgement:
 
 @judges("appendix.outgoing_velocity", "appendix.tangential_sign")
 def outgoing_velocity(claim: Claim) -> Judgement:
-    """The exit velocity: a unit vector at the angle `phi` from the normal, on the side of the incoming one."""
+    """Judges the exit velocity: a unit vector at the angle `phi` from the normal, on the incoming side."""
     side, t, n = Symbol("d", real=True), Matrix([1, 0]), Matrix([0, 1])
     arriving = Matrix([side * sin(eta), -cos(eta)])  # eta in [0, pi/2), on either side
     leaving = n * cos(lam * eta) + t * side * sin(lam * eta)
@@ -137,7 +137,7 @@ def outgoing_velocity(claim: Claim) -> Judgement:
 
 @judges("appendix.elastic_cartesian")
 def elastic_cartesian(claim: Claim) -> Judgement:
-    """The elastic reflection `v' = v - 2*(v.n)*n`."""
+    """Judges the elastic reflection `v' = v - 2*(v.n)*n`."""
     v, n = Matrix([sin(eta), -cos(eta)]), Matrix([0, 1])
     mirrored = v - 2 * v.dot(n) * n
     return Judgement(
@@ -148,7 +148,7 @@ def elastic_cartesian(claim: Claim) -> Judgement:
 
 @judges("appendix.trigonometry_unavoidable")
 def trigonometry(claim: Claim) -> Judgement:
-    """Trigonometry is avoidable for rational `lam`: by half-angle formulas at 1/2, by algebraic equations at `p/q`."""
+    """Trigonometric functions can be avoided if `lam` is rational, by half-angle formulas or algebraic equations."""
     half = cos(eta / 2) ** 2 - (1 + cos(eta)) / 2
     order = Symbol("n", real=True)
     next_one = cos((order + 1) * eta) - 2 * cos(eta) * cos(order * eta) + cos((order - 1) * eta)
@@ -167,7 +167,7 @@ def trigonometry(claim: Claim) -> Judgement:
 
 @judges("appendix.exponents_growth")
 def growth(claim: Claim) -> Judgement:
-    """The exponents are growth rates of normalising factors: the diagonal entries of QR factors."""
+    """The exponents are growth rates of normalising factors, which are the diagonal entries of QR factors."""
     return Judgement(
         by(
             "the first factors multiply to |D(T^n) v| and all of them to |det D(T^n)|; where Oseledets' theorem gives "
@@ -181,7 +181,7 @@ def growth(claim: Claim) -> Judgement:
 
 @judges("appendix.exponents_sum")
 def exponents_sum(claim: Claim) -> Judgement:
-    """The sum of exponents is the mean of the logarithm, not the logarithm of the mean."""
+    """The sum of exponents is the mean of a logarithm, and not the logarithm of a mean as printed."""
     rates = (S.Half, S(2))
     gap = (sum(rates) / 2) ** 2 - rates[0] * rates[1]
     return Judgement(
@@ -198,7 +198,7 @@ def exponents_sum(claim: Claim) -> Judgement:
 
 @judges("appendix.elastic_start")
 def elastic_start(claim: Claim) -> Judgement:
-    """An elastic first bounce gives every exit angle in (-pi/2, pi/2), which `-lam*eta` does not."""
+    """An elastic first bounce makes every exit angle in (-pi/2, pi/2) possible; a bounce with `-lam*eta` does not."""
     return Judgement(
         by(
             "phi = -eta runs over all exit angles, -lam*eta over a fraction lam of them",
@@ -211,7 +211,7 @@ def elastic_start(claim: Claim) -> Judgement:
 
 @judges("appendix.periodic_sign")
 def periodic_sign(claim: Claim) -> Judgement:
-    """A counterexample: the exponent 0 in the circle, where no diameter attracts its neighbours."""
+    """A counterexample: in the circle an exponent is 0, but no diameter attracts its neighbours."""
     matrix = Matrix(flight(s, phi)).jacobian([s, phi])
     along = matrix * Matrix([1, 0]) - Matrix([1, 0])
     position, angle = (expression.subs(lam, 1) for expression in iterate(3))

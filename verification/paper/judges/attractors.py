@@ -1,7 +1,8 @@
 """Judges of claims on which attractors exist. Paper: sections 1, 2, 5, 6, 7.
 
-A certified attracting cycle refutes "only" and "all", and proves "is found". That nothing else attracts is sampled: if
-none of `n` random starts reaches anything else, the share of those that do is below `3/n` with 95 per cent confidence.
+A certified attracting cycle refutes "only" and "all", and proves "is found". Only samples show that nothing else
+attracts: if each of `n` random starts reaches a known attractor, fewer than a fraction `3/n` of all starts reach
+another one, with 95 per cent confidence.
 """
 
 from collections.abc import Iterable
@@ -48,7 +49,7 @@ JOIN = 3**0.5 / 4
 
 @cache
 def found(name: str, contraction: str, starts: int = STARTS, **shape: Any) -> tuple[Attractor, ...]:
-    """The attractors that random starts reach, and their images under the table's symmetries."""
+    """The attractors that random starts reach, and their images under the symmetries of the table."""
     return find(PinballMap(name, lam=contraction, **shape), starts, SEED, bounces=1000, images=True)
 
 
@@ -63,12 +64,12 @@ def unsettled(attractors: Iterable[Attractor], starts: int = STARTS) -> int:
 
 
 def chaotic(attractors: Iterable[Attractor]) -> list[Attractor]:
-    """The chaotic ones among attractors."""
+    """The chaotic attractors among the given ones."""
     return [a for a in attractors if a.kind is Kind.CHAOTIC]
 
 
 def cycles(attractors: Iterable[Attractor], period: int = 0) -> list[Attractor]:
-    """The cycles among attractors, with the given period unless it is 0."""
+    """The cycles among the given attractors, only those of the given period unless it is 0."""
     return [a for a in attractors if a.kind is Kind.CYCLE and period in (0, a.period)]
 
 
@@ -76,7 +77,7 @@ def cycles(attractors: Iterable[Attractor], period: int = 0) -> list[Attractor]:
 def proved_at(
     contraction: str, period: int, name: str = "egg", alpha: str = SHAPE, starts: int = STARTS
 ) -> SignFinding:
-    """The finding that all sampled cycles of a period, and their images, are proved to attract."""
+    """The finding that all sampled cycles of a period, and their symmetric images, are proved to attract."""
     shape = {"alpha": alpha} if name == "egg" else {}
     table, some = tables.named(name).at(**shape), cycles(found(name, contraction, starts, **shape), period)
     proofs = [certificate(table, Rational(contraction), a.points) for a in some]
@@ -87,9 +88,9 @@ def proved_at(
 
 @cache
 def strange(alpha: str, kind: str = "boundary") -> tuple[SignFinding, arb]:
-    """The finding of strange attractors of the egg near a tangency, and the contraction there.
+    """The finding that the egg has strange attractors near a tangency, and the contraction of the tangency.
 
-    The shape is `SHAPE`, except for the `boundary` tangency, known at further shapes, and `bands`, at 1/10.
+    The shape is `SHAPE`, except for the tangencies `boundary`, known at further shapes, and `bands`, at 1/10.
     """
     alone = {"boundary": lambda: boundary(Rational(alpha)), "bands": bands, "earliest": earliest}
     found = alone[kind]() if kind in alone else touching(kind)
@@ -104,10 +105,10 @@ def strange(alpha: str, kind: str = "boundary") -> tuple[SignFinding, arb]:
 
 @judges("map.two_attractor_types")
 def two_types(claim: Claim) -> Judgement:
-    """Refuted in the egg: a strange attractor near a tangency has no dominated splitting; true in the other tables.
+    """The claim is refuted in the egg: a strange attractor near a tangency has no dominated splitting.
 
-    The attractor lies in a disc where areas shrink. It is the closure of an unstable manifold with a dense orbit, and
-    `docs/global.md` proves that such a set has no dominated splitting.
+    The attractor lies in a disc where areas shrink. It is the closure of an unstable manifold and has a dense orbit;
+    `docs/global.md` proves that such a set has no dominated splitting. In the other tables the claim is true.
     """
     chaos, where = strange(SHAPE)
     tangency = f"lambda = {where.str(6, radius=False)}"
@@ -132,7 +133,7 @@ def two_types(claim: Claim) -> Judgement:
 
 @cache
 def rotating() -> tuple[SignFinding, dict[Symbol, Expr]]:
-    """The finding of attracting closed curves of the egg with irrational rotation, and the parameters of birth."""
+    """The finding that closed curves of the egg with irrational rotation attract, and the parameters of their birth."""
     found = invariant_circle()
     shape, contraction = (x.str(15, radius=False) for x in found.enclosure.zero[-2:])
     holds = found.certified and found.attracting and found.side > 0 and found.problem.irrational
@@ -152,7 +153,7 @@ def rotating() -> tuple[SignFinding, dict[Symbol, Expr]]:
 
 @judges("map.no_irrational_rotation")
 def no_rotation(claim: Claim) -> Judgement:
-    """Random starts reach no invariant circle, as the paper reports; where circles exist, and where not, is proved."""
+    """In samples no start reaches an invariant circle; where such circles exist, and where not, is proved."""
     circles, _ = rotating()
     excluded = by(
         "the circle, the ellipses, both cardioids", settles(), two_cycles(), expands(), splits(), every_return()
@@ -172,7 +173,7 @@ def no_rotation(claim: Claim) -> Judgement:
 
 @judges("map.whispering_gallery")
 def whispering_gallery(claim: Claim) -> Judgement:
-    """A counterexample: in the circle the angle grows by `lam > 1` beyond pi/2, where the map ends."""
+    """A counterexample: in the circle the angle grows by `lam > 1` at each bounce until it exceeds pi/2 and stops."""
     more, n = Symbol("more", positive=True), Symbol("n", positive=True)
     exit = flight()[1]
     rule = equal(exit, lam * phi, {})
@@ -207,7 +208,7 @@ def near_zero() -> AlmostEveryOrbit:
 
 
 def settles_near_zero() -> SignFinding:
-    """The finding that almost every orbit converges to the horizontal one for small `lam`."""
+    """The finding that almost every orbit converges to the horizontal orbit for small `lam`."""
     return by(
         f"for 0 < lam <= {NEAR_ZERO} almost every orbit converges to the horizontal one of period 2",
         answer(
@@ -221,7 +222,7 @@ def settles_near_zero() -> SignFinding:
 
 @judges("cuspless.period2_attracts")
 def period2_attracts(claim: Claim) -> Judgement:
-    """Almost every start converges to period 2 for small contractions; starts of the vertical orbit have no area."""
+    """For small contractions almost every start converges to period 2; the exceptions have measure zero."""
     return Judgement(
         settles_near_zero(),
         f"proved for 0 < lam <= {NEAR_ZERO}: all but a set of starts of no area, which holds the stable manifold of "
@@ -231,7 +232,7 @@ def period2_attracts(claim: Claim) -> Judgement:
 
 @judges("cuspless.compact_near_zero")
 def compact_near_zero(claim: Claim) -> Judgement:
-    """The recurrent boxes lie in four rectangles away from joins and grazing."""
+    """The recurrent boxes lie in four rectangles, away from the joins and from grazing flights."""
     parts, bounds = near_zero().parts, [1.1, 0.1]  # joins: at 2*pi/3 on the arc, at 0.433 on the wall
     ends = [np.maximum(-p.boxes.x[0], p.boxes.x[1]) < np.array(bounds)[p.boxes.chart] for p in parts or ()]
     inside = all(map(np.all, ends)) if ends else None
@@ -248,7 +249,7 @@ def compact_near_zero(claim: Claim) -> Judgement:
 
 @judges("cuspless.attractors_nonsmooth")
 def nonsmooth(claim: Claim) -> Judgement:
-    """The attractor's slope jumps at the joins by `lam` times the jump of the curvature, and not at `s = 0`."""
+    """The attractor's slope jumps at the joins, by `lam` times the jump of the curvature, but not at `s = 0`."""
     said = []
     for contraction in ("0.5", "0.8"):
         map = PinballMap("cuspless", lam=contraction)
@@ -269,7 +270,7 @@ def nonsmooth(claim: Claim) -> Judgement:
 
 @judges("egg.higher_period_attractors")
 def higher_periods(claim: Claim) -> Judgement:
-    """Attractors of higher period exist: cycles of period 21 near `lam = 1`."""
+    """Attractors of higher period exist: cycles of period 21 attract near `lam = 1`."""
     return Judgement(
         by("at alpha = 0.08", proved_at("0.99", 21)),
         "found at lam = 0.99: period 21; at 0.999 also periods 24, 30, 51; at 0.82 to 0.88 periods 12 and 24",
@@ -282,7 +283,7 @@ BETWEEN = ("0.4", "0.45")  # contractions of this range, where both are sampled
 
 @cache
 def triangles_attract(low: Fraction, high: Fraction) -> SignFinding:
-    """The finding that at `alpha = 1/10` a cycle of period 3 attracts at every contraction of a range, by halving."""
+    """The finding that a cycle of period 3 attracts at `alpha = 1/10` for every contraction in a range."""
     bounce, parts, tried = lambdify(lam, near_flat().subs(letter, Rational(TENTH)), "cmath"), [(low, high)], 0
     with working(BITS):
         map = table(Rational(TENTH)).over(complex_balls(BITS))
@@ -297,7 +298,7 @@ def triangles_attract(low: Fraction, high: Fraction) -> SignFinding:
 
 @cache
 def both_near_tenth() -> tuple[SignFinding, list[arb]]:
-    """The finding of strange attractors near two contractions at which the triangles of period 3 attract."""
+    """The finding that strange attractors exist near two contractions at which the triangles of period 3 attract."""
     low, high = RANGE
     (first, one), (last, other) = strange(TENTH, "bands"), strange(TENTH)
     inside = exact(low).real < one < other < exact(high).real
@@ -307,10 +308,10 @@ def both_near_tenth() -> tuple[SignFinding, list[arb]]:
 
 @judges("egg.coexistence_near_tenth")
 def near_tenth(claim: Claim) -> Judgement:
-    """Triangles attract over a range of contractions, and strange attractors exist near both of its ends.
+    """Triangles attract over a range of contractions, near both ends of which strange attractors exist.
 
-    Both persist for all nearby shapes, since zeros are regular and inequalities strict over a closed range. Sets of
-    positive measure near two contractions are not a range: chaos in between is sampled.
+    Both facts persist for all nearby shapes, since zeros are regular and inequalities are strict over a closed range.
+    Sets of positive measure near two contractions do not fill a range; chaos in between is only sampled.
     """
     (proof, values), each = both_near_tenth(), {x: egg(x, FEW, TENTH) for x in BETWEEN}
     low, high = map(float, RANGE)
@@ -327,7 +328,7 @@ def near_tenth(claim: Claim) -> Judgement:
 
 @judges("egg.figure_chaos")
 def figure_chaos(claim: Claim) -> Judgement:
-    """Panels (c) and (d): chaotic attractors at one diameter each, and one that visits all three."""
+    """Samples for panels (c) and (d): three chaotic attractors at one vertex each; one that visits all vertices."""
     local, wide = chaotic(egg("0.43")), chaotic(egg("0.45"))
     good = [len(vertices(a)) for a in local] == [1, 1, 1] and [len(vertices(a)) for a in wide] == [3]
     rates = [f"{max((a.nu_plus for a in some), default=np.nan):.2f}" for some in (local, wide)]
@@ -339,7 +340,7 @@ def figure_chaos(claim: Claim) -> Judgement:
 
 
 def vertices(attractor: Attractor) -> set[int]:
-    """The indices `k` of vertices, at `2*pi*k/3`, to which points of an attractor come within 0.3 radians.
+    """The indices `k` of the vertices `2*pi*k/3` to which points of an attractor come within 0.3 radians.
 
     >>> from types import SimpleNamespace
     >>> sorted(vertices(SimpleNamespace(points=SimpleNamespace(theta=np.array([0.1, 3.1, -2.0])))))
@@ -352,7 +353,7 @@ def vertices(attractor: Attractor) -> set[int]:
 
 @judges("egg.only_smooth_chaos")
 def only_smooth(claim: Claim) -> Judgement:
-    """In the circle and the ellipses only cycles of period 2 attract, and the egg has strange attractors, proved."""
+    """In circle and ellipses only cycles of period 2 attract; the egg has strange attractors. Both are proved."""
     others = by(
         "for 0 < lam < 1 every orbit of an ellipse converges to one of two cycles, and every orbit of the circle to a "
         "diameter, since |phi| falls by the factor lam",

@@ -36,14 +36,14 @@ def position(angle: Expr) -> Expr:
 
 @judges("cardioid.polar")
 def radius(claim: Claim) -> Judgement:
-    """The printed polar equation, from the distance to the pole in the direction `theta`."""
+    """Judges the printed polar equation, by the distance to the pole in the direction `theta`."""
     x, y = BOUNDARY.point
     return identity(claim, trigonometric(x * cos(theta) + y * sin(theta)))
 
 
 @judges("cardioid.arc_length")
 def length(claim: Claim) -> Judgement:
-    """The printed arc length, from the integral of the speed `sqrt(2 + 2*cos(theta))`."""
+    """Judges the printed arc length, by the integral of the speed `sqrt(2 + 2*cos(theta))`."""
     return identity(claim, arc_length(BOUNDARY))
 
 
@@ -65,19 +65,19 @@ def flattest(claim: Claim) -> Judgement:
 
 @judges("cardioid.cusp_s")
 def cusp_position(claim: Claim) -> Judgement:
-    """The printed arc lengths of the cusp, from both ends of the closed form."""
+    """Judges the printed arc lengths of the cusp, by the closed form at both ends."""
     return identity(claim, Matrix([position(-pi), position(pi)]))
 
 
 @judges("cardioid.vertical_orbit_s")
 def vertical_position(claim: Claim) -> Judgement:
-    """The printed arc lengths of the bounces of the vertical cycle."""
+    """Judges the printed arc lengths of the bounces of the vertical cycle."""
     return identity(claim, Matrix([position(angle) for _, angle in cardioid_vertical().bounces]))
 
 
 @judges("cardioid.curvature_polar")
 def polar_curvature(claim: Claim) -> Judgement:
-    """The printed curvature of `rho(theta)`, for an undetermined function `rho`."""
+    """Judges the printed curvature of the curve `rho(theta)`, for an undetermined function `rho`."""
     rho = Function("rho", real=True)(theta)
     general = curvature(Component("polar", (rho * cos(theta), rho * sin(theta)), -pi, pi))
     orders = {rho.diff(theta, 2): claim.names["rho2"], rho.diff(theta): claim.names["rho1"], rho: claim.names["rho"]}
@@ -88,7 +88,7 @@ def polar_curvature(claim: Claim) -> Judgement:
 
 @judges("cardioid.curvature")
 def own_curvature(claim: Claim) -> Judgement:
-    """The printed curvature of the cardioid, derived from the definition."""
+    """Judges the printed curvature of the cardioid, by the definition of curvature."""
     return identity(claim, curvature(BOUNDARY))
 
 
@@ -130,7 +130,7 @@ def slap_facts() -> tuple[SignFinding, SignFinding]:
 
 @judges("cardioid.slap_slow", "cardioid.slap_fast")
 def slow_and_fast(claim: Claim) -> Judgement:
-    """The slap map's slope `T0'` at two landing points, and the region between the roots of `T0' = 1`."""
+    """The slap map's slope `T0'` is below 1 on a region between two roots of `T0' = 1`, and above 1 elsewhere."""
     first, last = (edge.n(6) for edge in slow_region())
     return Judgement(
         by(
@@ -146,7 +146,7 @@ def slow_and_fast(claim: Claim) -> Judgement:
 
 @judges("cardioid.slap_slow_caption")
 def slow_caption(claim: Claim) -> Judgement:
-    """The caption confuses the cusp with the flattest point, at the other end of the boundary."""
+    """The caption confuses the cusp with the flattest point, which is at the other end of the boundary."""
     first, last = (edge.n(6) for edge in slow_region())
     return Judgement(
         counterexample("s = 0 is the flattest point; the cusp is at s = +-4", zero("", position(pi) - 4)),
@@ -157,7 +157,7 @@ def slow_caption(claim: Claim) -> Judgement:
 
 
 def expansion() -> SignFinding:
-    """The finding that the slap map `T0` has `|(T0**2)'| > 3/2` everywhere, with `expansion_infimum` as the minimum."""
+    """The finding that `|(T0**2)'| > 3/2` everywhere for the slap map `T0`; the minimum is `expansion_infimum`."""
     return by(
         "(T0^2)' > 3/2 at every point whose two flights are defined, and its infimum is attained",
         *slap_facts(),
@@ -168,7 +168,7 @@ def expansion() -> SignFinding:
 
 @judges("cardioid.slap_expanding_caption")
 def expanding_caption(claim: Claim) -> Judgement:
-    """The caption prints the slope of the slap map `T0` for that of `T0^2`."""
+    """The caption gives the slope of the slap map `T0` as that of `T0^2`."""
     slow = positive(1 - slope_squared(Rational(-3, 5)), {})
     return Judgement(
         counterexample(
@@ -186,18 +186,18 @@ def expanding_caption(claim: Claim) -> Judgement:
 
 @judges("cardioid.slap_expanding", "cardioid.slap_second_derivative")
 def expanding(claim: Claim) -> Judgement:
-    """The second iterate expands, by Sturm's theorem on an algebraic parametrisation, with an algebraic infimum."""
+    """The second iterate of the slap map expands, by Sturm's theorem on an algebraic parametrisation."""
     return Judgement(expansion(), "inf (T0^2)' = 1.506262..., on orbits that cross the axis", value=expansion_infimum())
 
 
 def q_landing(cycle: Cycle) -> Expr:
-    """The coordinate `q` of the second bounce of a cycle."""
+    """The coordinate `q` of the second bounce of a cycle, used in the parametrisation of the slap map."""
     half = cycle.bounces[1][1] / 2
     return sin(half) / sqrt(1 + 7 * cos(half) ** 2)
 
 
 def alone(landing: Expr) -> tuple[SignFinding, SignFinding]:
-    """The findings that the slap map's square `T0^2` has one mirror pair of fixed points, landing at `q = landing`."""
+    """The findings that `T0^2` has one pair of fixed points, mirror images, and that they land at `q = landing`."""
     found = fixed_points()
     here = [zero("it is the one that was counted", end - landing) for ends in found for end in ends]
     return answer(len(found) == 1, "Sturm: T0^2 has one mirror pair of fixed points"), conjunction(*here)
@@ -205,7 +205,7 @@ def alone(landing: Expr) -> tuple[SignFinding, SignFinding]:
 
 @judges("cardioid.vertical_orbit")
 def vertical_orbit(claim: Claim) -> Judgement:
-    """The vertical orbit is an unstable double normal, and gives the only fixed points of the slap map's square."""
+    """The vertical orbit is an unstable double normal; it gives the only fixed points of `T0^2`."""
     cycle = cardioid_vertical()
     P = stability_number(cycle)
     return Judgement(

@@ -1,10 +1,10 @@
 """Judges of claims on attractors and exponents of both cardioids, proved or sampled. Paper: sections 4.1 to 5.3.
 
 `symbolic.cycles.defocusing` shows, with `g = 1 + tan((1 - lam)*pi/8)**2/2`, for every `lam < 1` of the cardioid: on
-every orbit off the cusp the lower limit of `log|D(T**n) (1, 0)|/n` is at least `log(g)`.
-`symbolic.cycles.almost_every` shows for almost every start that its upper limit is at most `log(2)`, and that vectors
-of one direction shrink. For `0 < lam < 1` finitely many natural (SRB) measures have basins that hold almost every
-start, and exponents exist there (`docs/exponents.md`, Theorem 11); that there is one is not shown. At `lam = 1` the
+every orbit off the cusp the lower limit of `log|D(T**n) (1, 0)|/n` is at least `log(g)`. `symbolic.cycles.almost_every`
+shows for almost every start that its upper limit is at most `log(2)`, and that vectors of one direction shrink. For `0
+< lam < 1` finitely many natural (SRB) measures have basins that hold almost every start, and the exponents exist in the
+basins (`docs/exponents.md`, Theorem 11); it is not shown that there is only one such measure. At `lam = 1` the
 exponents exist for almost every start; at `lam = 0` the natural measure and its exponent are proved.
 """
 
@@ -46,13 +46,13 @@ Array = NDArray[np.float64]
 
 @cache
 def slap_proof() -> ChaoticProof:
-    """The proved natural measure at `lam = 0` and its exponent."""
+    """The proof of the natural measure at `lam = 0` and of its exponent."""
     return slap_exponent()
 
 
 @judges("cardioid.slap_ergodic")
 def slap_ergodic(claim: Claim) -> Judgement:
-    """Ergodicity at `lam = 0`: the only invariant measure with a density is ergodic and natural."""
+    """The map is ergodic at `lam = 0`: its only invariant measure with a density is ergodic and natural."""
     proof = slap_proof()
     missing = [name for name, holds in proof.checks.items() if holds is not True]
     return Judgement(
@@ -68,13 +68,13 @@ def slap_ergodic(claim: Claim) -> Judgement:
 
 @cache
 def coverage(table: str) -> Array:
-    """The numbers of visits of 16 orbits to cells, at each of the contractions `FIFTHS`."""
+    """The numbers of visits of 16 orbits to each cell of phase space, at each of the contractions `FIFTHS`."""
     return visited(table, FIFTHS, 16, LONG)
 
 
 @judges("cardioid.attractor_grows", "cuspless.attractor_fills")
 def grows(claim: Claim) -> Judgement:
-    """The share of cells that are visited grows with the contraction."""
+    """Samples show that the fraction of cells that orbits visit grows with the contraction."""
     counts = coverage(claim.id.partition(".")[0])
     shares = [float(np.mean(c.sum(axis=0) > 0)) for c in counts]
     rough = uneven(counts[-1])
@@ -89,7 +89,7 @@ def grows(claim: Claim) -> Judgement:
 
 @judges("cardioid.transitive")
 def transitive(claim: Claim) -> Judgement:
-    """Single orbits visit the same cells, equally often, by a sample."""
+    """Samples show that single orbits all visit the same cells, equally often."""
     worst = 1.0
     for counts in coverage("cardioid"):
         often = counts.sum(axis=0) > len(counts) * DUE
@@ -108,7 +108,7 @@ NOT_SHOWN = "not shown for 0 < lam < 1: that there is one natural (SRB) measure,
 
 
 def stretching() -> SignFinding:
-    """The finding that every orbit off the cusp stretches exponentially, by a cone that bounces map into itself."""
+    """The finding that every orbit off the cusp stretches exponentially: bounces map a cone into itself."""
     return by(
         "beams that focus before D = cos(phi)/|K| form a cone that every bounce maps into itself at any lam, since "
         "t*(t - D0 - d1) = (4/3)*sin(delta)^4 >= 0 on every chord; their width in units of D grows by (t - D0)/d1 >= 1 "
@@ -159,7 +159,7 @@ def ranges() -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def natural_measures() -> SignFinding:
-    """For `0 < lam < 1` finitely many natural measures; almost every start is in the basin of one, with exponents."""
+    """The finding that for `0 < lam < 1` finitely many natural measures have basins with almost every start."""
     return by(
         "for 0 < lam < 1 a short curve along the cone is cut in two pieces at most, and the sum of the inverses of "
         "their stretches is below 1; what comes within e of the cusp's curve at any one time measures O(e) on it, so "
@@ -175,7 +175,7 @@ def natural_measures() -> SignFinding:
 
 @judges("cardioid.lyapunov_exist")
 def existence(claim: Claim) -> Judgement:
-    """By natural measures below `lam = 1`, by Oseledets' theorem at 1."""
+    """The exponents exist for almost every start: by natural measures below `lam = 1`, by Oseledets' theorem at 1."""
     return Judgement(
         by("below lam = 1 and at 1", natural_measures(), elastic()),
         "for every 0 < lam <= 1 almost every start has both exponents, as limits; for lam < 1 they take finitely many "
@@ -186,7 +186,7 @@ def existence(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_signs")
 def signs(claim: Claim) -> Judgement:
-    """The signs of the lower limit of one rate and the upper limit of the other, whether or not the limits exist."""
+    """The lower limit of one growth rate is proved to be positive, the upper limit of the other to be negative."""
     return Judgement(
         both_signs(),
         f"for every lam < 1 the rate of the largest singular value of D(T^n) has a lower limit of at least "
@@ -197,7 +197,7 @@ def signs(claim: Claim) -> Judgement:
 
 @judges("cardioid.exponents_bounded_away")
 def bounded_away(claim: Claim) -> Judgement:
-    """Exponents are not near 0: proved at each `lam < 1`, by a bound that tends to 0 with `1 - lam`; else sampled."""
+    """Exponents are proved to be bounded away from 0 at each `lam < 1`; one bound for all `lam` is only sampled."""
     (least, _), (_, most) = ranges()
     return sampled(
         f"proved at each lam < 1: {least_exponent()} bounds all orbits; it tends to 0 as lam tends to 1, so neither "
@@ -209,7 +209,7 @@ def bounded_away(claim: Claim) -> Judgement:
 
 @judges("cardioid.nonuniformly_hyperbolic")
 def nonuniformly_hyperbolic(claim: Claim) -> Judgement:
-    """Every orbit that misses the cusp is hyperbolic, with bounds that depend on `lam < 1` only."""
+    """Every orbit that misses the cusp is hyperbolic, with bounds that depend only on `lam < 1`."""
     return Judgement(
         both_signs(),
         "for every lam < 1 every orbit off the cusp is hyperbolic, and uniformly so in |K|*ds and dphi: the rate of "
@@ -220,7 +220,7 @@ def nonuniformly_hyperbolic(claim: Claim) -> Judgement:
 
 @judges("cardioid.chaotic_attractor")
 def chaotic_attractor(claim: Claim) -> Judgement:
-    """The likely limit set [Milnor1985] is no finite union of cycles, and almost every orbit there is unstable."""
+    """The likely limit set [Milnor1985] is not a finite union of cycles, and almost every orbit in it is unstable."""
     proof = slap_proof()
     return Judgement(
         by(
@@ -239,7 +239,7 @@ def chaotic_attractor(claim: Claim) -> Judgement:
 
 @judges("cardioid.attractor_near_cusp", "cardioid.attractor_noncompact")
 def near_cusp(claim: Claim) -> Judgement:
-    """Almost every orbit comes near the cusp: curves grow although the cusp cuts them, and long ones come near it."""
+    """Almost every orbit comes near the cusp: curves grow although the cusp cuts them; long ones come near it."""
     return Judgement(
         by(
             "a short curve along the cone is cut in two pieces at most, and the sum of the inverses of their stretches "
@@ -257,7 +257,7 @@ def near_cusp(claim: Claim) -> Judgement:
 
 @judges("cuspless.stable_if_flatter")
 def stable_if_flatter(claim: Claim) -> Judgement:
-    """No wall is flatter than a straight one; a wall that bends changes the sign of the flip's normal form."""
+    """A straight wall has the least curvature; a bent wall can reverse the sign of the flip's normal form."""
     free, bent = coefficient()
     M, _ = return_map()
     trace, det = trace_and_determinant(cuspless_horizontal())
@@ -284,7 +284,7 @@ def stable_if_flatter(claim: Claim) -> Judgement:
 
 @judges("cuspless.nontrivial_larger")
 def nontrivial_larger(claim: Claim) -> Judgement:
-    """Only the period-2 orbit attracts near 0; above `lambda_star` there is a region without stable cycles."""
+    """For small `lam` only the period-2 orbit attracts; above `lambda_star`, a chaotic attractor exists."""
     return Judgement(
         by("none near 0, and one above", settles_near_zero(), chaos()),
         f"no attractor but the period-2 orbit for 0 < lam <= {NEAR_ZERO}; a chaotic one for lambda_star < lam <= 0.1, "
@@ -294,7 +294,7 @@ def nontrivial_larger(claim: Claim) -> Judgement:
 
 @judges("cuspless.visits_more_boundary")
 def visits_more(claim: Claim) -> Judgement:
-    """The share of cells along the boundary that 16 orbits visit grows with the contraction."""
+    """Samples show that the fraction of boundary cells that 16 orbits visit grows with the contraction."""
     counts = coverage("cuspless").reshape(len(FIFTHS), -1, CELLS, CELLS).sum(axis=(1, 3))
     shares = np.mean(counts > 0, axis=1)
     said = (
@@ -307,7 +307,7 @@ def visits_more(claim: Claim) -> Judgement:
 
 @judges("cardioid.error_bars")
 def error_bars(claim: Claim) -> Judgement:
-    """The error bars of 100 starts, as in the paper's figure, against symbols a hundredth of the axis wide."""
+    """The error bars from 100 sampled starts are smaller than symbols of a hundredth of the axis."""
     exponents = spectrum("cardioid", TENTHS, 100)
     values = np.stack([exponents.plus[1:], exponents.minus[1:]])
     spread, error = float(np.max(np.std(values, axis=-1))), float(np.max(Spectrum.error(values)))
@@ -321,7 +321,7 @@ def error_bars(claim: Claim) -> Judgement:
 
 @judges("cardioid.finitely_many_attractors")
 def finitely_many(claim: Claim) -> Judgement:
-    """For the slap map one, since it has one invariant density; finitely many natural measures for `0 < lam < 1`."""
+    """The slap map has one natural measure; for `0 < lam < 1` there are finitely many."""
     proof = slap_proof()
     return Judgement(
         by(

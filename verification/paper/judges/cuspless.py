@@ -54,13 +54,13 @@ def horizontal() -> tuple[Expr, Expr]:
 
 @judges("cuspless.wall_x")
 def wall_x(claim: Claim) -> Judgement:
-    """The printed abscissa of the wall, from the end of the arc."""
+    """Judges the printed abscissa of the wall, by the end points of the arc."""
     return identity(claim, ARC.at(UPPER_JOIN)[0])
 
 
 @judges("cuspless.wall_y")
 def wall_y(claim: Claim) -> Judgement:
-    """The printed ends of the wall, from the ends of the arc."""
+    """Judges the printed ends of the wall, by the end points of the arc."""
     return identity(claim, Matrix([ARC.at(LOWER_JOIN)[1], ARC.at(UPPER_JOIN)[1]]))
 
 
@@ -79,7 +79,7 @@ def joined_smoothly() -> SignFinding:
 
 @judges("cuspless.convex")
 def convex(claim: Claim) -> Judgement:
-    """The table is convex: the arc turns left, the wall is straight, and there is no corner."""
+    """The table is convex: the arc turns left, the wall is straight, and the tangents agree at the joins."""
     return Judgement(
         by(
             "the arc turns left, the wall is straight, and the tangent is continuous at the joins",
@@ -93,7 +93,7 @@ def convex(claim: Claim) -> Judgement:
 
 @judges("cuspless.smooth_except_joins")
 def smooth(claim: Claim) -> Judgement:
-    """The boundary is smooth off the joins: each component is analytic with non-zero velocity."""
+    """The boundary is smooth except at the joins: each component is analytic with non-zero velocity."""
     squared = (speed(ARC) ** 2).subs(cos(theta), C)
     return Judgement(
         by("the speed does not vanish on the arc", positive(squared, {C: Interval(Rational(-1, 2), 1)})),
@@ -117,7 +117,7 @@ def joins(claim: Claim) -> Judgement:
 
 @judges("cuspless.rightmost_s")
 def rightmost(claim: Claim) -> Judgement:
-    """The rightmost point is `theta = 0`, half a perimeter from the wall's centre."""
+    """The rightmost point is at `theta = 0`, half a perimeter from the centre of the wall."""
     half = perimeter(cuspless) / 2
     return Judgement(
         by(
@@ -131,26 +131,26 @@ def rightmost(claim: Claim) -> Judgement:
 
 @judges("cuspless.C")
 def half_perimeter(claim: Claim) -> Judgement:
-    """Both printed forms of `C` are half the perimeter."""
+    """Both printed forms of `C` are equal to half the perimeter."""
     half = perimeter(cuspless) / 2
     return identity(claim, Matrix([half, half]))
 
 
 @judges("cuspless.joins_s")
 def joins_positions(claim: Claim) -> Judgement:
-    """The printed arc lengths of the joins."""
+    """Judges the printed arc lengths of the joins."""
     return identity(claim, Matrix([on_arc(UPPER_JOIN), on_arc(LOWER_JOIN)]))
 
 
 @judges("cuspless.upper_join_s")
 def upper_join(claim: Claim) -> Judgement:
-    """The printed arc length of the upper join, which comes before the wall's centre counterclockwise."""
+    """Judges the printed arc length of the upper join; counterclockwise, it comes before the wall's centre."""
     return identity(claim, on_arc(UPPER_JOIN))
 
 
 @judges("cuspless.no_unfolding")
 def no_unfolding(claim: Claim) -> Judgement:
-    """Unfolding fails, since it replaces a bounce by a straight passage, which needs `phi = -eta`."""
+    """Unfolding fails, since it replaces a bounce by a straight passage, which requires `phi = -eta`."""
     gap = (exit_angle() + eta) / eta
     return Judgement(
         by(
@@ -163,7 +163,7 @@ def no_unfolding(claim: Claim) -> Judgement:
 
 @judges("cuspless.vertical_orbit")
 def vertical(claim: Claim) -> Judgement:
-    """The vertical orbit is the cardioid's, with the same stability number above 1."""
+    """The vertical orbit is the same as in the cardioid, with the same stability number above 1."""
     P = stability_number(cuspless_vertical())
     return Judgement(
         by(
@@ -178,7 +178,7 @@ def vertical(claim: Claim) -> Judgement:
 
 @judges("cuspless.lambda_c_caption", "cuspless.lambda_c_digits")
 def lambda_c_digits(claim: Claim) -> Judgement:
-    """The printed digits of `lambda_c`, from its closed form."""
+    """Judges the printed digits of `lambda_c`, by its closed form."""
     return digits(claim, lambda_c())
 
 
@@ -198,7 +198,7 @@ def horizontal_orbit(claim: Claim) -> Judgement:
 
 @judges("cuspless.monodromy")
 def horizontal_monodromy(claim: Claim) -> Judgement:
-    """The printed matrix belongs to the other base point."""
+    """The printed matrix is the monodromy matrix at the other base point of the orbit."""
     here, there = (monodromy(cuspless_horizontal(), base) for base in (0, 1))
     return Judgement(
         equal(claim.formula, here, claim.box),
@@ -211,12 +211,12 @@ def horizontal_monodromy(claim: Claim) -> Judgement:
 
 @judges("cuspless.mu")
 def horizontal_multipliers(claim: Claim) -> Judgement:
-    """The printed multipliers, from the characteristic polynomial."""
+    """Judges the printed multipliers, by the characteristic polynomial."""
     return identity(claim, Matrix(multipliers(*horizontal())))
 
 
 def real_multipliers() -> SignFinding:
-    """The finding that the discriminant is positive on the closed range."""
+    """The finding that the discriminant of the horizontal orbit is positive on the closed range."""
     trace, det = horizontal()
     return positive(trace**2 - 4 * det, {lam: Interval(0, 1)})
 
@@ -240,12 +240,12 @@ def mu_nonpositive(claim: Claim) -> Judgement:
 
 @judges("cuspless.mu_above_minus_one")
 def mu_above_minus_one(claim: Claim) -> Judgement:
-    """The multipliers exceed -1 below `lambda_c`, a root of the characteristic polynomial at -1."""
+    """The multipliers exceed -1 below `lambda_c`, where the characteristic polynomial has the root -1."""
     return Judgement(attracting_below(), "-1 < mu for 0 <= lam < lambda_c")
 
 
 def attracting_below() -> SignFinding:
-    """The finding that the horizontal orbit attracts below `lambda_c`: multipliers between -1 and 0."""
+    """The finding that the horizontal orbit attracts below `lambda_c`, as its multipliers lie between -1 and 0."""
     trace, det = horizontal()
     factored = Rational(5, 16) * (lam - lambda_c()) * (lam - 1 / lambda_c())
     return by(
@@ -259,14 +259,14 @@ def attracting_below() -> SignFinding:
 
 @judges("cuspless.lambda_c")
 def period_doubling(claim: Claim) -> Judgement:
-    """The printed `lambda_c`, from `P = -((1 - lam)/(1 + lam))**2` with `P = -11/16`."""
+    """Judges the printed `lambda_c`, the root of `P = -((1 - lam)/(1 + lam))**2` for `P = -11/16`."""
     judgement = identity(claim, lambda_c())
     return Judgement(judgement.printed, judgement.derived, value=lambda_c())
 
 
 @judges("cuspless.mu_minus_at_lambda_c")
 def mu_at_lambda_c(claim: Claim) -> Judgement:
-    """At `lambda_c` the smaller multiplier is -1, because the product is `lambda_c**2 < 1`."""
+    """At `lambda_c` the smaller multiplier is -1, since the product of both is `lambda_c**2 < 1`."""
     trace, det = (x.subs(lam, lambda_c()) for x in horizontal())
     root = zero("", 1 + trace + det)
     return Judgement(
@@ -276,7 +276,7 @@ def mu_at_lambda_c(claim: Claim) -> Judgement:
 
 @judges("cuspless.map_nondifferentiable")
 def map_nondifferentiable(claim: Claim) -> Judgement:
-    """The derivative depends on the curvature at the start, which jumps at the joins."""
+    """The derivative of the map depends on the curvature at the start, which jumps at the joins."""
     jump = simplify(diff(derivative_matrix(), K1))
     leaves = derivative_matrix(lam=0)[0, 0]
     return Judgement(
@@ -291,7 +291,7 @@ def map_nondifferentiable(claim: Claim) -> Judgement:
 
 @judges("map.noncompact_domain")
 def noncompact(claim: Claim) -> Judgement:
-    """The cardioid's phase space: the normal at the rightmost point hits the cusp, neighbouring ones do not."""
+    """The cardioid's phase space is not closed: only the normal at the rightmost point hits the cusp."""
     arc = cardioid.components[0]
     start, cusp = arc.at(0), arc.at(pi)
     return Judgement(
@@ -308,7 +308,7 @@ def noncompact(claim: Claim) -> Judgement:
 
 @judges("cuspless.noncompact")
 def cuspless_noncompact(claim: Claim) -> Judgement:
-    """No point is removed at the joins, since the normal is unique; only the derivative does not exist."""
+    """Phase space has no gaps at the joins, where the normal is unique; only the derivative is undefined there."""
     return Judgement(
         counterexample(
             "the normal is unique at every point, joins included, so by the definition of section 2 no point is "

@@ -1,9 +1,9 @@
 """Judges of claims on the chaos of the cuspless cardioid, from `lambda*` to 1. Paper: section 5.
 
 A *chaotic attractor* is defined in the report (`senses` of its `paper.toml`). `symbolic.cycles.returns` and `splitting`
-prove for every `1/10 <= lam < 1` that each return to the arc stretches beams of a cone, so every orbit that misses the
-joins is unstable; a trapping polygon proves chaos from `lambda*` to 1/10. It is not proved that the attractor has a
-dense orbit, so neither that it is unique nor that it attracts globally.
+prove for every `1/10 <= lam < 1` that each return to the arc stretches the beams in a cone, so that every orbit which
+misses the joins is unstable; a trapping polygon proves chaos from `lambda*` to 1/10. It is not proved that the
+attractor has a dense orbit, that it is unique, or that it attracts globally.
 """
 
 from fractions import Fraction
@@ -73,7 +73,7 @@ def attracted() -> SignFinding:
 
 
 def one_set(lams: tuple[str, ...]) -> str:
-    """The set that random starts reach, as text."""
+    """A sentence on the attractors that random starts reach at some contractions."""
     each = [found("cuspless", x) for x in lams]
     single = all(len(some) == len(chaotic(some)) == 1 and not unsettled(some) for some in each)
     least = min(a.nu_plus for some in each for a in some)
@@ -82,9 +82,9 @@ def one_set(lams: tuple[str, ...]) -> str:
 
 
 def one_attractor(lams: tuple[str, ...]) -> Judgement:
-    """Chaos attracts every orbit, proved; that it is one attractor is sampled.
+    """It is proved that a chaotic set attracts every orbit; that it is a single attractor is only sampled.
 
-    Two chaotic attractors would lie in the compact set too, and neither would attract globally.
+    If there were two chaotic attractors, both would lie in this set, and neither would attract every orbit.
     """
     seen = one_set(lams)
     return sampled(
@@ -98,19 +98,19 @@ def one_attractor(lams: tuple[str, ...]) -> Judgement:
 
 @judges("cuspless.global_near_one")
 def global_near_one(claim: Claim) -> Judgement:
-    """Near 1 a compact set of orbits unstable off the joins attracts every orbit; one attractor is sampled."""
+    """Near 1, a compact set of orbits that are unstable off the joins attracts all; samples show one attractor."""
     return one_attractor(NEAR_ONE)
 
 
 @judges("cuspless.chaotic_above_tenth")
 def above_tenth(claim: Claim) -> Judgement:
-    """The same for every contraction from 1/10 to 1."""
+    """From 1/10 to 1 a chaotic set is proved to attract every orbit; that it is one attractor is sampled."""
     return one_attractor(ABOVE)
 
 
 @judges("cuspless.only_attractor")
 def only_attractor(claim: Claim) -> Judgement:
-    """No cycle off the joins attracts from 1/10 on; that there is one chaotic attractor is sampled."""
+    """No cycle off the joins attracts for `lam >= 1/10`; that there is one chaotic attractor is only sampled."""
     said = (
         f"proved for {LOWEST} <= lam < 1: every orbit that misses the joins is unstable, so no cycle off the joins "
         f"attracts; {one_set(ABOVE)}; a share below {3 / STARTS:.0%} of others is not excluded"
@@ -125,7 +125,7 @@ def only_attractor(claim: Claim) -> Judgement:
 
 @cache
 def almost_every() -> AlmostEveryOrbitBelowLambdaStar:
-    """The theorem on almost every orbit below `lambda*`, from three graphs of boxes."""
+    """The theorem that almost every orbit below `lambda*` converges, proved with three graphs of boxes."""
     scene = Scene("cuspless")
     middle = AlmostEveryOrbit(scene, (NEAR_ZERO, NEXT), (4096, 512), 8, (HORIZONTAL,), 30)
     last = AlmostEveryOrbitBesideLambdaStar(scene, (NEXT, TOP), (4096, 512), 8, (HORIZONTAL,), 60)
@@ -134,7 +134,7 @@ def almost_every() -> AlmostEveryOrbitBelowLambdaStar:
 
 @judges("cuspless.lambda_star_caption")
 def alone_below_star(claim: Claim) -> Judgement:
-    """The printed digits of `lambda*`, and that almost every orbit below ends on the horizontal orbit."""
+    """Judges the printed digits of `lambda*`, and that almost every orbit below it ends on the horizontal orbit."""
     digits = settled(claim, "lambda-star")
     return Judgement(
         by(
@@ -158,7 +158,7 @@ def alone_below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.lambda_star_body")
 def persists_above_star(claim: Claim) -> Judgement:
-    """The printed digits, and above `lambda*` a region in which all orbits stretch, beside the stable orbit."""
+    """Judges the printed digits; above `lambda*` a chaotic attractor coexists with the attracting period-2 orbit."""
     digits = settled(claim, "lambda-star")
     return Judgement(
         by("from lambda* on, while the orbit of period 2 attracts", digits.printed, chaos(), attracting_below()),
@@ -172,7 +172,7 @@ def persists_above_star(claim: Claim) -> Judgement:
 def below() -> ConvergenceBelowLambdaStar:
     """The theorem on orbits from the upper join at small angles below `lambda*`.
 
-    The tubes lie around the horizontal orbit; those of the graphs are small, the last one almost reaches the joins.
+    Its tubes surround the horizontal orbit; tubes for the graphs are small, the last tube almost reaches the joins.
     """
     cuts, grids = (NEAR_ZERO, Fraction("0.06"), NEXT), ((2048, 128), (4096, 256))
     parts, scene = zip(pairwise(cuts), grids, strict=True), Scene("cuspless")
@@ -204,7 +204,7 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.chaotic_above_star")
 def chaotic_above_star(claim: Claim) -> Judgement:
-    """Chaos is proved by a polygon up to 1/10 and by a cone of beams above; not that it is the same attractor."""
+    """Chaos is proved up to 1/10 by a polygon, and above by a cone of beams; not that it is on one attractor."""
     return Judgement(
         by(
             "from lambda* to 1/10, and from there to 1, almost every start of an open set stretches, and "
@@ -248,7 +248,7 @@ def crosses_zero(claim: Claim) -> Judgement:
 
 @judges("cuspless.accumulates_on_joins")
 def accumulates(claim: Claim) -> Judgement:
-    """Orbits accumulate at the joins: a curve along the cone without landing there would grow without bound."""
+    """Orbits accumulate at the joins: a curve along the cone that never lands there would grow without bound."""
     return Judgement(
         by(
             "a curve along the cone that never meets a join lies on one component at each bounce, where its length is "

@@ -42,7 +42,7 @@ def explicit_map() -> SignFinding:
 
 
 def settles() -> SignFinding:
-    """The finding that every orbit of the circle converges to a diameter, by a closed form of the state."""
+    """The finding that every orbit of the circle converges to a diameter, by a closed form of its bounces."""
     position, angle = after(n)
     even, small = after(2 * n)
     return conjunction(
@@ -61,13 +61,13 @@ def settles() -> SignFinding:
 
 
 def after(bounces: Expr) -> tuple[Expr, Expr]:
-    """The state of the circle after `bounces` bounces, in closed form."""
+    """Arc length and angle of a particle in the circle after `bounces` bounces, in closed form."""
     return s + pi * bounces - 2 * phi * (1 - lam**bounces) / (1 - lam), lam**bounces * phi
 
 
 @judges("circle.elastic_angles", "circle.elastic_integrable")
 def elastic(claim: Claim) -> Judgement:
-    """The elastic circle preserves `phi`, since `phi1 = lam*phi`."""
+    """In the circle with elastic collisions `phi` is constant, since `phi1 = lam*phi`."""
     return Judgement(
         by("phi is conserved at lam = 1", explicit_map(), zero("", flight()[1].subs(lam, 1) - phi)),
         "T_1(s, phi) = (s + pi - 2*phi, phi)",
@@ -76,20 +76,20 @@ def elastic(claim: Claim) -> Judgement:
 
 @judges("circle.exit_angle")
 def exit_angle_of_circle(claim: Claim) -> Judgement:
-    """The printed exit angle in the circle, where a chord makes equal angles: `eta1 = -phi0`."""
+    """Judges the printed exit angle in the circle, where a chord makes equal angles at both ends: `eta1 = -phi0`."""
     return identity(claim, exit_angle().subs(eta, -phi))
 
 
 @judges("circle.nearer_diameter")
 def nearer(claim: Claim) -> Judgement:
-    """The angle from the diameter shrinks by the factor `lam` at each bounce."""
+    """The angle from the diameter is multiplied by `lam` at each bounce."""
     shrinks = positive(1 - lam, {lam: Interval.Ropen(0, 1)})
     return Judgement(by("|phi1| = lam*|phi| < |phi| for phi != 0", explicit_map(), shrinks), "|phi1| = lam*|phi|")
 
 
 @judges("circle.converges", "circle.limit_set")
 def converges(claim: Claim) -> Judgement:
-    """The limit of every orbit, from the explicit map."""
+    """Every orbit in the circle converges to the printed limit, as the explicit map shows."""
     return Judgement(
         by(
             "phi_n tends to 0 and s_2n to s - 2*phi/(1 - lam); a state with phi = 0 has period 2",
@@ -102,7 +102,7 @@ def converges(claim: Claim) -> Judgement:
 
 @judges("circle.every_diameter", "circle.slap_period2")
 def diameters(claim: Claim) -> Judgement:
-    """Every state with `phi = 0` has period 2."""
+    """Every orbit of the circle that starts with `phi = 0` has period 2."""
     twice = Matrix(iterate(2)).subs(phi, 0)
     return Judgement(
         by("T^2(s, 0) = (s + 2*pi, 0)", explicit_map(), zero("", twice[0] - s - 2 * pi, twice[1])),
@@ -112,7 +112,7 @@ def diameters(claim: Claim) -> Judgement:
 
 @judges("circle.dominated_splitting")
 def splitting(claim: Claim) -> Judgement:
-    """The splitting of the circle's derivative on `phi = 0`, which is one constant matrix."""
+    """Judges the splitting of the circle's derivative on `phi = 0`, where the derivative is a constant matrix."""
     matrix = derivative_matrix(K0=-1, K1=-1, t=2, cos_phi0=1, cos_eta1=1)
     along, across = Matrix([1, 0]), Matrix([2, 1 - lam])
     return Judgement(
@@ -128,19 +128,19 @@ def splitting(claim: Claim) -> Judgement:
 
 @judges("circle.slap")
 def slap(claim: Claim) -> Judgement:
-    """The printed slap map of the circle, the explicit map at `phi = 0`."""
+    """Judges the printed slap map of the circle, which is the explicit map at `phi = 0`."""
     return identity(claim, flight()[0].subs(phi, 0))
 
 
 @judges("ellipse.parametrisation")
 def parametrisation(claim: Claim) -> Judgement:
-    """The printed parametrisation of the ellipse."""
+    """Judges the printed parametrisation of the ellipse."""
     return identity(claim, Matrix(ellipse.components[0].point))
 
 
 @judges("ellipse.shape_range")
 def shape_range(claim: Claim) -> Judgement:
-    """Shapes `a >= 1` suffice, after scaling by the shorter half axis and exchanging the axes if necessary."""
+    """Shapes `a >= 1` suffice, by scaling with the shorter half axis and exchanging the axes if necessary."""
     p, q = symbols("p q", positive=True)
     x, y = p * cos(theta) / q, q * sin(theta) / q
     scaled = Matrix(ellipse.components[0].point).subs(a, p / q)
@@ -165,7 +165,7 @@ def two_period2(claim: Claim) -> Judgement:
 
 
 def axes_alone(box: Box) -> SignFinding:
-    """The finding that a chord with the parameters `m + B`, `m - B` that is normal at both lies on an axis."""
+    """The finding that a chord with parameters `m + B` and `m - B` that is normal at both ends lies on an axis."""
     m, B = symbols("m B", real=True)
     x, y = ellipse.components[0].point
     chord = Matrix([x, y]).subs(theta, m + B) - Matrix([x, y]).subs(theta, m - B)
@@ -191,7 +191,7 @@ def minor_axis_stable(claim: Claim) -> Judgement:
 
 @judges("ellipse.major_axis_invariant")
 def major_axis_invariant(claim: Claim) -> Judgement:
-    """The major axis is an orbit, since it is normal at both ends."""
+    """The major axis is an orbit, since it is normal to the boundary at both ends."""
     return Judgement(
         answer(is_double_normal(major_axis()), "the major axis is normal to the boundary at both ends"),
         "phi = 0 forever",
@@ -199,7 +199,7 @@ def major_axis_invariant(claim: Claim) -> Judgement:
 
 
 def lyapunov() -> list[SignFinding]:
-    """The findings that `J = abs(gradient)*cos(phi)` never falls, and is larger on the minor axis than on the major."""
+    """The findings that `J = abs(gradient)*cos(phi)` never decreases, and is larger on the minor axis."""
     ends = [gradient(*ellipse.components[0].at(angle)).norm() for angle in (S.Zero, pi / 2)]
     return [
         zero("J survives the flight (Joachimsthal)", joachimsthal_defect()),
@@ -249,25 +249,25 @@ def basin(claim: Claim) -> Judgement:
 
 @judges("ellipse.curvature")
 def curvature_formula(claim: Claim) -> Judgement:
-    """The printed curvature, derived from the parametrisation."""
+    """Judges the printed curvature, by the parametrisation."""
     return identity(claim, curvature(ellipse.components[0]))
 
 
 @judges("ellipse.curvature_major")
 def curvature_major(claim: Claim) -> Judgement:
-    """The printed curvature at an end of the major axis."""
+    """Judges the printed curvature at an end of the major axis."""
     return identity(claim, major_axis().frames[0].curvature)
 
 
 @judges("ellipse.curvature_minor")
 def curvature_minor(claim: Claim) -> Judgement:
-    """The printed curvature at an end of the minor axis."""
+    """Judges the printed curvature at an end of the minor axis."""
     return identity(claim, minor_axis().frames[0].curvature)
 
 
 @judges("ellipse.major_axis_eigenvalues")
 def major_eigenvalues(claim: Claim) -> Judgement:
-    """The printed bounds of the eigenvalues: the characteristic polynomial is positive at 0, negative at 1."""
+    """Judges the printed bounds of the eigenvalues: the characteristic polynomial is > 0 at 0 and < 0 at 1."""
     trace, det = major()
     return on_range(
         claim,
@@ -287,7 +287,7 @@ def major_unstable(claim: Claim) -> Judgement:
 
 @judges("ellipse.evolute")
 def ellipse_evolute(claim: Claim) -> Judgement:
-    """The evolute is the astroid `x = (a**2-1)/a*cos**3`, `y = -(a**2-1)*sin**3`."""
+    """The ellipse's evolute is the astroid `x = (a**2-1)/a*cos**3`, `y = -(a**2-1)*sin**3`."""
     centre = centre_of_curvature(ellipse.components[0])
     astroid = Matrix([(a**2 - 1) / a * cos(theta) ** 3, -(a**2 - 1) * sin(theta) ** 3])
     return Judgement(
@@ -297,7 +297,7 @@ def ellipse_evolute(claim: Claim) -> Judgement:
 
 
 def axis_slope(P: Expr, shape: Expr) -> Expr:
-    """The slope `(T0^2)'` on a double normal at the half axis `a = shape`: its stability number `P(a)`."""
+    """The slope `(T0^2)'` on a double normal of the ellipse `a = shape`, which is its stability number `P(a)`."""
     return P.subs(a, shape)
 
 
@@ -312,7 +312,7 @@ def slap_unstable(claim: Claim) -> Judgement:
 
 @judges("ellipse.slap_stable_orbits")
 def slap_stable(claim: Claim) -> Judgement:
-    """The two stable points are one orbit, along the minor axis."""
+    """The two stable points of the slap map belong to one orbit, along the minor axis."""
     slope = axis_slope(stability_number(minor_axis()), Rational(6, 5))
     stable = positive(1 - slope**2, {})
     return Judgement(

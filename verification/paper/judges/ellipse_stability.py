@@ -17,30 +17,30 @@ w = Symbol("w", positive=True)  # sqrt(a**2 - 1)
 
 
 def critical_factor() -> Expr:
-    """The factor of the paper's P_2 that changes sign: `a**4*(trace - 2*det**(1/2))` on the minor axis."""
+    """The factor of the paper's P_2 that changes its sign: `a**4*(trace - 2*det**(1/2))` on the minor axis."""
     trace, _ = minor()
     return (a**4 * (trace - 2 * lam)).expand()
 
 
 def both_sides_of_sqrt2(prove: Callable[[Box], SignFinding], box: Box) -> SignFinding:
-    """The finding of a statement for every `a > 1` but `sqrt(2)`, in the variable `w = sqrt(a**2 - 1)`."""
+    """The finding that a statement holds for all `a > 1` except `sqrt(2)`; the variable is `w = sqrt(a**2 - 1)`."""
     return conjunction(prove({**box, w: Interval.open(0, 1)}), prove({**box, w: Interval.open(1, oo)}))
 
 
 def in_w(expression: Expr) -> Expr:
-    """An even function of `a` in the variable `w = sqrt(a**2 - 1)`."""
+    """The expression, which is even in `a`, as a function of `w = sqrt(a**2 - 1)`."""
     return cancel(expression.subs(a, sqrt(1 + w**2)))
 
 
 @judges("ellipse.monodromy")
 def minor_monodromy(claim: Claim) -> Judgement:
-    """The printed monodromy matrix, a product of two flights; it is the same at both ends by symmetry."""
+    """Judges the printed monodromy matrix, a product of two flights; by symmetry it is the same at both ends."""
     return identity(claim, monodromy(minor_axis()))
 
 
 @judges("ellipse.mu")
 def minor_multipliers(claim: Claim) -> Judgement:
-    """The printed roots, with the derived P_1 and P_2 inserted."""
+    """Judges the printed multipliers as roots, with the derived P_1 and P_2 inserted."""
     trace, det = minor()
     derived = {Symbol("P1", real=True): a**4 * trace, Symbol("P2", real=True): a**8 * discriminant(trace, det)}
     finding = equal(claim.formula.subs(derived), Matrix(multipliers(trace, det)), claim.box)
@@ -61,7 +61,7 @@ def second_polynomial(claim: Claim) -> Judgement:
 
 @judges("ellipse.complex_near_one")
 def complex_near_one(claim: Claim) -> Judgement:
-    """Multipliers are complex near `lam = 1`, except at `a = 1`, where 1 is a multiplier, and `a = sqrt(2)`."""
+    """The multipliers are complex near `lam = 1`, except at `a = 1`, where one is 1, and at `a = sqrt(2)`."""
     trace, det = minor()
     circle = 1 - trace.subs(a, 1) + det
     near = 4 * det - trace**2
@@ -106,7 +106,7 @@ def elastic_elliptic(claim: Claim) -> Judgement:
 
 @judges("ellipse.P2_crossing")
 def crossing(claim: Claim) -> Judgement:
-    """`P_2` has the sign of the discriminant, its multiple by a positive factor."""
+    """`P_2` has the sign of the discriminant, of which it is a positive multiple."""
     return Judgement(
         by("P_2 = a^8*(trace^2 - 4*det) and a^8 > 0", positive(a**8, {a: claim.box[a]})),
         "real where P_2 > 0, complex where P_2 < 0",
@@ -115,7 +115,7 @@ def crossing(claim: Claim) -> Judgement:
 
 @judges("ellipse.P2_sqrt2")
 def touching(claim: Claim) -> Judgement:
-    """`P_2` touches 0 at `a = sqrt(2)` without crossing, with the factor `(a**2 - 2)**2`."""
+    """`P_2` has a zero at `a = sqrt(2)` without a change of sign, by the factor `(a**2 - 2)**2`."""
     P2 = (a**8 * discriminant(*minor())).factor()
     rest = P2 / ((1 + lam) ** 2 * (a**2 - 2) ** 2)
     same_side = {lam: Interval.Lopen(0, 1)}
@@ -138,7 +138,7 @@ def touching(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_plus")
 def upper_root(claim: Claim) -> Judgement:
-    """The printed `lambda_+`, the inverse of `lambda_-`."""
+    """Judges the printed `lambda_+`, which is the inverse of `lambda_-`."""
     return identity(claim, lambda_plus())
 
 
@@ -164,21 +164,21 @@ def upper_outside(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_minus_range")
 def lower_range(claim: Claim) -> Judgement:
-    """`lambda_-` lies in [0, 1], since it is a square and at most 1."""
+    """`lambda_-` lies in [0, 1], as it is a square that is at most 1."""
     inside = nonnegative((w + 1) ** 2 - (w - 1) ** 2, {w: Interval(0, oo)})
     return Judgement(by("lambda_- = ((w-1)/(w+1))^2 is a square and at most 1", inside), "0 <= lambda_- <= 1")
 
 
 @judges("ellipse.lambda_minus_sqrt2")
 def lower_limit_at_sqrt2(claim: Claim) -> Judgement:
-    """The printed limit of `lambda_-` at `sqrt(2)`, where it is continuous."""
+    """Judges the printed limit of `lambda_-` at `sqrt(2)`, where it is continuous."""
     reached = lambda_minus().subs(a, sqrt(2))
     return Judgement(by("lambda_- is continuous at a = sqrt(2)", equal(claim.formula, reached, {})), str(reached))
 
 
 @judges("ellipse.lambda_minus_oo")
 def lower_limit_at_infinity(claim: Claim) -> Judgement:
-    """The printed limit of `lambda_-`, a rational function of `w` with equal leading coefficients."""
+    """Judges the printed limit of `lambda_-`, a rational function of `w` with equal leading coefficients."""
     reached = limit(((w - 1) / (w + 1)) ** 2, w, oo)
     return Judgement(by("the limit of ((w-1)/(w+1))^2 as w -> oo", equal(claim.formula, reached, {})), str(reached))
 
@@ -201,7 +201,7 @@ def stable_node(claim: Claim) -> Judgement:
 
 @judges("ellipse.complex_above")
 def complex_above(claim: Claim) -> Judgement:
-    """Multipliers are complex between the roots, except where the other factor of `P_2` vanishes."""
+    """The multipliers are complex between the roots, except where the other factor of `P_2` vanishes."""
     trace, det = minor()
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())
     share = Symbol("share", positive=True)  # lam = lambda_- + share*(1 - lambda_-)
@@ -221,7 +221,7 @@ def complex_above(claim: Claim) -> Judgement:
 
 @judges("ellipse.splitting_nonreal")
 def splitting_nonreal(claim: Claim) -> Judgement:
-    """No splitting without real eigenvalues, since an invariant real line has one."""
+    """Without real eigenvalues there is no splitting, since an invariant line has a real eigenvalue."""
     mu, v, m12, m22 = symbols("mu v m12 m22", real=True)
     kept = Matrix([[mu - m12 * v, m12], [(mu - m22) * v, m22]])  # every matrix that maps (1, v) to mu*(1, v)
     return Judgement(
@@ -235,7 +235,7 @@ def splitting_nonreal(claim: Claim) -> Judgement:
 
 
 def eigenline_defects() -> list[Expr]:
-    """Zeros which show that if `B*A*v = mu*v`, then `A*v` is an eigenvector of `A*B`; with `v = (1, 0)`."""
+    """Expressions whose vanishing shows that `A*v` is an eigenvector of `A*B` if `v = (1, 0)` is one of `B*A`."""
     a11, a12, a21, a22, b12, b22, mu = symbols("a11 a12 a21 a22 b12 b22 mu", real=True)
     A = Matrix([[a11, a12], [a21, a22]])
     B = Matrix([[mu, b12], [0, b22]]) * A.inv()  # every B with B*A*(1, 0) = mu*(1, 0)
@@ -271,7 +271,7 @@ def splitting_hyperbolic(claim: Claim) -> Judgement:
 
 @judges("ellipse.dominated_splitting")
 def dominated_splitting(claim: Claim) -> Judgement:
-    """The splitting: real distinct multipliers below `lambda_-`, a Jordan block at it, complex ones above."""
+    """The multipliers are real and distinct below `lambda_-`, have a Jordan block at it, and are complex above."""
     corner = monodromy(minor_axis())[0, 1]
     off = both_sides_of_sqrt2(lambda box: positive(in_w(corner**2), box), {lam: Interval(0, 1)})
     roots = (a**2 - 2) ** 2 * (lam - lambda_minus()) * (lam - lambda_plus())
@@ -295,13 +295,13 @@ def dominated_splitting(claim: Claim) -> Judgement:
 
 @judges("ellipse.lambda_minus_5")
 def lower_root_at_5(claim: Claim) -> Judgement:
-    """The printed digits of `lambda_-(5)`, from the closed form."""
+    """Judges the printed digits of `lambda_-(5)`, by the closed form."""
     return digits(claim, lambda_minus().subs(a, Integer(5)))
 
 
 @judges("ellipse.major_by_inversion")
 def major_by_inversion(claim: Claim) -> Judgement:
-    """The major axis is the minor axis of the ellipse with `1/a`, rotated and enlarged `a` times."""
+    """The major axis is the minor axis of the ellipse with `1/a`, after a rotation and a scaling by `a`."""
     enlarged = diag(a, 1) * monodromy(minor_axis()).subs(a, 1 / a) * diag(1 / a, 1)
     return Judgement(
         by("an identity, with arc length in units of a", zero("", *(enlarged - monodromy(major_axis())))),

@@ -1,7 +1,7 @@
-"""Judges of claims on Lyapunov exponents and sizes of basins: proved for cycles, else sampled with an error.
+"""Judges of claims on Lyapunov exponents and sizes of basins: proved for cycles, otherwise sampled with an error.
 
 Paper: sections 5.3, 6.4, 6.6 and the appendix. Exponents of cycles are proved from certified multipliers, those of
-chaotic orbits sampled with standard errors.
+chaotic orbits are sampled, with standard errors.
 """
 
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ SEED = 1
 
 
 def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float:
-    """The share of random starts that end on period 3: a negative exponent, away from the diameters."""
+    """The fraction of random starts that end on period 3 (with a negative exponent, away from the diameters)."""
     map = PinballMap("egg", lam=lam, alpha=str(SHAPE))
     ball = phase_starts(map, starts, SEED)
     end = map.exponents(ball.theta, ball.phi, 200, bounces, ball.component)
@@ -47,7 +47,7 @@ def share_of_period_3(lam: str, starts: int = 400, bounces: int = 3000) -> float
 
 @judges("egg.period3_end_caption")
 def end_of_period_3(claim: Claim) -> Judgement:
-    """The digits of the fold, in closed form; samples see it late, since the basins are born with size 0."""
+    """Judges the digits of the fold, by a closed form; plots show it late, since the basins start with size 0."""
     shares = ", ".join(f"{share_of_period_3(lam):.1%} at {lam}" for lam in ("0.3785", "0.38", "0.39", "0.42"))
     found = digits(claim, saddle_node().subs(alpha, SHAPE), ("0.39", "0.378"))
     return replace(found, derived=f"{found.derived}; random starts that reach period 3: {shares}, so plots see it late")
@@ -60,7 +60,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """The exponents of single orbits at several contractions; orbits are along the last axis."""
+    """The exponents of single orbits at several contractions; the last axis of each array counts the orbits."""
 
     lams: Array
     plus: Array
@@ -68,18 +68,18 @@ class Spectrum:
 
     @property
     def total(self) -> Array:
-        """The sum of both exponents."""
+        """The sum of both exponents of each orbit."""
         return self.plus + self.minus
 
     @staticmethod
     def error(values: Array) -> Array:
-        """The standard errors of the means over orbits."""
+        """The standard errors of means over orbits, which are counted by the last axis of `values`."""
         return np.asarray(np.std(values, axis=-1, ddof=1) / np.sqrt(values.shape[-1]))
 
 
 @cache
 def spectrum(table: str, lams: tuple[float, ...], particles: int = BALLS, bounces: int = BOUNCES) -> Spectrum:
-    """The exponents of `particles` orbits at each contraction, after transients. Paper: figures of 4.1 and 5.3."""
+    """The exponents of `particles` orbits at each contraction, after a transient. Paper: figures of 4.1 and 5.3."""
     growth = settled(table, np.maximum(lams, 1e-300), particles)  # no log(0)
     growth.advance(bounces)
     plus = growth.stretch / bounces
@@ -88,7 +88,7 @@ def spectrum(table: str, lams: tuple[float, ...], particles: int = BALLS, bounce
 
 
 def settled(table: str, lams: Array, particles: int) -> Growth:
-    """The same particles after a transient at each contraction, started as in the paper's appendix."""
+    """The same random particles at each contraction, started as in the paper's appendix, after a transient."""
     map = PinballMap(table, lam=np.repeat(lams, particles))
     starts = interior_starts(map.at(1), particles, SPECTRA_SEED)
     growth = Growth(map, *(np.tile(field, len(lams)) for field in (starts.theta, starts.phi, starts.component)))
@@ -97,7 +97,7 @@ def settled(table: str, lams: Array, particles: int) -> Growth:
 
 
 def visited(table: str, lams: tuple[float, ...], particles: int, bounces: int) -> Array:
-    """The number of visits of each ball to each cell of `(s, sin(phi))`, of shape `(contractions, balls, cells)`."""
+    """How often each particle visits each cell of `(s, sin(phi))`: an array (contractions, particles, cells)."""
     growth = settled(table, np.array(lams), particles)
     map = growth.map
     orbit = map.orbit(growth.theta, growth.phi, bounces, growth.component)
@@ -111,12 +111,12 @@ def visited(table: str, lams: tuple[float, ...], particles: int, bounces: int) -
 
 @cache
 def coverage(table: str, lams: tuple[float, ...]) -> Array:
-    """The visits of 16 orbits of 4000 bounces, cached for several judges."""
+    """The visits of 16 orbits of 4000 bounces to each cell, cached for several judges."""
     return visited(table, lams, 16, 4000)
 
 
 def uneven(counts: Array) -> float:
-    """The relative standard deviation of the cells' counts in excess of that of random counting."""
+    """The relative standard deviation of the counts in cells, in excess of that of random counting."""
     whole = counts.sum(axis=0)
     mean = float(np.mean(whole))
     return float(np.sqrt(max(np.var(whole) / mean - 1, 0.0) / mean))
@@ -127,13 +127,13 @@ DISCRETE = ("exists", "unique", "admissible", "minimal_period")
 
 
 def proved(proof: AttractingCycle) -> bool:
-    """True if the cycle is proved to exist, to be admissible and to have this minimal period."""
+    """True if the cycle is proved to exist, to be admissible, and to have the stated minimal period."""
     return all(proof.checks[name] is True for name in DISCRETE)
 
 
 @judges("cuspless.lyapunov_signs")
 def cuspless_signs(claim: Claim) -> Judgement:
-    """The signs of the exponents on the chaotic attractor; below `lambda_c` period 2 has two negative ones."""
+    """Samples show `nu_plus > 0 > nu_minus` on the chaotic attractor; in the basin of period 2, both are negative."""
     lams = tuple(k / 10 for k in range(1, 11))
     found = spectrum("cuspless", lams)
     least, most = float(np.min(found.plus)), float(np.max(found.minus))
@@ -149,7 +149,7 @@ def cuspless_signs(claim: Claim) -> Judgement:
 
 @cache
 def averaged(contraction: str, orbits: int = 1500) -> tuple[float, float, float]:
-    """The mean `nu_plus` over random starts, its standard error, and the share of starts on no cycle."""
+    """The mean `nu_plus` over random starts, its standard error, and the fraction of starts that reach no cycle."""
     map = PinballMap("cuspless", lam=contraction)
     start = interior_starts(map, orbits, SEED)
     plus = map.exponents(start.theta, start.phi, 500, 4000, start.component).nu_plus
@@ -157,14 +157,14 @@ def averaged(contraction: str, orbits: int = 1500) -> tuple[float, float, float]
 
 
 def listed(contractions: tuple[str, ...]) -> str:
-    """The means at contractions, as text."""
+    """The means of `nu_plus` at the given contractions, as text."""
     rows = [(x, *averaged(x)) for x in contractions]
     return "; ".join(f"{m:+.4f} +- {e:.0e} at {x} ({c:.1%} chaotic)" for x, m, e, c in rows)
 
 
 @judges("cuspless.nu_jump")
 def jumps(claim: Claim) -> Judgement:
-    """The mean has a steep rise but no jump, since the basin of period 2 shrinks to nothing."""
+    """The mean exponent rises steeply but does not jump, since the basin of period 2 shrinks to nothing."""
     points = ("0.09", "0.092", "0.093", "0.0933", "0.095")
     exact = float(lambda_c())
     gaps, shares = [exact - float(x) for x in points[:4]], [1 - averaged(x)[2] for x in points[:4]]
@@ -190,7 +190,7 @@ def triangle_rate() -> Expr:
 
 
 def agree(one: arb, other: arb) -> SignFinding:
-    """The finding that two balls for one number, with radii up to 1e-15, meet; refuted when they do not."""
+    """The finding that two balls for one number, with radii up to 1e-15, meet; refuted if they do not."""
     if not one.overlaps(other):
         return SignFinding(Outcome.REFUTED, f"{one} and {other} are different")
     return answer(max(one.rad(), other.rad()) < arb("1e-15"), "both agree to 1e-15")
@@ -198,7 +198,7 @@ def agree(one: arb, other: arb) -> SignFinding:
 
 @judges("egg.exponent_period3")
 def period3(claim: Claim) -> Judgement:
-    """The printed exponent of period 3, against a closed form at the contraction of the paper's comparison."""
+    """Judges the printed exponent of period 3, by a closed form at the contraction of the paper's comparison."""
     here = Rational(3937, 10000)
     value = triangle_rate().subs(lam, here)
     born = enclose(saddle_node().subs(alpha, SHAPE)).real
@@ -223,7 +223,7 @@ def period3(claim: Claim) -> Judgement:
 
 @cache
 def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
-    """The cycle of period 32 at a share of the way from birth to doubling: True if proved, `lam`, `nu_plus`."""
+    """The cycle of period 32 inside its window, at the fraction `share`: True if proved, `lam`, and `nu_plus`."""
     table = tables.egg(3).at(alpha=SHAPE)
     _, _, born, dies = proved_doublings()
     theta, contraction = doubled(born.problem, born.start, (dies.lam - born.lam) / 50)
@@ -239,13 +239,13 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
 
 @cache
 def proved_doublings() -> list:  # type: ignore[type-arg]
-    """The doublings `lambda_3` to `lambda_6` in float64."""
+    """The period doublings `lambda_3` to `lambda_6` of the egg's cascade, in float64."""
     return list(islice(cascade(SHAPE), 4))
 
 
 @judges("egg.exponent_period32")
 def period32(claim: Claim) -> Judgement:
-    """The exponent of period 32 falls from 0 and returns to 0 along its window."""
+    """The exponent of the cycle of period 32 is 0 at both ends of its window; between, five values are certified."""
     shares = [Fraction(k, 20) for k in (1, 3, 10, 17, 19)]
     rows = [period_32(share) for share in shares]
     fits = next(row for row in rows if row[0] and round(float(row[2].mid()), 2) == -0.01)
@@ -262,7 +262,7 @@ def period32(claim: Claim) -> Judgement:
 
 @judges("egg.chaos_by")
 def chaos_by(claim: Claim) -> Judgement:
-    """A tangency below the printed contraction, near which strange attractors are proved."""
+    """Strange attractors are proved near a tangency below the printed contraction."""
     chaos, value = strange("0.08", "earliest")
     where = value.str(9, radius=False)
     return Judgement(
@@ -279,7 +279,7 @@ def chaos_by(claim: Claim) -> Judgement:
 
 @judges("egg.weak_dissipation_attracts")
 def weak_dissipation_attracts(claim: Claim) -> Judgement:
-    """A counterexample: an elliptic hexagon of the egg becomes repelling, as its bounces are oblique."""
+    """A counterexample: a hexagon of the egg that is elliptic at `lam = 1` repels at `lam = 99/100`."""
     table = tables.egg(3).at(alpha=Rational(1, 20))
     six = [-3.0849, -2.0728, -0.9905, 0.0216, 1.1038, 2.1160]
     damped, elastic = (certificate(table, x, phase_points(six, 0.0), 20) for x in (Rational(99, 100), S.One))

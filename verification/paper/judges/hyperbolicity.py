@@ -1,10 +1,10 @@
 """Judges of claims on hyperbolicity of both cardioids, and on the orbit through both corners. Paper: sections 4 to 5.2.
 
 Dominated splitting and elastic hyperbolicity are proved in `symbolic.cycles.splitting` and
-`symbolic.cycles.defocusing`. Near the orbit through both corners "chaotic" is proved in this sense: a region around it
-is mapped into itself, and every orbit in it has an exponent above a positive bound, so no cycle in it is stable. The
-module also iterates the egg's map with a Newton iteration that stops early (appendix), to measure its effect on values
-in section 6.6.
+`symbolic.cycles.defocusing`. Near the orbit through both corners "chaotic" is proved in this sense: a region around
+that orbit is mapped into itself, and every orbit in it has an exponent above a positive bound, so no cycle in it is
+stable. The module also iterates the egg's map with a Newton iteration that stops early (appendix), to measure its
+effect on values in section 6.6.
 """
 
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ def cones() -> SignFinding:
 
 @judges("cuspless.dominated_splitting", "cardioid.dominated_splitting")
 def dominated(claim: Claim) -> Judgement:
-    """Dominated splitting holds by a cone field; curvature is bounded on the cuspless cardioid only."""
+    """Both tables have dominated splitting, by a cone field; only the cuspless cardioid has bounded curvature."""
     here = Rational(1, 2)
     scope = "with one C and one nu for every invariant set of orbits that miss the two joins, where DT does not exist"
     if claim.id.startswith("cardioid"):
@@ -66,7 +66,7 @@ def dominated(claim: Claim) -> Judgement:
 
 
 def elastic_growth() -> SignFinding:
-    """The finding that at `lam = 1` beams of the cone widen at every return to the arc, so `nu_plus > 0`."""
+    """The finding that at `lam = 1` the beams of a cone widen at every return to the arc, so that `nu_plus > 0`."""
     return by(
         "at lam = 1 the width of a beam in units of D grows at every return to the arc: by a gain above 1 along it, "
         "by 38/27 or more by way of the wall. The map preserves a finite measure, so almost every start comes back to "
@@ -78,7 +78,7 @@ def elastic_growth() -> SignFinding:
 
 @judges("cuspless.splitting_by_exponents")
 def by_exponents(claim: Claim) -> Judgement:
-    """A counterexample: at `lam = 1` the table has exponents of both signs and no dominated splitting."""
+    """A counterexample: at `lam = 1` the table has exponents of both signs, but no dominated splitting."""
     sheared = zero("", *(grazing() ** 2 - Matrix([[1, 4 / K0], [0, 1]])))
     return Judgement(
         counterexample(
@@ -97,7 +97,7 @@ def by_exponents(claim: Claim) -> Judgement:
 
 @judges("cuspless.unfolded_defocusing")
 def unfolded(claim: Claim) -> Judgement:
-    """Both halves of Wojtkowski's condition hold, on an arc and from an arc to its mirror image."""
+    """Wojtkowski's condition holds for both kinds of chords: on an arc, and from an arc to its mirror image."""
     return Judgement(
         by(
             "d^2 rho/ds^2 < 0 on the arc, and t >= D0 + d1 on every chord of the unfolded table: along an arc as in "
@@ -112,7 +112,7 @@ def unfolded(claim: Claim) -> Judgement:
 
 @judges("cuspless.elastic_hyperbolic", "cardioid.elastic_hyperbolic")
 def hyperbolic(claim: Claim) -> Judgement:
-    """The elastic tables are hyperbolic, by their cones at `lam = 1`."""
+    """The elastic tables are hyperbolic: at `lam = 1` they have invariant cones."""
     finding = by("every bounce widens the beams of a cone, by a gain above 1", expands())
     if claim.id.startswith("cuspless"):
         finding = elastic_growth()
@@ -120,10 +120,10 @@ def hyperbolic(claim: Claim) -> Judgement:
 
 
 def averages(table: str, law: str = "1") -> tuple[Array, Array, Array]:
-    """Averages of three functions along orbits, their errors, and their correlations after `LAG` bounces.
+    """Averages of three functions along orbits, their errors, and the correlations after `LAG` bounces.
 
-    The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`, `S` the perimeter, with
-    mean 0 in the elastic measure `cos(phi) ds dphi`.
+    The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`, where `S` is the perimeter;
+    their means in the elastic measure `cos(phi) ds dphi` are 0.
     """
     map = PinballMap(table, lam=law)
     start = phase_starts(map, BALLS, SEED)
@@ -140,7 +140,7 @@ def averages(table: str, law: str = "1") -> tuple[Array, Array, Array]:
 
 @judges("cuspless.elastic_ergodic", "cardioid.elastic_ergodic")
 def ergodic(claim: Claim) -> Judgement:
-    """Ergodicity is cited from the literature; here time averages agree with means over phase space."""
+    """Ergodicity is cited from the literature; samples show that time averages agree with means over phase space."""
     means, errors, later = averages(claim.id.partition(".")[0])
     chi = np.mean((means / errors) ** 2, axis=1)
     good = bool(np.all(chi < 2)) and bool(np.max(np.abs(later)) < 0.02)
@@ -157,9 +157,9 @@ MOST = 30  # the most steps of Newton's method
 
 
 def bounced(theta: Array, phi: Array, lam: Array, alpha: float, tolerance: float | Array) -> tuple[Array, Array]:
-    """The next bounce of the egg, as `(theta, phi)`, by Newton steps until one is below `tolerance`.
+    """The next bounce of the egg, as `(theta, phi)`, by Newton steps until a step is below `tolerance`.
 
-    Each row of particles ends by itself, when all its steps are below its tolerance.
+    Each row of particles stops on its own, when all its steps are below its tolerance.
 
     >>> quarter = np.array([0.3])
     >>> [float(x.round(6)[0]) for x in bounced(quarter, quarter, np.array([0.5]), 0.0, 1e-9)]  # the circle
@@ -190,9 +190,9 @@ def ends_of_period(
     bounces: int,
     apart: float,
 ) -> list[Array]:
-    """For each tolerance the contractions at which an orbit does not return within `apart` after `period` bounces.
+    """For each tolerance, the contractions at which an orbit is not back within `apart` after `period` bounces.
 
-    The return is tested after a transient of `bounces` bounces.
+    This is tested after a transient of `bounces` bounces.
     """
     least = np.array(tolerances)[:, None]
     theta, phi = (np.full((least.size, lams.size), x) for x in start)
@@ -222,23 +222,23 @@ ANGLE = 0.04  # the meaning given to "phi close to 0"; phi-star is -0.029
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding of a three-valued proof, where a proof that fails refutes nothing."""
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
     return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 def corner(check: str, reason: str) -> SignFinding:
-    """The finding of one item of the checklist of the orbit through both corners."""
+    """The finding on one item of the checklist for the orbit through both corners."""
     return answer(located("lambda-star").checks[check], reason)
 
 
 @cache
 def born() -> ChaosAboveLambdaStar:
-    """The theorem on the trapping region and the expanding cone, above `lambda-star`."""
+    """The theorem on the trapping region and the expanding cone above `lambda-star`."""
     return ChaosAboveLambdaStar(PROVED_TO, tick=telling("trapping regions"))
 
 
 def chaos() -> SignFinding:
-    """The finding of a chaotic attractor near the corner orbit for `lambda-star < lam <= 0.1`."""
+    """The finding that a chaotic attractor exists near the corner orbit for `lambda-star < lam <= 0.1`."""
     found = born()
     least, most = found.exponent
     return answer(
@@ -250,13 +250,13 @@ def chaos() -> SignFinding:
 
 @cache
 def sizes() -> list[ScaledAttractor]:
-    """The attractor at a few distances from `lambda-star`, measured in float64."""
+    """The attractor at several small distances `lam - lambda-star`, measured in units of the distance."""
     return measured([1e-5, 1e-3, 8.8e-3, 0.0288], 20_000)
 
 
 @judges("cuspless.corner_orbit_unstable")
 def corner_orbit_unstable(claim: Claim) -> Judgement:
-    """Orbits leave the corner orbit along a direction that is stretched and stays on one side of the join."""
+    """Orbits leave the corner orbit along a direction that is stretched, and that stays on one side of the join."""
     arc = border().pieces[ARC]
     return Judgement(
         by(
@@ -270,7 +270,7 @@ def corner_orbit_unstable(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_below")
 def fourth_collision_below(claim: Claim) -> Judgement:
-    """Proved by boxes up to `lam = 0.06`; above, the minimum is at a kink whose value falls to 0."""
+    """Boxes prove the claim up to `lam = 0.06`; above, the minimum is at a kink and reaches the join at `lambda*`."""
     far = fourth_on_wall(ANGLE, 0.0, 0.06, tick=telling("boxes of phi and lam"))
     near = minimum_at_kink(ANGLE, 0.06, 0.0713, tick=telling("slopes of s_4"))
     return Judgement(
@@ -288,7 +288,7 @@ def fourth_collision_below(claim: Claim) -> Judgement:
 
 @judges("cuspless.fourth_collision_above")
 def fourth_collision_above(claim: Claim) -> Judgement:
-    """A counterexample: at a larger contraction every small angle lands beyond the upper join again."""
+    """A counterexample: at a larger contraction, all small angles land beyond the upper join again."""
     far = fourth_on_wall(0.05, 0.9, 0.9, or_lower=True)
     return Judgement(
         counterexample(
@@ -309,7 +309,7 @@ def fourth_collision_above(claim: Claim) -> Judgement:
 
 @judges("cuspless.coexistence")
 def coexistence(claim: Claim) -> Judgement:
-    """At the upper end the orbit repels, by the sign of its flip; at the lower end chaos begins."""
+    """At the upper end of the range, `lambda_c`, the period-2 orbit repels; at the lower end chaos begins."""
     repels = subcritical("lambda-c")
     end = answer(bool(enclose(lambda_c()).real < PROVED_TO), f"lambda_c < {PROVED_TO}")
     return Judgement(
@@ -331,7 +331,7 @@ def coexistence(claim: Claim) -> Judgement:
 
 @judges("cuspless.thin_at_birth")
 def thin_at_birth(claim: Claim) -> Judgement:
-    """The position of the attractor is proved by a trapping region, its thickness by the images of both sides."""
+    """The attractor's position is proved by a trapping region, its thickness by images of its arc and wall sides."""
     limit, thin = border(), strips_of_the_map(NEAR)
     (low, high), (arc, wall) = limit.extent.inner, limit.pieces.values()
     widths = " and ".join(f"{width:.2g}" for _, width in limit.extent.strips)

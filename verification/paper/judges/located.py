@@ -25,12 +25,12 @@ SHAPE = Rational(2, 25)
 
 @cache
 def located(name: str, wanted: int = 20, **given: Expr) -> Located:
-    """A certified value by its name, computed once in a run."""
+    """The certified value of the bifurcation `name`, computed once per run."""
     return locate(name, wanted, **given)
 
 
 def value(name: str, **given: Expr) -> Callable[[int], arb]:
-    """A function from a number of digits to a ball of the certified value."""
+    """A function that maps a number of digits to a ball around the certified value."""
     return lambda wanted: located(name, max(wanted, 20), **given).ball
 
 
@@ -43,18 +43,18 @@ def certified(name: str, **given: Expr) -> SignFinding:
 
 
 def supercritical(name: str, **given: Expr) -> bool | None:
-    """True if a flip is proved to give birth to a stable cycle, False if to an unstable one, None if open."""
+    """True if the cycle born at a flip is proved stable, False if proved unstable, None if neither."""
     found = located(name, **given)
     return found.proof.supercritical if found.certified and isinstance(found.proof, UniqueCycle) else None
 
 
 def subcritical(name: str, **given: Expr) -> SignFinding:
-    """The finding that the cycle born at a flip is unstable; so is the old one at the flip."""
+    """The finding that the cycle born at a flip is unstable, and so is the old cycle at the flip."""
     return answer(supercritical(name, **given) is False, f"{name}: the normal form bears an unstable cycle")
 
 
 def settled(claim: Claim, name: str, mend: tuple[str, str] | None = None, **given: Expr) -> Judgement:
-    """The judgement of printed digits against a certified value."""
+    """The judgement on printed digits, by comparison with a certified value."""
     judgement = digits(claim, value(name, **given), mend)
     proof = certified(name, **given)
     weakest = conjunction(proof, judgement.printed)
@@ -69,19 +69,19 @@ def settled(claim: Claim, name: str, mend: tuple[str, str] | None = None, **give
 
 @judges("cuspless.lambda_star")
 def lambda_star(claim: Claim) -> Judgement:
-    """The digits of `lambda*`, by interval Newton on the orbit through both corners."""
+    """Judges the digits of `lambda*`, by interval Newton on the orbit through both corners."""
     return settled(claim, "lambda-star", ("0.0712173", "0.0712172"))
 
 
 @judges("cuspless.phi_star")
 def phi_star(claim: Claim) -> Judgement:
-    """The digits of `phi*`, the exit angle of that orbit at the upper corner."""
+    """Judges the digits of `phi*`, the exit angle at the upper corner of the orbit through both corners."""
     return settled(claim, "phi-star", ("-0.0289796", "-0.0289795"))
 
 
 @judges("cuspless.corner_orbit")
 def corner_orbit(claim: Claim) -> Judgement:
-    """The orbit through both corners: existence, uniqueness in a box, first hits and minimal period."""
+    """The orbit through both corners is proved to exist, to be unique in a box, and to have minimal period 4."""
     return Judgement(
         by("exactly one such orbit in a box around the printed values", certified("lambda-star")),
         "the orbit through both joins at lambda*",
@@ -91,7 +91,7 @@ def corner_orbit(claim: Claim) -> Judgement:
 
 @judges("cuspless.unstable_period4", "cuspless.no_stable_period4")
 def unstable_period4(claim: Claim) -> Judgement:
-    """The period-4 orbits are unstable, by the sign of the flip's normal-form coefficient."""
+    """The period-4 orbits are unstable, by the sign of the normal-form coefficient at the flip."""
     return Judgement(
         by("the flip at lambda_c is subcritical", certified("lambda-c"), subcritical("lambda-c")),
         "an unstable cycle of twice the period is born, on the side where the period-2 orbit is stable",
@@ -100,25 +100,25 @@ def unstable_period4(claim: Claim) -> Judgement:
 
 @judges("egg.doubling.3")
 def doubling_3(claim: Claim) -> Judgement:
-    """The printed doubling of period 4 to 8."""
+    """Judges the printed contraction at which the cycle of period 4 doubles its period."""
     return settled(claim, "doubling", ("0.372", "0.371"), alpha=SHAPE, n=Integer(3))
 
 
 @judges("egg.doubling.4")
 def doubling_4(claim: Claim) -> Judgement:
-    """The printed doubling of period 8 to 16."""
+    """Judges the printed contraction at which the cycle of period 8 doubles its period."""
     return settled(claim, "doubling", alpha=SHAPE, n=Integer(4))
 
 
 @judges("egg.doubling.5")
 def doubling_5(claim: Claim) -> Judgement:
-    """The printed doubling of period 16 to 32."""
+    """Judges the printed contraction at which the cycle of period 16 doubles its period."""
     return settled(claim, "doubling", alpha=SHAPE, n=Integer(5))
 
 
 @judges("egg.doubling.6")
 def doubling_6(claim: Claim) -> Judgement:
-    """The printed doubling of period 32 to 64."""
+    """Judges the printed contraction at which the cycle of period 32 doubles its period."""
     return settled(claim, "doubling", ("0.3935", "0.3933"), alpha=SHAPE, n=Integer(6))
 
 
@@ -130,7 +130,7 @@ def at_most_zero() -> SignFinding:
     """The finding that `limsup log|det D(T^n)|/n <= 0` for almost every start, on every table, for `lam > 0`.
 
     At `lam = 0` the determinant is 0. The end term `log(cos(phi_0)/cos(phi_n))` is bounded for `lam < 1`, where
-    `|phi_n| <= lam*pi/2`; at `lam = 1` it grows slower than `n` for almost every start, since its mean is finite.
+    `|phi_n| <= lam*pi/2`; at `lam = 1` it grows more slowly than `n` for almost every start, since its mean is finite.
     """
     return by(
         "T^n is injective into phase space of finite area ds d(sin phi), so the set where it multiplies areas by more "
@@ -161,7 +161,7 @@ def expanding_cycle() -> tuple[bool, arb]:
 
 @judges("cardioid.contraction_implies")
 def contraction_implies(claim: Claim) -> Judgement:
-    """Contraction of phase space as a whole bounds exponents of almost every orbit, but not of every orbit."""
+    """If phase space contracts as a whole, this bounds the exponents of almost every orbit, but not of each orbit."""
     proved, determinant = expanding_cycle()
     rate = determinant.log() / 9
     return Judgement(
@@ -181,7 +181,7 @@ def contraction_implies(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_sum_negative")
 def sum_negative(claim: Claim) -> Judgement:
-    """The sum of exponents is proved non-positive for almost every start; that it is negative is sampled."""
+    """It is proved that the sum of exponents is at most 0 for almost every start; that it is negative is sampled."""
     found = spectrum("cardioid", TENTHS)
     total, error = np.mean(found.total, axis=1)[1:-1], Spectrum.error(found.total)[1:-1]
     ratio = float(np.max(total / error))
@@ -211,7 +211,7 @@ def sum_one(claim: Claim) -> Judgement:
 
 @judges("cardioid.lyapunov_sum_zero")
 def sum_zero(claim: Claim) -> Judgement:
-    """The sum of exponents tends to minus infinity at `lam = 0`, between `log(lam)` and `log(2*lam)`."""
+    """At `lam = 0` the sum of exponents is minus infinity, since it is bounded above by `log(2*lam)`."""
     return Judgement(
         by(
             "log(lam) <= nu_+ + nu_- on every orbit; a bounce multiplies areas in |K|*ds and dphi by at most "

@@ -19,7 +19,7 @@ MIRROR = "the exit angle is -lam*eta"
 
 @judges("map.dissipative")
 def dissipative(claim: Claim) -> Judgement:
-    """Phase space as a whole shrinks; but a flight of the ellipse a = 2 from (2, 0) to (0, 1) expands areas."""
+    """Phase space as a whole shrinks, but a flight in the ellipse a = 2 from (2, 0) to (0, 1) expands areas."""
     cos_out, cos_in, contraction = 2 / sqrt(5), 1 / sqrt(Integer(5)), Rational(9, 10)
     here = {cos_phi0: cos_out, cos_eta1: cos_in, lam: contraction}
     area = determinant().subs(here)
@@ -39,7 +39,7 @@ def dissipative(claim: Claim) -> Judgement:
 
 @judges("map.focusing_beam")
 def focusing_beam(claim: Claim) -> Judgement:
-    """Parallel rays leave in directions that turn at the rate `-(1+lam)*K1` by arc length."""
+    """Parallel incoming rays leave in directions that turn at the rate `-(1+lam)*K1` per arc length."""
     landing_rate = -K1  # d eta1/ds1 = psi1' for a fixed direction
     outgoing_rate = -K1 - exit_angle().coeff(eta) * landing_rate  # d(psi1 + pi/2 - phi1)/ds1
     focusing = positive(outgoing_rate.subs(K1, -S.One), {lam: Interval(0, 1)})
@@ -52,7 +52,7 @@ def focusing_beam(claim: Claim) -> Judgement:
 
 @judges("map.birkhoff", "map.elastic_measure")
 def elastic_area(claim: Claim) -> Judgement:
-    """The elastic map preserves area: the Jacobian in `(s, sin phi)` is `lam*cos(phi1)/cos(eta1)`."""
+    """The elastic map preserves area: at `lam = 1` the Jacobian in `(s, sin phi)`, `lam*cos(phi1)/cos(eta1)`, is 1."""
     jacobian = birkhoff_matrix(derivative_matrix(), cos_phi0, cos_eta1).det().subs(lam, 1)
     return Judgement(
         by("at lam = 1, |phi1| = |eta1| and d(sin phi) ds = cos(phi) ds dphi", zero("Jacobian 1", jacobian - 1)),
@@ -62,13 +62,13 @@ def elastic_area(claim: Claim) -> Judgement:
 
 @judges("map.reflection_rule")
 def reflection_rule(claim: Claim) -> Judgement:
-    """The printed reflection rule is `phi = -eta + f(eta)` with `f(eta) = (1 - lam)*eta`."""
+    """The printed reflection rule is a case of `phi = -eta + f(eta)`, with `f(eta) = (1 - lam)*eta`."""
     return identity(claim, exit_angle())
 
 
 @judges("map.derivative_matrix")
 def whole_matrix(claim: Claim) -> Judgement:
-    """The printed derivative matrix, by implicit differentiation of the flight equation and the law."""
+    """Judges the printed derivative matrix, by implicit differentiation of the flight equation and the law."""
     return identity(claim, derivative_matrix())
 
 
@@ -86,7 +86,7 @@ def entry_B(claim: Claim) -> Judgement:
 
 @judges("map.stability_product")
 def stability_product(claim: Claim) -> Judgement:
-    """The chain rule for `D(T^n)`, checked on two flights of the circle, where the map is explicit."""
+    """Judges the chain rule for `D(T^n)`, on two flights in the circle, where the map is explicit."""
     twice = iterate(2)
     jacobian = Matrix(twice).jacobian([s, phi])
     single = Matrix(flight(s, phi)).jacobian([s, phi])
@@ -119,7 +119,7 @@ def slap_normal(claim: Claim) -> Judgement:
 
 @judges("map.slap_derivative")
 def slap(claim: Claim) -> Judgement:
-    """The printed slap derivative, the upper left entry at `phi0 = 0`, `lam = 0`."""
+    """Judges the printed slap derivative, the upper left entry at `phi0 = 0`, `lam = 0`."""
     return identity(claim, slap_derivative())
 
 
@@ -138,7 +138,7 @@ def slap_circle_map(claim: Claim) -> Judgement:
 
 
 def turnings() -> list[SignFinding]:
-    """The findings that `turning >= 0`, which means `kappa <= 0`, for each component."""
+    """The findings that each component has `turning >= 0`, which means `kappa <= 0`."""
     egg = in_cosine(turning(tables.egg(3).components[0]))
     cosine = {alpha: Interval(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
     return [
@@ -153,13 +153,13 @@ def turnings() -> list[SignFinding]:
 
 @judges("map.curvature_nonpositive")
 def curvature_nonpositive(claim: Claim) -> Judgement:
-    """The curvature is non-positive: each component turns left everywhere, or not at all."""
+    """The curvature is non-positive, since each component turns left or is straight."""
     return Judgement(by("x'y'' - y'x'' >= 0 on each component", *turnings()), "kappa <= 0 on every component")
 
 
 @judges("map.zero_curvature_excluded", "map.focusing_and_flat")
 def zero_curvature(claim: Claim) -> Judgement:
-    """A counterexample: the flat points of the egg have curvature 0 at the last shape of the range."""
+    """A counterexample: at the last shape in the range, the egg's flat points have curvature 0."""
     flat = in_cosine(turning(tables.egg(3).components[0]))
     end = {COSINE: -1, alpha: Rational(1, 10)}
     inside = {alpha: Interval.Ropen(0, Rational(1, 10)), COSINE: Interval(-1, 1)}
@@ -177,7 +177,7 @@ def zero_curvature(claim: Claim) -> Judgement:
 
 @judges("map.slap_evolute")
 def slap_evolute(claim: Claim) -> Judgement:
-    """Flights of the slap map touch the evolute: the centre of curvature moves along the normal on any curve."""
+    """Flights of the slap map touch the evolute, since on any curve the centre of curvature moves along the normal."""
     x, y = (Function(name, real=True)(theta) for name in "xy")
     velocity = Matrix([x, y]).diff(theta)
     bend = velocity[0] * y.diff(theta, 2) - velocity[1] * x.diff(theta, 2)
@@ -198,7 +198,7 @@ def slap_evolute(claim: Claim) -> Judgement:
 
 
 def curved() -> list[SignFinding]:
-    """The findings that `turning > 0` on each component but the wall, off the cusp and for `alpha < 1/10`."""
+    """The findings that each component except the wall has `turning > 0`, away from the cusp and for `alpha < 1/10`."""
     egg = in_cosine(turning(tables.egg(3).components[0]))
     rounds = turning(tables.cardioid.components[0]).subs(cos(theta), COSINE)
     return [

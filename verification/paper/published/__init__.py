@@ -1,1 +1,1 @@
-"""Judges of claims of other papers: on polygons, on elastic tables, and on reflection laws."""
+"""Judges of claims in other papers: on polygons, on elastic tables, and on reflection laws."""

@@ -1,4 +1,4 @@
-"""Judges of claims on tables with the elastic law: mean free path, the stadium, Sinai's square with a disc."""
+"""Judges of claims on elastic tables: mean free path, the stadium, Sinai's square with a disc."""
 
 from functools import cache
 
@@ -20,7 +20,7 @@ SEED, ORBITS, BOUNCES = 1, 32, 40_000
 
 @judges("elastic.mean_free_path")
 def mean_free_path(claim: Claim) -> Judgement:
-    """The mean free path, from the volume of phase space by area and by flights (Santalo's theorem)."""
+    """Derives the mean free path by computing the phase-space volume in two ways: by area, and by flights (Santalo)."""
     x, y, tangent = (Function(name, real=True)(s) for name in ("x", "y", "tangent"))
     way = tangent + pi / 2 - phi
     point = Matrix([x + t * cos(way), y + t * sin(way), way])
@@ -44,14 +44,14 @@ def mean_free_path(claim: Claim) -> Judgement:
 
 
 def starts(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Random places on the first component, and angles with the density `cos(phi)`."""
+    """Random positions on the first component, and exit angles with the density `cos(phi)`."""
     rng = np.random.default_rng(SEED)
     return rng.random(count), elementary.arcsin(rng.uniform(-1, 1, count))
 
 
 @judges("stadium.ergodic")
 def ergodic(claim: Claim) -> Judgement:
-    """Time averages along a few orbits: the share of bounces on the arcs, and the mean length of a flight."""
+    """Time averages along a few orbits (bounces on arcs, mean length of flights) agree with phase-space averages."""
     table = tables.stadium()
     place, angle = starts(8)
     orbit = PinballMap(table, lam=1).orbit(place, angle, BOUNCES)
@@ -75,7 +75,7 @@ def ergodic(claim: Claim) -> Judgement:
 
 
 def elliptical(a: Rational, h: Rational) -> Table:
-    """The elliptical stadium: half ellipses with the axes `a` along the sides and 1 across; sides of length `2*h`."""
+    """The elliptical stadium: half ellipses with half axes `a` (along the sides) and 1, and sides of length `2*h`."""
     return piecewise(
         arc("right", h + a * cos(theta), sin(theta), -pi / 2, pi / 2),
         arc("top", -theta, S.One, -h, h),
@@ -87,7 +87,7 @@ def elliptical(a: Rational, h: Rational) -> Table:
 
 @judges("stadium.elliptical")
 def elliptical_stadium(claim: Claim) -> Judgement:
-    """One table within the range: both conditions hold exactly, the exponents are sampled."""
+    """For one table in the range, both conditions are proved exactly, and the exponents are sampled."""
     a, h = Rational(21, 20), Rational(1)
     inside = by(
         f"a = {a} and h = {h} are in the range",
@@ -111,9 +111,10 @@ OTHER = 2 - 3 * log(2) + 27 * zeta(3) / (2 * pi**2)
 
 @cache
 def from_disc_to_disc(radius: str) -> tuple[float, float]:
-    """The exponent per return to a disc of radius `R`, plus `2*log(R)`; and its standard error.
+    """The exponent per return to a disc of radius `R`, plus `2*log(R)`, and its standard error.
 
-    It is the exponent per bounce over the share of bounces on the disc, which is the disc's share of the boundary.
+    The exponent per return is the exponent per bounce, divided by the fraction of bounces on the disc. This fraction is
+    the disc's part of the perimeter.
     """
     size = float(Rational(radius))
     place, angle = starts(ORBITS)
@@ -123,7 +124,7 @@ def from_disc_to_disc(radius: str) -> tuple[float, float]:
 
 
 def measured() -> tuple[str, list[tuple[float, float, float]]]:
-    """The sampled constant for each radius R, as text, and with error and `R*log(R)^2`."""
+    """The sampled constant for each radius `R`: as text, and as numbers (value, error, `R*log(R)^2`)."""
     found = {radius: from_disc_to_disc(radius) for radius in ("1/25", "1/50", "1/100")}
     said = ", ".join(f"{value:.3f} +- {error:.3f} at R = {radius}" for radius, (value, error) in found.items())
     sizes = [float(Rational(radius)) for radius in found]
@@ -134,7 +135,7 @@ def measured() -> tuple[str, list[tuple[float, float, float]]]:
 
 @judges("sinai.small_disc")
 def small_disc(claim: Claim) -> Judgement:
-    """The sampled constant agrees within the error plus `R*log(R)^2`."""
+    """The sampled constant agrees with the printed one within its error plus `R*log(R)^2`."""
     said, found = measured()
     true = float(CONSTANT.evalf())
     near = [abs(value - true) < 4 * error + size for value, error, size in found]
@@ -145,7 +146,7 @@ def small_disc(claim: Claim) -> Judgement:
 
 @cache
 def jensen() -> SignFinding:
-    """The finding of an upper bound of the constant, for discs of radius epsilon around the unit lattice."""
+    """The finding of an upper bound for the constant, for discs of radius epsilon around unit lattice points."""
     return by(
         "where epsilon is the radius of discs about the points of the unit lattice, c <= 1 - log(2): h(T) is the "
         "mean of log(1 + tau*B), B = 2/(R*cos(phi)) + B' with 0 <= B' <= 1/(1 - 2*R); the mean of -log(cos(phi)) is "
@@ -161,7 +162,7 @@ def jensen() -> SignFinding:
 
 @judges("sinai.constant")
 def constant(claim: Claim) -> Judgement:
-    """The printed constant differs from that of the sentence that it confirms; a bound by Jensen's inequality."""
+    """The printed constant differs from that of another sentence; it is compared with samples and Jensen's bound."""
     said, found = measured()
     true = float(OTHER.evalf())
     agrees = all(abs(value - true) < 4 * error + size for value, error, size in found)

@@ -1,6 +1,6 @@
 """Judges of claims on general reflection laws: areas, stability of double normals, rotations in the circle.
 
-Each is derived for an arbitrary law `F(eta)`, and verified on an example that is proved to be a law.
+Each statement is derived for an arbitrary law `F(eta)`, and verified for an example that is proved to be a law.
 """
 
 from sympy import Expr, Function, Matrix, Rational, Symbol, cos, diff, pi, sin
@@ -26,7 +26,7 @@ def law(formula: str) -> SignFinding:
 
 @judges("law.non_hamiltonian")
 def non_hamiltonian(claim: Claim) -> Judgement:
-    """The laws `phi = F(eta)` that preserve area: the factor is minus the derivative of `sin(F)` by `sin(eta)`."""
+    """The factor by which a law `phi = F(eta)` changes areas is minus the derivative of `sin(F)` by `sin(eta)`."""
     along = diff(sin(F(eta)), eta) / diff(sin(eta), eta)
     example = Law(CONTRACTING).phi
     return Judgement(
@@ -43,7 +43,7 @@ def non_hamiltonian(claim: Claim) -> Judgement:
 
 
 def double_normal(sigma: Expr) -> Matrix:
-    """The matrix of a round along the short axis of the ellipse, for a law with the slope `-sigma` at the normal."""
+    """The monodromy matrix of the short axis of the ellipse, for a law with the slope `-sigma` at the normal."""
     ellipse = tables.ellipse.components[0]
     bend, length = curvature(ellipse).subs(theta, pi / 2), 2
     return derivative_matrix(K0=bend, K1=bend, t=length, cos_phi0=1, cos_eta1=1, lam=sigma) ** 2
@@ -51,7 +51,7 @@ def double_normal(sigma: Expr) -> Matrix:
 
 @judges("law.stability")
 def stability(claim: Claim) -> Judgement:
-    """The short axis of the ellipse `a = 3/2`: neutral under the elastic law, attracting or repelling near it."""
+    """An elliptic double normal attracts under some laws close to the elastic law, and repels under others."""
     a, sigma = tables.ellipse.shapes[0].symbol, Symbol("sigma", positive=True)
     matrix = double_normal(sigma).subs(a, Rational(3, 2))
     trace, determinant = matrix.trace().expand(), matrix.det().expand()
@@ -72,7 +72,7 @@ def stability(claim: Claim) -> Judgement:
 
 
 def landing(formula: Expr) -> tuple[SignFinding, Expr]:
-    """The finding that in the unit circle `eta1 = -phi` after a rotation by `pi - 2*phi`; and the next exit angle."""
+    """The finding on a flight in the unit circle (it turns by `pi - 2*phi`, `eta1 = -phi`), and the next exit angle."""
     direction, length = s + pi - phi, 2 * cos(phi)
     start, end = (Matrix([cos(angle), sin(angle)]) for angle in (s, s + pi - 2 * phi))
     flown = start + length * Matrix([cos(direction), sin(direction)]) - end
@@ -82,7 +82,7 @@ def landing(formula: Expr) -> tuple[SignFinding, Expr]:
 
 @judges("law.rotation")
 def rotation(claim: Claim) -> Judgement:
-    """In the circle the law `F` keeps `phi = p`, turned by `pi - 2*p`, if `F(-p) = p`; it attracts if `|F'| < 1`."""
+    """In the circle, if `F(-p) = p` and `|F'(-p)| < 1`, the line `phi = p` attracts; on it the map is a rotation."""
     p, mu, sigma = Symbol("p", real=True), Symbol("mu"), Symbol("sigma", real=True)
     circle = {"K0": -1, "K1": -1, "t": 2 * cos(phi), "cos_phi0": cos(phi), "cos_eta1": cos(phi)}
     spectrum = derivative_matrix(**circle, lam=sigma).charpoly(mu).as_expr()

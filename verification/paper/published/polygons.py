@@ -1,8 +1,8 @@
 """Judges of claims on pinball billiards in polygons: the equilateral triangle, the square, slap maps.
 
-Between straight sides the angle changes by an affine map that does not depend on the place, and the place is stretched
-by `cos(phi0)/cos(eta1)`. So the triangle's map consists of two affine maps of the angle, and for each angle of
-intervals of places whose rays meet one side.
+Between straight sides the angle changes by an affine map that does not depend on the position, and the position is
+stretched by `cos(phi0)/cos(eta1)`. So the triangle's map consists of two affine maps of the angle, one for each of the
+two sides that can be hit; at each angle, the rays that hit a side start from an interval of positions.
 """
 
 from functools import cache
@@ -33,13 +33,13 @@ def between_sides() -> Matrix:
 
 @judges("triangle.law", "square.law")
 def law(claim: Claim) -> Judgement:
-    """The printed exit angle in terms of the angle of incidence."""
+    """Judges the printed exit angle as a function of the angle of incidence."""
     return identity(claim, exit_angle())
 
 
 @judges("triangle.contraction")
 def contraction(claim: Claim) -> Judgement:
-    """A counterexample: a flight along a normal lands at 60 degrees, and at `lam = 9/10` both area elements grow."""
+    """Refutes area contraction: for a flight from a normal to 60 degrees at `lam = 9/10`, the area element grows."""
     here = {cos_phi0: S.One, cos_eta1: cos(pi - RIGHT), lam: Rational(9, 10)}
     areas = [between_sides(), birkhoff_matrix(between_sides(), cos_phi0, cos(here[lam] * (pi - RIGHT)))]
     grown = [greater(area.det().subs(here), S.One) for area in areas]
@@ -53,12 +53,12 @@ def contraction(claim: Claim) -> Judgement:
 
 
 def hull() -> Expr:
-    """The largest angle on the attractor, that of the orbit between two sides."""
+    """The largest exit angle on the triangle's attractor, which is that of the orbit between two sides."""
     return lam * pi / (3 * (1 - lam))
 
 
 def two_maps() -> SignFinding:
-    """The finding that angles of the attractor lie in `|phi| <= hull()`, under two affine contractions by `lam`."""
+    """The finding that angles change by two affine contractions by `lam`, and tend to `|phi| <= hull()`."""
     return by(
         "a flight changes the angle to lam*(pi/3 - phi) or lam*(-pi/3 - phi), which keep |phi| <= m, m = "
         "lam*pi/(3*(1 - lam)), and draw every angle towards it",
@@ -70,13 +70,13 @@ def two_maps() -> SignFinding:
 
 
 def disjoint(box: Box) -> SignFinding:
-    """The finding that the images of the two maps are disjoint for a range of `lam`: the angles form a Cantor set."""
+    """The finding that the two maps have disjoint images for a range of `lam`, so that the angles form a Cantor set."""
     return by("their images are apart", positive(simplify(next_exit_angle(RIGHT, hull()) / pi), box))
 
 
 @judges("triangle.measure_zero")
 def measure_zero(claim: Claim) -> Judgement:
-    """Proved for `lam < 1/2`, where the angles have measure 0; above, the sum of exponents is sampled."""
+    """For `lam < 1/2` the angles are proved to have measure 0; for larger `lam` the sum of exponents is sampled."""
     below = by(
         "n bounces leave 2^n intervals of the length lam^n*2*m", two_maps(), disjoint({lam: Interval.open(0, HALF)})
     )
@@ -95,14 +95,14 @@ def measure_zero(claim: Claim) -> Judgement:
 
 
 def _starts(count: int, sides: int = 3) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Random places and angles on the first side, which represents all sides by symmetry."""
+    """Random positions and angles on the first side, which represents all sides by symmetry."""
     rng = np.random.default_rng([SEED, sides])
     return rng.random(count), rng.uniform(-1.5, 1.5, count)
 
 
 @judges("triangle.expansion")
 def expansion(claim: Claim) -> Judgement:
-    """Of two consecutive bounces one lands at 30 degrees or more, where the stretch exceeds that at 30 degrees."""
+    """Of two consecutive bounces, one lands at 30 degrees or more, so any two bounces stretch by a factor above 1."""
     x = Symbol("x", positive=True)
     box = {lam: Interval.open(0, 1), x: Interval.Ropen(0, Rational(1, 6))}  # x in units of pi
     stretch = cos(lam * x) / cos(x)
@@ -125,7 +125,7 @@ def expansion(claim: Claim) -> Judgement:
 
 @judges("triangle.cantor")
 def cantor(claim: Claim) -> Judgement:
-    """For `lam < 1/3` rays of every angle of the attractor reach both other sides, each as a whole."""
+    """For `lam < 1/3`, the rays at each angle on the attractor reach both other sides, and each of them completely."""
     box = claim.box
     return Judgement(
         by(
@@ -145,7 +145,7 @@ def cantor(claim: Claim) -> Judgement:
 
 @judges("triangle.nonaccessible")
 def nonaccessible(claim: Claim) -> Judgement:
-    """Rays above 30 degrees reach only the lower part of the next side, and no other rays leave at these angles."""
+    """Rays above 30 degrees reach only the lower part of the next side, and no other rays leave it at these angles."""
     box = claim.box
     steep, other = next_exit_angle(RIGHT, lam * pi / 2), next_exit_angle(LEFT, -lam * pi / 2)
     top = next_exit_angle(RIGHT, pi / 6)
@@ -168,7 +168,7 @@ NEAR, CELLS, SETTLE, FOLLOW, ORBITS = "0.99", 48, 60_000, 8000, 24
 
 
 def _cell(component: Array, place: NDArray[np.float64], angle: NDArray[np.float64]) -> Array:
-    """The index of the cell of phase space; angles are relative to the largest exit angle."""
+    """The index of the phase-space cell; angles are relative to the largest exit angle."""
     share = (angle / (float(NEAR) * np.pi / 2) + 1) / 2
     row, column = (np.clip((each * CELLS).astype(np.int64), 0, CELLS - 1) for each in (place, share))
     return (component * CELLS + row) * CELLS + column
@@ -176,7 +176,7 @@ def _cell(component: Array, place: NDArray[np.float64], angle: NDArray[np.float6
 
 @cache
 def components() -> tuple[Array, list[int]]:
-    """For each cell the attractor of the triangle that visits it, -1 for none; and the number of orbits on each."""
+    """For each cell the index of the triangle's attractor that visits it (or -1), and the number of orbits on each."""
     map = PinballMap(tables.triangle(), lam=NEAR)
     settled = map.exponents(*_starts(ORBITS), 1, SETTLE)
     orbit = map.orbit(settled.theta, settled.phi, FOLLOW, component=settled.component)
@@ -194,7 +194,7 @@ def components() -> tuple[Array, list[int]]:
 
 @judges("triangle.three_components")
 def three_components(claim: Claim) -> Judgement:
-    """Three attractors, by a sample: orbits that visit a common cell are on one attractor."""
+    """A sample gives three attractors; orbits that visit a common cell count as being on the same one."""
     owner, orbits = components()
     said = (
         f"at lam = {NEAR} {sum(orbits)} random starts, after {SETTLE} bounces, visit {len(orbits)} sets of cells in "
@@ -206,7 +206,7 @@ def three_components(claim: Claim) -> Judgement:
 
 @judges("triangle.fractal_boundaries")
 def fractal_boundaries(claim: Claim) -> Judgement:
-    """The share of pairs of starts that end apart, which for a smooth boundary is proportional to their distance."""
+    """Measures the fraction of close pairs of starts that end apart; smooth boundaries make it linear in distance."""
     map, owner = PinballMap(tables.triangle(), lam=NEAR), components()[0]
     place, angle = _starts(160, 1)
     ends = []
@@ -229,7 +229,7 @@ FACING = pi  # rotation of the normal to the facing side
 
 @judges("square.parabolic")
 def parabolic(claim: Claim) -> Judgement:
-    """Between facing sides the angle shrinks by `lam` at each bounce, and the drift is a convergent sum."""
+    """Between opposite sides each bounce multiplies the angle by `lam`, and the total drift is a convergent sum."""
     shrinking, place = straight_multipliers([S.Zero, S.Zero])
     return Judgement(
         by(
@@ -248,7 +248,7 @@ def parabolic(claim: Claim) -> Judgement:
 
 @judges("square.integrable")
 def integrable(claim: Claim) -> Judgement:
-    """The elastic law preserves `cos(4*phi)`, whichever side comes next."""
+    """The elastic law preserves `cos(4*phi)`, whichever side is hit next."""
     after = [next_exit_angle(turn, phi).subs(lam, 1) for turn in (pi / 2, pi, 3 * pi / 2)]
     return Judgement(
         by(
@@ -262,7 +262,7 @@ def integrable(claim: Claim) -> Judgement:
 
 @cache
 def ends_in_the_square(value: str, count: int = 200, bounces: int = 3000) -> tuple[float, float, float]:
-    """The share of random starts that end on no orbit of period 2, and the range of their larger exponent."""
+    """The fraction of random starts that end on no orbit of period 2, and the range of their larger exponent."""
     found = PinballMap(tables.square(), lam=value).exponents(*_starts(count, 4), bounces, bounces)
     going = np.abs(found.phi) > 1e-6
     growth = found.nu_plus[going]
@@ -271,7 +271,7 @@ def ends_in_the_square(value: str, count: int = 200, bounces: int = 3000) -> tup
 
 @judges("square.chaotic", "square.coexistence")
 def coexistence(claim: Claim) -> Judgement:
-    """The shares of starts that keep moving, with exponents; the abstract names no range of contractions."""
+    """Samples the fraction of starts that keep moving, and their exponents, at some contractions."""
     found = {value: ends_in_the_square(value) for value in ("0.5", "0.7", "0.9")}
     said = "; ".join(
         f"at lam = {value} {share:.0%}" + (f" with nu_+ from {low:.4f} to {high:.4f}" if share else "")
@@ -290,7 +290,7 @@ def coexistence(claim: Claim) -> Judgement:
 
 @judges("slap.expanding")
 def expanding(claim: Claim) -> Judgement:
-    """The slap map's slope between two sides depends only on the angle between them."""
+    """The slope of the slap map between two sides depends only on the angle between them."""
     turn = Symbol("turn", real=True)
     slope = between_sides()[0, 0].subs(cos_phi0, 1)
     incidence = next_exit_angle(turn, S.Zero) / lam

@@ -1,4 +1,4 @@
-"""The report of `make verify`: an HTML page, Markdown, JSON and LaTeX."""
+"""The report of `make verify`, as an HTML page, Markdown, JSON and LaTeX."""
 
 import lazy_loader
 

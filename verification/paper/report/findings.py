@@ -1,6 +1,6 @@
 r"""The summary of the report: main findings, graded errata, LaTeX tables, and a letter to the authors.
 
-`findings.toml` in a paper's folder, if it exists, has the sentences of the findings and the gravity of errata. A
+`findings.toml` in a paper's folder, if it exists, has the sentences of the findings, and how grave each erratum is. A
 finding is shown when all its claims were judged and none is open.
 """
 
@@ -33,7 +33,7 @@ GRADES = {
 
 @dataclass(frozen=True)
 class ReportFinding:
-    """A finding: its kind (`holds` or `new`), its sentence, its claims and its figure."""
+    """A main finding: its kind (`holds` or `new`), its sentence, its claims and its figure."""
 
     kind: str
     text: str
@@ -43,7 +43,7 @@ class ReportFinding:
 
 @dataclass(frozen=True)
 class Erratum:
-    """One correction, its gravity, and the claims that it concerns."""
+    """A correction, how grave it is, and the claims that it concerns."""
 
     text: str
     grade: str
@@ -57,7 +57,7 @@ def _document(folder: Path) -> dict[str, Any]:
 
 
 def findings(results: Iterable[Result], about: Paper) -> dict[str, list[ReportFinding]]:
-    """The findings by kind, `holds` and `new`, that rest on the judged claims."""
+    """The findings whose claims were all judged and none of which is open, by kind (`holds` and `new`)."""
     settled = {result.id for result in results if result.verdict.value != "open"}
     known = [
         ReportFinding(**{**each, "claims": tuple(each["claims"])})
@@ -68,7 +68,7 @@ def findings(results: Iterable[Result], about: Paper) -> dict[str, list[ReportFi
 
 
 def grade(name: str, about: Paper) -> str:
-    """The gravity of the erratum of a claim; `substantial` if none is given.
+    """How grave the erratum of a claim is; `substantial` if nothing is given.
 
     >>> from verification.paper.claims.folder import paper
     >>> grade("egg.doubling.3", paper())
@@ -79,7 +79,7 @@ def grade(name: str, about: Paper) -> str:
 
 
 def graded(results: Iterable[Result], about: Paper) -> dict[str, list[Erratum]]:
-    """The errata by gravity, in the order of the paper; claims with the same erratum are joined."""
+    """The errata by gravity, in the order of the paper; claims with the same erratum share one entry."""
     found: dict[tuple[str, str], list[Result]] = {}
     for result in errata(results, about.sections):
         found.setdefault((grade(result.id, about), result.erratum or result.derived), []).append(result)
@@ -93,7 +93,7 @@ MARK = Markup("<mark>{}</mark>")
 
 
 def compared(result: Result) -> tuple[Markup, Markup]:
-    """The printed and the true text as HTML, with their difference marked where they are similar."""
+    """The printed and the true text as HTML; the differences are marked if the texts are similar."""
     wrong = result.verdict.value in ("corrected", "refuted")
     witness = tuple(result.witness.items()) if wrong and result.printed.startswith("[[") else ()
     return _compared(result.printed, result.derived, wrong, witness)
@@ -119,7 +119,7 @@ def _compared(printed: str, true: str, wrong: bool, witness: tuple[tuple[str, st
 
 
 def _differing(left: str, right: str, witness: Sequence[tuple[str, str]]) -> list[int]:
-    """The indices of the entries in which two matrices differ at a point."""
+    """The indices of the entries in which two matrices differ at the point `witness`."""
     values = {LETTERS[name]: parse(text, {}) for name, text in witness if name in LETTERS}
     pairs = zip(_entries(left), _entries(right), strict=True)
     return [n for n, (a, b) in enumerate(pairs) if _unequal(a, b, values)]
@@ -143,7 +143,7 @@ def _cells(matrix: Markup, marked: Sequence[int]) -> Markup:
 
 
 def _worded(printed: str, true: str) -> tuple[Markup, Markup]:
-    """Two sentences as HTML; where most words agree, the others are marked."""
+    """Two sentences as HTML; if most of their words agree, the words that differ are marked."""
     sides = [[piece for raw, shown in pieces(text) for piece in _split(raw, shown)] for text in (printed, true)]
     keys = [[raw.casefold().strip(".,;:") for raw, _ in side] for side in sides]
     matcher = SequenceMatcher(None, keys[0], keys[1], autojunk=False)
@@ -164,12 +164,12 @@ def _marked(words: Sequence[tuple[str, Markup]], alone: set[int]) -> Markup:
 
 
 def _split(raw: str, shown: Markup) -> list[tuple[str, Markup]]:
-    """A formula as one piece, other text word by word."""
+    """A text in pieces, each with its HTML: a formula is one piece, other text is split into words."""
     return [(raw, shown)] if "<math" in shown else [(word, remark(word)) for word in raw.split()]
 
 
 def letter(results: Sequence[Result], about: Paper) -> str:
-    """A letter in LaTeX to the authors: substantial errata with the printed text, the others on one line each."""
+    """A letter to the authors in LaTeX; substantial errata have the printed text, the others one line each."""
     by_grade = graded(results, about)
     items = [
         rf"\item {_where(each)} ``{_quoted(each.claims[0].quote)}'' -- {_set(each.text)}"
@@ -240,7 +240,7 @@ def _quoted(quote: str) -> str:
 
 
 def _set(text: str) -> str:
-    """Our text as a sentence in LaTeX, with its formulas."""
+    """Text in our notation, as a LaTeX sentence with formulas."""
     text = text[:1].upper() + text[1:] if text[:1].islower() and text[1:2].isalpha() else text
     text = text if text.endswith((".", "!", "?")) else f"{text}."
     shown, at = "", 0
@@ -251,7 +251,7 @@ def _set(text: str) -> str:
 
 
 def _typed(text: str) -> str:
-    """Text in LaTeX: letters of the paper and signs become mathematics, quotation marks are opened."""
+    """Text in LaTeX: variable names and operators become mathematics, and opening quotation marks are set."""
     parts = LETTER_OR_SIGN.split(re.sub(r"(?<![\w)])'(?=\w)", "`", text))
     return "".join(_symbol(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
@@ -292,7 +292,7 @@ BREAKS = "*/+,=_"  # a long formula may be broken after these
 
 
 def tables(results: Sequence[Result], sections: Iterable[str] = ()) -> str:
-    """Three tables: the counts, the errata, and every claim; they need the packages longtable and booktabs."""
+    """Three tables in LaTeX (the counts, the errata, and every claim), for the packages longtable and booktabs."""
     parts = [
         "% \\usepackage{booktabs,longtable}",
         _table("lr", ("verdict", "claims"), [[name, str(number)] for name, number in counts(results).items()]),

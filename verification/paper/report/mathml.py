@@ -1,8 +1,7 @@
-"""Texts of claims as HTML: the paper's LaTeX and our own formulas as MathML, other text escaped.
+"""Texts of claims as HTML: the paper's LaTeX and our own formulas become MathML, other text is escaped.
 
-Our formulas are plain text such as `4*sin(theta/2)`. Each is set as it is written, from its syntax tree, and never
-evaluated, reordered or simplified. Formulas within sentences are found by their signs: the longest piece that parses as
-a formula is set as one.
+Our formulas are plain text such as `4*sin(theta/2)`. Each is typeset as written, from its syntax tree, and never
+evaluated, reordered or simplified. In a sentence, the longest piece that parses as a formula is typeset as a formula.
 """
 
 import ast
@@ -96,7 +95,7 @@ INLINE, ATOM = 5, 6  # precedence of a quotient and of an atom
 
 
 def font_style() -> Markup:
-    """The CSS of formulas, with the font embedded (in a text font fraction bars cross matrices)."""
+    """The CSS of formulas, with an embedded font (in a text font, fraction bars would cross matrices)."""
     font = base64.b64encode((files("verification.paper.report") / "math.woff2").read_bytes()).decode("ascii")
     face = f'@font-face {{ font-family: "PinballMath"; src: url(data:font/woff2;base64,{font}) format("woff2"); }}'
     return Markup(f'{face}\nmath {{ font-family: "PinballMath", math; font-size: 1.04em; }}\n')
@@ -104,7 +103,7 @@ def font_style() -> Markup:
 
 @lru_cache(maxsize=4096)
 def mathml(latex: str, display: bool = False) -> Markup:
-    """LaTeX with the paper's macros as MathML, with the LaTeX as alternative text.
+    """LaTeX that may use the paper's macros, as MathML; the LaTeX is its alternative text.
 
     >>> "<mi>&#x003BB;</mi>" in mathml(r"\\lambda")
     True
@@ -141,7 +140,7 @@ def _words(text: str) -> Markup:
 
 @lru_cache(maxsize=8192)
 def remark(text: str) -> Markup:
-    """Our own text as HTML: letters and signs of the code become those of the paper, and formulas are set.
+    """Our own text as HTML: names and operators of the code become symbols of the paper, and formulas MathML.
 
     >>> remark("lam <= for theta0")
     Markup('λ ≤ for θ<sub>0</sub>')
@@ -152,7 +151,7 @@ def remark(text: str) -> Markup:
 
 
 def pieces(text: str) -> list[tuple[str, Markup]]:
-    """The formulas and words of a sentence and the spaces between them, each as pair of source and HTML."""
+    """The formulas, words and spaces of a sentence in order, each as a pair of source and HTML."""
     text = AN_ELEMENT.sub("\\1 \u2208 ", text)
     found, at = [], 0
     for start, end, latex in [*formulas(text), (len(text), len(text), "")]:
@@ -183,7 +182,7 @@ def _greek(found: re.Match[str]) -> str:
 
 
 def formulas(text: str) -> list[tuple[int, int, str]]:
-    r"""The positions of the formulas in a sentence, and each as LaTeX; none extends over `+-`, an error bar.
+    r"""The start, the end and the LaTeX of each formula in a sentence; no formula extends across an error bar `+-`.
 
     >>> [text for *_, text in formulas("nu_+ = 0.5 +- 7e-05 there")]
     ['\\nu_{+} = 0.5', '7 \\cdot 10^{-5}']
@@ -206,7 +205,7 @@ def formulas(text: str) -> list[tuple[int, int, str]]:
 
 
 def _runs(text: str) -> list[list[re.Match[str]]]:
-    """Runs of adjacent tokens that could be a formula."""
+    """Maximal runs of adjacent tokens that could be a formula."""
     runs: list[list[re.Match[str]]] = [[]]
     for token in TOKEN.finditer(text):
         if runs[-1] and runs[-1][-1].end() != token.start():
@@ -216,7 +215,7 @@ def _runs(text: str) -> list[list[re.Match[str]]]:
 
 
 def _set(piece: str, text: str, start: int) -> str | None:
-    """A piece of a sentence as LaTeX; None when it is no formula, or only a word or a number."""
+    """A piece of a sentence as LaTeX; None if it is no formula, or merely a word or a number."""
     if (
         piece != piece.strip()
         or piece.startswith("- ")
@@ -235,7 +234,7 @@ def _set(piece: str, text: str, start: int) -> str | None:
 
 @lru_cache(maxsize=4096)
 def formula(text: str) -> Markup | None:
-    """A formula in our notation as MathML; None when the text is no formula.
+    """A formula in our notation as MathML; None if the text is not a formula.
 
     >>> formula("the table is a circle") is None
     True
@@ -246,7 +245,7 @@ def formula(text: str) -> Markup | None:
 
 @lru_cache(maxsize=8192)
 def _read(text: str) -> str | None:
-    """A formula in our notation as LaTeX; None when the text is not one."""
+    """A formula in our notation as LaTeX; None if the text is not a formula."""
     if any(text.count(a) != text.count(b) for a, b in ("()", "[]")) or text.count("|") % 2:
         return None
     text = re.sub(r"\b(lam|phi|s)\*(?=[\s,;:.)\]]|$)", r"\1_star", text)
@@ -262,13 +261,13 @@ def _read(text: str) -> str | None:
 
 
 class _Source:
-    """A formula as typed, whose numbers keep their digits."""
+    """A formula as typed; its numbers keep their digits."""
 
     def __init__(self, code: str) -> None:
         self.code = code
 
     def latex(self, node: ast.expr, within: int = 0) -> str:
-        """The syntax tree as LaTeX, in parentheses where `within` has a higher precedence."""
+        """The syntax tree as LaTeX, in parentheses if the surrounding operator `within` has a higher precedence."""
         text, binding = self._printed(node)
         return rf"\left({text}\right)" if binding < within else text
 
@@ -304,7 +303,7 @@ class _Source:
         return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else typed
 
     def _exponent(self, node: ast.expr) -> str:
-        """An exponent; a quotient of two numbers or letters is set on one line."""
+        """An exponent as LaTeX; a quotient of two numbers or symbols is written on one line."""
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
             sides = node.left, node.right
             if all(isinstance(side, ast.Constant | ast.Name) for side in sides):
@@ -325,7 +324,7 @@ class _Source:
 
 
 def _letter(name: str) -> str:
-    """A name of the code as a letter of the paper, in LaTeX."""
+    """A name in the code as a symbol of the paper, in LaTeX."""
     if name.endswith("_prime"):
         return f"{_letter(name.removesuffix('_prime'))}'"
     if name in WORDS or name in FUNCTIONS:

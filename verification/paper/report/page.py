@@ -57,7 +57,7 @@ class ReportFigure:
 
     @classmethod
     def of(cls, drawing: "Figure | WorkDiagram", image: bytes) -> "ReportFigure":
-        """The picture of a drawing and its image, with the captions."""
+        """The report's figure from a drawing and its image, with the captions."""
         return cls(drawing.name, drawing.caption, drawing.section, image, drawing.shows)
 
     @property
@@ -68,7 +68,7 @@ class ReportFigure:
 
     @property
     def words(self) -> Markup:
-        """Our caption, or else the paper's, as HTML."""
+        """Our caption as HTML, or the paper's caption if there is none."""
         return prose(self.shows or self.caption)
 
     @property
@@ -77,7 +77,7 @@ class ReportFigure:
         return plain((self.shows or self.caption).partition(". ")[0])
 
     def stands_by(self, claims: "Sequence[Result]") -> str:
-        """The id of the first claim that quotes the caption, else of the first in the section; else empty."""
+        """The id of the first claim that quotes the caption; else of the first claim in its section; else empty."""
         caption = _plain(self.caption)
         quoting = (c.id for c in claims if c.section == self.section and _plain(c.quote) in caption)
         return next(quoting, next((c.id for c in claims if c.section == self.section), ""))
@@ -89,7 +89,7 @@ def page(
     pictures: Sequence[ReportFigure] = (),
     about: "Paper | None" = None,
 ) -> str:
-    """The whole HTML page; two runs differ in the seconds only."""
+    """The whole HTML page; two runs differ only in computing times."""
     about = about or paper()
     sections = by_section(results, about.sections)
     ordered = [result for _, claims in sections for result in claims]
@@ -128,14 +128,14 @@ def page(
 
 
 def set_claims(claims: "Iterable[Claim]") -> None:
-    """Typesets the printed texts of claims into the cache, ahead of the page."""
+    """Typesets the printed texts of claims and stores them in the cache, before the page is made."""
     for claim in claims:
         prose(claim.quote)
         formula(claim.text) or remark(claim.text)
 
 
 def set_result(result: "Result") -> None:
-    """Typesets the texts of a judged claim into the cache, ahead of the page."""
+    """Typesets the texts of a judged claim and stores them in the cache, before the page is made."""
     compared(result)
     for text in (result.erratum, result.unsettled, result.method):
         sentence(text)
@@ -158,7 +158,7 @@ class ReportCertificate:
 
 
 def _certificates(results: "Sequence[Result]", about: "Paper") -> list[ReportCertificate]:
-    """The certificates of the judged claims, each once, in the order of the paper."""
+    """The certificates of the judged claims, without repetition, in the order of the paper."""
     judged = {result.id for result in results}
     resting: dict[Path, list[str]] = {}
     for claim, paths in about.certificates().items():
@@ -191,12 +191,12 @@ def sentence(text: str) -> Markup:
 
 
 def opening(text: str) -> Markup:
-    """The first words of a long text, as HTML."""
+    """The first words of a text, as HTML, if it is long."""
     return sentence(text[: text.rindex(" ", 0, OPENING)].rstrip(".,:;") + ".")[:-1]
 
 
 def _plain(text: str) -> str:
-    """The text without markup characters and spaces."""
+    """The text without markup characters and spaces, for comparisons."""
     return "".join(letter for letter in text if letter not in "${}\\ \n")
 
 
@@ -204,7 +204,7 @@ WANTED = "accepted: what `pinball work --json FILE` writes"
 
 
 def diagrams(path: Path) -> "list[WorkDiagram]":
-    """A diagram for each question in the file, with the machine in the footer; `ValueError` for another file."""
+    """The diagrams of the questions in a file of `pinball work`; `ValueError` if it is another file."""
     from verification.measure.work.row import MethodResult, WorkDiagram
 
     try:
@@ -241,7 +241,7 @@ WORDS = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")  # two in a row make a text, 
 
 
 def markdown(results: Sequence["Result"], versions: Mapping[str, str], about: "Paper | None" = None) -> str:
-    """The whole report: summary, errata, then each claim by section of the paper; two runs differ in seconds only."""
+    """The whole report in Markdown: summary, errata, each claim by section; two runs differ only in computing times."""
     about = about or paper()
     head = f"*{about.title}*" + (f"\n({about.source})" if about.source else "")
     parts = ["# What the paper says, and what is true", head, summary(results), _legend(results)]
@@ -301,7 +301,7 @@ def _quote(text: str) -> str:
 
 
 def _item(label: str, text: str) -> str:
-    """A list item: text as it is, a formula as code, a long formula as a block."""
+    """A list item: a formula as code, a long formula as a block, other text as it is."""
     if not text:
         return f"- {label}: not given"
     if WORDS.search(text):
@@ -317,7 +317,7 @@ def _item(label: str, text: str) -> str:
 
 
 def _long(label: str, text: str) -> str:
-    """A list item with a sentence; a long text as a block."""
+    """A list item with a sentence, or with a block if the text is long."""
     return f"- {label}: {_sentence(text)}" if len(text) <= PARAGRAPH else _block(label, _lines(text))
 
 

@@ -1,9 +1,9 @@
 """The judging of a paper's claims, the results as JSON, and digests of the code that a claim depends on.
 
 `catalogue()` lists the claims and `verify()` judges them. The printed text is in the paper's folder, the true
-statements are derived in `symbolic`, and only judges use both; so a misprint cannot affect the mathematics. A digest of
-a claim covers every module that its judge can load, found from the imports in the source text without running it. So
-the set of modules is never too small, but may be larger than the claim needs.
+statements are derived in `symbolic`, and only judges use both, so that a misprint cannot affect the mathematics. The
+digest of a claim covers every module that its judge can load, according to the imports in the source text. This set of
+modules is never too small, but may be larger than the claim needs.
 """
 
 import platform
@@ -45,7 +45,7 @@ QUOTED = re.compile(rf"[\"']({OURS}(?:\.\w+)+)[\"'.]")  # a module or package na
 
 @dataclass(frozen=True)
 class Result:
-    """A judged claim, as every form of the report shows it."""
+    """A judged claim, in the form that all versions of the report use."""
 
     id: str
     section: str
@@ -63,7 +63,7 @@ class Result:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
-        """The result that `to_dict` wrote."""
+        """The result that was written by `to_dict`."""
         return cls(**{**data, "verdict": Verdict(data["verdict"])})
 
     def to_dict(self) -> dict[str, object]:
@@ -78,7 +78,7 @@ def catalogue(claims: str | Path = OWN) -> list[Claim]:
 
 
 def pictures(found: Paper) -> list[PaperFigure]:
-    """The figures of a paper; most papers have none."""
+    """The figures of a paper; empty for most papers."""
     return list(module(home(Path(found.figures))).pictures().values()) if found.figures else []
 
 
@@ -106,9 +106,10 @@ class DrawnPicture(NamedTuple):
 
 
 def judged(claims: Sequence[Claim], digits: int, jobs: int | None) -> Generator[Result, None, None]:
-    """The result of each claim as it is finished; with several jobs the most expensive claims are begun first.
+    """Yields the result of each claim when it is finished; with several jobs, the most expensive claims start first.
 
-    The results do not depend on `jobs`, except for their seconds. A claim whose process dies repeatedly is open.
+    The results do not depend on `jobs`, except for their computing times. A claim whose process dies repeatedly is
+    open.
     """
     for answer in answered(claims, (), digits, jobs):
         if isinstance(answer, Result):
@@ -118,9 +119,10 @@ def judged(claims: Sequence[Claim], digits: int, jobs: int | None) -> Generator[
 def answered(
     claims: Sequence[Claim], drawings: Sequence[FigureSource], digits: int, jobs: int | None
 ) -> Generator[Result | DrawnPicture, None, None]:
-    """The results of claims and images of pictures as they are finished, from one pool of processes.
+    """Yields results of claims and images of pictures when they are finished, from one pool of processes.
 
-    The most expensive ones are begun first. As in `judged`, but a picture whose process dies repeatedly is an error.
+    The most expensive ones start first. In contrast to `judged`, a picture whose process dies repeatedly raises an
+    error.
     """
     for claim in claims:
         if claim.home.endswith(".py"):
@@ -143,7 +145,7 @@ def answered(
 
 
 def begin(claims: Sequence[Claim], drawings: Sequence[FigureSource], jobs: int | None) -> None:
-    """Starts the import of the modules that `answered` needs in other processes, if it uses any."""
+    """Starts to import the modules that `answered` needs in other processes, if it uses any."""
     if not _few(claims, drawings, jobs):
         workers.begin(_modules(claims, drawings))
 
@@ -163,7 +165,7 @@ def answer(item: Claim | FigureSource, digits: int) -> Result | DrawnPicture:
 
 
 def judge(claim: Claim, digits: int = 15) -> Result:
-    """The result of one claim; its judge's module is imported at the first claim of that module."""
+    """The result of one claim; the module of its judge is imported on first use."""
     start = time.perf_counter()
     try:
         found = judge_of(claim)
@@ -202,7 +204,7 @@ def _result(claim: Claim, judgement: Judgement, digits: int, seconds: float) -> 
 
 
 def method(judgement: Judgement) -> str:
-    """The reason of the verdict, in a sentence or two."""
+    """The reason for the verdict, in a sentence or two."""
     if judgement.verdict is Verdict.SUPPORTED:
         return judgement.evidence
     if judgement.verdict is Verdict.CORRECTED and judgement.mended is not None:
@@ -237,7 +239,7 @@ def summary(results: Sequence["Result"]) -> str:
 
 
 def made_with() -> dict[str, str]:
-    """The versions of packages that a result depends on, the type of machine, and the seed."""
+    """The versions of the packages on which results depend, the type of machine, and the seed."""
     found = {"python": platform.python_version()}
     for package in ("sympy", "mpmath", "gmpy2", "python-flint", "numpy"):
         try:
@@ -248,7 +250,7 @@ def made_with() -> dict[str, str]:
 
 
 def by_section(results: Iterable["Result"], sections: Iterable[str] = ()) -> list[tuple[str, list["Result"]]]:
-    """The results by section, in the order of `sections`, then other sections by their numbers."""
+    """The results by section: first the given `sections` in order, then other sections by number."""
     order = {name: (-1, n) for n, name in enumerate(sections)}
     ordered = sorted(results, key=lambda each: (order.get(each.section, section_order(each.section)), each.section))
     return [(name, list(claims)) for name, claims in groupby(ordered, key=lambda result: result.section)]
@@ -261,7 +263,7 @@ def errata(results: Iterable["Result"], sections: Iterable[str] = ()) -> list["R
 
 
 def place(result: "Result") -> str:
-    """The section of a claim, as text."""
+    """The claim's section, as text."""
     return f"Section {result.section}" if section_order(result.section) > (0,) else result.section
 
 
@@ -279,7 +281,7 @@ def section_order(section: str) -> tuple[int, ...]:
 
 @cache
 def sources() -> Mapping[str, str]:
-    """The text of every module of the package by its dotted name; a package's stub by its name and `.pyi`."""
+    """The text of every module of the package by its dotted name, and of each package's stub by its name and `.pyi`."""
     found: dict[str, str] = {}
     for storey in STOREYS:
         _gather(files(storey), storey, found)
@@ -298,7 +300,7 @@ def _gather(folder: Traversable, name: str, found: dict[str, str]) -> None:
 
 @cache
 def exports(room: str) -> Mapping[str, str]:
-    """The modules from which a package exports its names.
+    """For each name that a package exports, the module that defines it.
 
     >>> exports("verification")["verify"]
     'verification.paper.report.report'
@@ -357,9 +359,9 @@ def digest(module: str) -> str:
 
 
 def codes(claims: Iterable[Claim], digits: int, figures: Iterable[PaperFigure] = ()) -> dict[str, str]:
-    """A digest for each claim, by its id, and for each figure of their sections, by `figure NAME`.
+    """A digest for each claim, by its id, and for each figure of the claims' sections, by `figure NAME`.
 
-    It changes with the claim's text, its judge, the modules that this can load, and the number of digits.
+    It changes with the claim's text, its judge, the modules that the judge can load, and the number of digits.
     """
     claims = list(claims)
     judged = {claim.id: _digest(claim.home, claim, digits) for claim in claims}
@@ -373,7 +375,7 @@ def _digest(module: str, *words: object) -> str:
 
 
 def outside(path: str) -> str:
-    """A digest of a module outside of the package, and of the modules of the package that it can load."""
+    """A digest of a module outside the package, and of the modules of the package that it can load."""
     text = Path(path).read_text(encoding="utf-8")
     whole = sha256(text.encode())
     for name in sorted(named(text) & sources().keys()):

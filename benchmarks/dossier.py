@@ -150,8 +150,8 @@ def broken(rows):
     count = sum(row.promise is not None and not row.textbook for row in rows)
     named = "".join(f"; {one}" for one in sorted({f"{row.question}, {row.method}" for row in ours}))
     return (
-        f"Of the {len(asked)} settings of usual ways that make a promise (a tolerance), {len(worst)} do not keep it; "
-        f"of the {count} of this package {len(ours)}{named}."
+        f"{len(asked)} settings of usual ways state a tolerance, and {len(worst)} of them do not keep it; "
+        f"of this package's {count} settings {len(ours)} do not keep theirs{named}."
     )
 
 

@@ -48,18 +48,18 @@ ASKED = {
 PRIVATE = ("_", "cython_runtime", "sitecustomize", "usercustomize")
 WORDS = """# What a scene does not need
 
-A kernel computes only what the requested result needs. Each row is a fresh process that computes one kind of result (*question*) for one
-scene, with the kernel in the cache:
+A kernel computes only what the requested result needs. Each row is a fresh process that computes one kind of result
+(*question*) for one scene, with the kernel in the cache:
 
-- *operations*: vector instructions of one bounce, compares and selects included; *share*: operations as a percentage of those of the
-  full kernel for that table, with a general contraction, a tangent vector and a record;
+- *operations*: vector instructions of one bounce, compares and selects included; *share*: operations as a percentage of
+  those of the full kernel for that table, with a general contraction, a tangent vector and a record;
 - *state*: doubles kept for a particle; for the cuspless table and the stadium one of them is a component index;
 - *modules*: the number of modules of `numeric`, and the other packages imported (of llvmlite only its version is read);
 - *memory*: the peak of the resident set above that of a process that only imports NumPy; *time*: processor time
   from NumPy's import to the result.
 
-The stadium is an example for the tables of `tables.GALLERY`. By name, as in `PinballMap("stadium", straight=2)`, it needs no
-SymPy; the exact table `tables.stadium()` needs SymPy.
+The stadium is an example for the tables of `tables.GALLERY`. By name, as in `PinballMap("stadium", straight=2)`, it
+needs no SymPy; the exact table `tables.stadium()` needs SymPy.
 
 `python benchmarks/first_result.py` writes this page; `tests/verification/measure/test_leave_out_page.py` compares
 operations, state and modules with it. [Kernels](kernels.md) has the number of operations of each kind.

@@ -244,8 +244,8 @@ arc length, in a system that is regular at a fold.
 passes a join so closely that rounding hides its side: the landing's distance from the join, times $\cos\eta$, is
 below $2^{{-50}}$ of the way from the start to the join. (On the arc, which bends away from the line, the distance
 itself replaces $\cos\eta$ if it is larger. A flight from the wall has to land within 4 units of $\tan(\theta/2)$.)
-Next to this limit kernels may disagree: each answer is right for data that differ by a rounding. The verdict column states
-the distance at which the true flight passes the join.
+Next to this limit kernels may disagree: each answer is right for data that differ by a rounding. The verdict column
+states the distance at which the true flight passes the join.
 
 **80 bits.** `longdouble` is the step on 80-bit floats, with the C library's functions and zeros refined to the last
 bit. It is also the reference of `benchmarks/adversarial.py`, which reports how far this reference moves if its state is

@@ -149,9 +149,12 @@ def broken(rows):
     ours = [row for row in rows if not row.textbook and row.kept is False]
     count = sum(row.promise is not None and not row.textbook for row in rows)
     named = "".join(f"; {one}" for one in sorted({f"{row.question}, {row.method}" for row in ours}))
+    kept = f"all {count} settings of this package keep theirs"
+    if ours:
+        kept = f"{len(ours)} of this package's {count} settings do not keep theirs"
     return (
-        f"Of the {len(asked)} settings of usual ways that make a promise (a tolerance), {len(worst)} do not keep it; "
-        f"of the {count} of this package {len(ours)}{named}."
+        f"{len(asked)} settings of usual ways state a tolerance, and {len(worst)} of them do not keep it; "
+        f"{kept}{named}."
     )
 
 

@@ -48,28 +48,28 @@ ASKED = {
 PRIVATE = ("_", "cython_runtime", "sitecustomize", "usercustomize")
 WORDS = """# What a scene does not need
 
-A kernel contains only what its question needs. Each line is a fresh process that asks one question of one scene, with
-the kernel in the cache:
+A kernel computes only what the requested result needs. Each row is a fresh process that computes one kind of result
+(*question*) for one scene, with the kernel in the cache:
 
-- *operations*: vector instructions of one bounce, compares and selects included; *share*: their part of the kernel that
-  does everything for that table, with a general contraction, a tangent vector and a record;
-- *state*: doubles kept for a particle; the cuspless table and the stadium have a component index among them;
-- *modules*: those of `numeric`, and the packages beside it (of llvmlite only its version is read);
-- *memory*: the peak of the resident set above that of a process that only imports NumPy; *time*: the processor's
-  from NumPy's import to the answer.
+- *operations*: vector instructions of one bounce, compares and selects included; *share*: operations as a percentage of
+  those of the full kernel for that table, with a general contraction, a tangent vector and a record;
+- *state*: doubles kept for a particle; for the cuspless table and the stadium one of them is a component index;
+- *modules*: the number of modules of `numeric`, and the other packages imported (of llvmlite only its version is read);
+- *memory*: the peak of the resident set above that of a process that only imports NumPy; *time*: processor time
+  from NumPy's import to the result.
 
-The stadium stands for the tables of `tables.GALLERY`: by name, as in `PinballMap("stadium", straight=2)`, it needs no
-SymPy; the exact table `tables.stadium()` does.
+The stadium is an example for the tables of `tables.GALLERY`. By name, as in `PinballMap("stadium", straight=2)`, it
+needs no SymPy; the exact table `tables.stadium()` needs SymPy.
 
 `python benchmarks/first_result.py` writes this page; `tests/verification/measure/test_leave_out_page.py` compares
-operations, state and modules with it. The split by kind of instruction is in [kernels.md](kernels.md).
+operations, state and modules with it. [Kernels](kernels.md) has the number of operations of each kind.
 """
 COLD = r"""
 ## With an empty cache and with a full one
 
-With an empty cache the same process compiles the kernel. What SymPy derives of a table comes with the package for
-those with a name (`numeric/lowering/shipped.py`); for others it is derived once. The question is the exponents at
-$\lambda = 19/20$; *before* is with an empty cache and *after* with what the first process left there.
+With an empty cache the process compiles the kernel first. For named tables the package contains the formulas that SymPy
+derives (`numeric/lowering/shipped.py`); for others they are derived once. The table is for exponents at
+$\lambda = 19/20$; *before* is with an empty cache and *after* with the cache that the first process filled.
 """
 
 

@@ -25,21 +25,21 @@ PAGE, FIGURES = DOCS / "work_precision.md", DOCS / "figures"
 KEPT = ("name", "title", "answers", "unit", "certified")
 HEAD = """# Error against run time, question by question
 
-Which method answers a question with so many digits, and what does it cost? `pinball work NAME` draws one of these
-diagrams on your machine, {{py:func}}`~verification.measure.work.scenes.work_precision` one for your own table and
+Which method is quickest for a given accuracy, and what does it cost? `pinball work NAME` draws one of these
+diagrams on your machine; {{py:func}}`~verification.measure.work.scenes.work_precision` draws one for your own table and
 question.
 
-Each diagram shows the error of an answer against the seconds it took, one line for each method; a line's marks are
-its settings, a number of digits or a tolerance. Errors are distances from a *certified ball*, so the errors
-themselves are known. Full marks lie on the Pareto front, the grey staircase: nothing else is both quicker and more
-accurate. A cross marks an error that is larger than the method claims. Times are processor time of one core for one
-answer, medians with quartiles as bars, after a first call that is not counted. Methods start from the same few
-decimals; `certified` includes the whole proof, such as that each landing is the first hit and the period the least.
+Each diagram shows the error of an answer against the seconds it took, with one line for each method. The marks on a
+line are the method's settings: numbers of digits, or tolerances. Errors are distances from a *certified ball*, so the
+errors themselves are known. Full marks lie on the Pareto front, the grey step line: no other mark is both quicker and
+more accurate. A cross marks an error that is larger than the method claims. Times are processor time of one core for
+one answer, medians with quartiles as bars, after a first call that is not counted. Methods start from the same few
+decimals. *Certified* includes the whole proof, for example that each landing is the first hit and the period the least.
 `benchmarks/work_precision.py` writes this page from `benchmarks/records/work_precision.json`, which has every row.
 
-{footer}
+Made with {footer}
 
-Compare ratios, not seconds. What a bounce of each table takes is in [the dossier](numerics.md).
+Compare ratios, not seconds. [The dossier](numerics.md) has the time of a bounce on each table.
 """
 
 
@@ -118,12 +118,13 @@ def section(about, rows):
     truth = (
         ""
         if about["certified"]
-        else " No proof of it is known: the truth is a long run, and four of its standard errors count as error."
+        else " No proof is known: the reference is a long run, and its error is taken as four standard errors."
     )
+    unit = "in radians" if about["unit"] == "radians" else about["unit"]
     return (
-        f"## {about['title']}\n\n`{about['name']}`: {about['answers']}; error {about['unit']}.{truth}\n\n"
+        f"## {about['title']}\n\n`{about['name']}`: {about['answers']}; error {unit}.{truth}\n\n"
         f"![Error against seconds: {about['title']}](figures/work-{about['name']}.svg)\n\n{paragraph(rows)}\n\n"
-        f"The front, quickest first:\n\n{markdown(front(rows), baseline(rows))}\n"
+        f"The Pareto front, quickest first:\n\n{markdown(front(rows), baseline(rows))}\n"
     )
 
 

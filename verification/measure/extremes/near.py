@@ -51,10 +51,10 @@ UNIT, DIGITS = 2.0**-52, 15  # of a float64
 class StabilityVerdict(Enum):
     """The verdict on a computed answer; the value of a member is its explanation for a user."""
 
-    STABLE = "as right as rounded data allow"
-    SENSITIVE = "as right as rounded data allow, which is less than half of the digits; give data with more digits"
+    STABLE = "as accurate as rounded data allow"
+    SENSITIVE = "as accurate as rounded data allow, but to less than half of the digits; give data with more digits"
     STOPPED = "no number: the kernel stops the particle and names the outcome"
-    UNSTABLE = "wrong by more than rounded data explain; use what is named in its place"
+    UNSTABLE = "wrong by more than rounded data explain; use the named alternative"
 
 
 @dataclass(frozen=True)

@@ -148,7 +148,7 @@ def _exceptions(found: Sequence[Line]) -> str:
         if one.verdict is not StabilityVerdict.STABLE or one.stopped_by:
             what = one.verdict.name.lower() + (f" ({one.stopped_by})" if one.stopped_by else "")
             kept.setdefault((what, one.instead), []).append(one)
-    rows = ["## What a method cannot do well, and what to use in its place\n",
+    rows = ["## What a method cannot do well, and what to use instead\n",
             "| verdict | methods | cases | instead |", "|---" * 4 + "|"]  # fmt: skip
     for (what, instead), several in kept.items():
         methods = "; ".join(dict.fromkeys(one.kernel for one in several))
@@ -221,43 +221,44 @@ def _short(x: float | None) -> str:
 WORDS = rf"""# Stiff and extreme cases
 
 How the arithmetic behaves where it is hard. Every kernel runs every labelled case (`verification/measure/extremes/`)
-from the same rounded state, and is compared with a truth of 100 digits: a ball proved to enclose the first hit or,
-where balls cannot decide, the definition of the map in mpmath. `python benchmarks/extremes.py --longer` measures it
+from the same rounded state, and is compared with a reference of 100 digits: a ball proved to enclose the first hit or,
+if balls cannot decide, the definition of the map in mpmath. `python benchmarks/extremes.py --longer` measures the cases
 and writes this page; `tests/verification/measure/test_extremes.py` compares every verdict with its record.
 
-With data $x$, truth $f(x)$ and answer $y$: the **forward error** is $\lvert y - f(x) \rvert$; the **backward error**
-is the smallest $(\delta x, \delta y)$ with $y + \delta y = f(x + \delta x)$, to first order (the mixed error of
-{{cite:p}}`Higham2002`). The **condition number** is the largest factor between them, from difference quotients of the
-truth. Errors are absolute, in units of $2^{{-52}}$ (80-bit floats: $2^{{-63}}$), of the landing's parameter and the
-direction of flight. A method is called stable when no backward error is above {SMALL}. It is called sensitive when
-such an error costs half of 15 digits besides, from a condition number of 9e+06 on. Each line shows the worst start of
-its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run the same step; `textbook discriminant` is the
-quadratic formula with nothing divided out.
+Let the data be $x$, the true value $f(x)$ and the computed one $y$. The **forward error** is $\lvert y - f(x) \rvert$.
+The **backward error** is the smallest $(\delta x, \delta y)$ with $y + \delta y = f(x + \delta x)$, to first order
+(the mixed error of {{cite:p}}`Higham2002`). The **condition number** is the largest factor between them, from
+difference quotients of the reference. Errors are absolute, in units of $2^{{-52}}$ (80-bit floats: $2^{{-63}}$), of the
+landing's parameter and the direction of flight. A method is called stable if no backward error is above {SMALL}. It is
+called sensitive if, in addition, such an error costs half of 15 digits, which happens from a condition number of 9e+06
+on. Each line shows the worst start of its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run the same
+step; `textbook discriminant` is the quadratic formula with nothing divided out.
 
-**What kernels say of themselves.** Where a flight cannot go on, the kernel names the reason
-(`PinballMap.step(...).status`). A cycle found by Newton's method is a `Solution` with its `condition` number (an
-estimate of the largest row sum of the inverse {{cite:p}}`Higham2002`) and the `digits_sure` that it leaves. Its
-`conditioning`, which `pinball cycles` prints, is SOUND, SENSITIVE next to a fold or a flip, or REPEATED for a shorter
-cycle run through several times. `pinball follow` goes by arc length, in a system that is regular at a fold.
+**What kernels report.** If a flight cannot continue, the kernel names the reason (`PinballMap.step(...).status`). A
+cycle found by Newton's method is a `Solution` with its `condition` number (an estimate of the largest row sum of the
+inverse {{cite:p}}`Higham2002`) and the `digits_sure` that it leaves. Its `conditioning`, which `pinball cycles` prints,
+is SOUND, SENSITIVE next to a fold or a flip, or REPEATED for a repetition of a shorter cycle. `pinball follow` steps by
+arc length, in a system that is regular at a fold.
 
-**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** The outcome is JOIN where the line
+**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** The outcome is JOIN if the line
 passes a join so closely that rounding hides its side: the landing's distance from the join, times $\cos\eta$, is
-below $2^{{-50}}$ of the way from the start to there. (On the arc, which bends away from the line, the distance itself
-serves where it is the larger factor. A flight from the wall has to land within 4 units of $\tan(\theta/2)$.) Next to
-that border kernels may disagree: both answers are right for data that are off by a rounding. The verdict column says
-how far off the true flight passes the join.
+below $2^{{-50}}$ of the way from the start to the join. (On the arc, which bends away from the line, the distance
+itself replaces $\cos\eta$ if it is larger. A flight from the wall has to land within 4 units of $\tan(\theta/2)$.)
+Next to this limit kernels may disagree: each answer is right for data that differ by a rounding. The verdict column
+states the distance at which the true flight passes the join.
 
-**80 bits.** `longdouble` is the step on 80-bit floats, with the C library's functions and zeros sharpened to the last
-bit. It judges `benchmarks/adversarial.py` too, which says how far the judge itself moves when its state is rounded
-once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp, where 50 digits judge instead.
+**80 bits.** `longdouble` is the step on 80-bit floats, with the C library's functions and zeros refined to the last
+bit. It is also the reference of `benchmarks/adversarial.py`, which reports how far this reference moves if its state is
+rounded once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp, where the reference has 50
+digits instead.
 
-**Exponents** are compared with the product of the matrices along the kernel's own orbit. Along another orbit from the
-same start the product is another number. On the cardioid at $\lambda = 0.01$ the orbits in float64 and in 50 digits
+**Exponents** are compared with the product of the matrices along the kernel's own orbit, since the product depends on
+the orbit. On the cardioid at $\lambda = 0.01$ the orbits in float64 and in 50 digits
 are 5e-10 apart after 40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many bounces differ by 2e-12,
 6e-6 and 6e-3.
 
-**Long orbits** end the page: invariants, closed forms, an attracting cycle proved in balls, mirror images, and means
-over the elastic cardioid, which is ergodic {{cite:p}}`Szasz1992,Markarian1993`. Nothing drifts: the root mean square
-change of the ellipse's invariant is 0.48, 0.48 and 0.47 units times $\sqrt n$, after $n = 10^4$, $4 \cdot 10^6$ and
-$10^9$ bounces. Orbits of $10^9$ collisions on every table are in [kernels](kernels.md).
+**Long orbits** are at the end of the page: invariants, closed forms, an attracting cycle proved in balls, mirror
+images, and means over the elastic cardioid, which is ergodic {{cite:p}}`Szasz1992,Markarian1993`. Nothing drifts: the
+root mean square change of the ellipse's invariant is 0.48, 0.48 and 0.47 units times $\sqrt n$, after $n = 10^4$,
+$4 \cdot 10^6$ and $10^9$ bounces. [Kernels](kernels.md) has orbits of $10^9$ collisions on every table.
 """

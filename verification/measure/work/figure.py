@@ -182,10 +182,10 @@ def quickest(rows: Sequence[MethodResult]) -> str:
     if finest is None or finest.error is None:
         return ""
     quick = min((row for row in own if row.magnitude < finest.magnitude + 1), key=lambda row: row.seconds)
-    said = f"The most accurate float64 answer has the error {short(finest.error)} ({_named(finest)})"
+    said = f"The most accurate float64 method is {_named(finest)}: its error is {short(finest.error)}"
     if quick.method == finest.method:
         return f"{said}, in {duration(quick.seconds)}."
-    return f"{said}; the quickest within one digit of it is {_named(quick)}, in {duration(quick.seconds)}."
+    return f"{said}. The quickest within one digit of this error is {_named(quick)}, in {duration(quick.seconds)}."
 
 
 def picked(rows: Sequence[MethodResult]) -> str:
@@ -196,11 +196,11 @@ def picked(rows: Sequence[MethodResult]) -> str:
     if not known or _with_bars(rows):
         return ""
     parts = [
-        f"from {digits} {'digit' if digits == 1 else 'digits'} on {choice.method}"
+        f"from {digits} {'digit' if digits == 1 else 'digits'} on, *{choice.method}*"
         f" ({choice.digits} digits in {duration(choice.seconds)})"
         for digits, choice in crossovers(rows[0].question, measured=known)
     ]
-    return "The quickest method whose error is as claimed: " + "; ".join(parts) + "."
+    return "The quickest methods that keep the error they claim: " + "; ".join(parts) + "."
 
 
 def bars(rows: Sequence[MethodResult]) -> str:
@@ -210,7 +210,7 @@ def bars(rows: Sequence[MethodResult]) -> str:
     shares = [f"{float(row.error / row.promise):.2f}" for row in own if row.error is not None and row.promise]
     if not own:
         return ""
-    return f"Half of the 95 % interval is {', '.join(parts)}. The errors are {', '.join(shares)} of that."
+    return f"Half of the 95 % interval is {', '.join(parts)}. The errors are {', '.join(shares)} of this half width."
 
 
 def _with_bars(rows: Sequence[MethodResult]) -> list[MethodResult]:
@@ -224,7 +224,7 @@ def proofs(rows: Sequence[MethodResult]) -> str:
         return ""
     proof = at["arb, certified"]
     pairs = [(name, at[name]) for name in ("arb, no proof", "mpmath") if name in at]
-    compared = " and ".join(f"{times(proof.seconds / row.seconds)} times as long as {name}" for name, row in pairs)
+    compared = " and ".join(f"{times(proof.seconds / row.seconds)} times as long as *{name}*" for name, row in pairs)
     return f"{PLENTY} digits with a proof take {duration(proof.seconds)}{', ' if compared else ''}{compared}."
 
 
@@ -254,9 +254,9 @@ def _judged(name: str, rows: Sequence[MethodResult], own: Sequence[MethodResult]
     text = f"*{name}* has the error {short(error)} in {duration(seconds)}"
     rivals = [row for row in front(own) if row.error is not None and row.error <= error]
     if rivals and rivals[0].seconds < seconds:
-        text += f"; {rivals[0].method} is as accurate and {times(seconds / rivals[0].seconds)} times as fast"
+        text += f"; *{rivals[0].method}* is as accurate and {times(seconds / rivals[0].seconds)} times as fast"
     elif rivals:
-        text += f", {times(rivals[0].seconds / seconds)} times as fast as {rivals[0].method}"
+        text += f", {times(rivals[0].seconds / seconds)} times as fast as *{rivals[0].method}*"
     else:
         text += ", which no method of this package beats"
     broken = [(row.error / row.promise, row) for row in rows if row.kept is False and row.error and row.promise]
@@ -279,4 +279,4 @@ def times(ratio: float) -> str:
 
 
 def _named(row: MethodResult) -> str:
-    return f"{row.method}, {row.setting}" if row.setting else row.method
+    return f"*{row.method}* ({row.setting})" if row.setting else f"*{row.method}*"

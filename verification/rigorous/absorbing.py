@@ -28,17 +28,20 @@ def reached(
 ) -> Indices | None:
     """The numbers, in order, of all cells that the boxes `start` and their later images meet; or None.
 
-    Cells are mapped in `parts` by `parts` pieces. None is returned where nothing is proved of a box, where an image
-    leaves the charts, where there are more than `most` cells, and where a cell touches another one that is shifted by
-    one of the `turns` (in columns).
+    Cells are mapped in `parts` by `parts` pieces. None is returned where there are no boxes, where nothing is proved of
+    one, where a box or an image leaves the charts, where there are more than `most` cells, and where a cell touches
+    another one that is shifted by one of the `turns` (in columns).
     """
-    member = new = numbered(grid, grid.met(Images.exact(start)))
+    first = grid.met(Images.exact(start))
+    if first.out.any() or not first.source.size:
+        return None
+    member = new = numbered(grid, first)
     while new.size:
         if member.size > most or _touches(grid, new, member, turns):
             return None
         found = list[Indices]()
-        for first in range(0, new.size, BLOCK):
-            met, lost = mapped(map, grid, cells(grid, new[first : first + BLOCK]), parts)
+        for at in range(0, new.size, BLOCK):
+            met, lost = mapped(map, grid, cells(grid, new[at : at + BLOCK]), parts)
             if lost.any() or met.out.any():
                 return None
             found.append(numbered(grid, met))

@@ -29,17 +29,20 @@ def reached(
 ) -> Indices | None:
     """The sorted indices of all cells that the boxes `start` and their later images meet; or None.
 
-    Cells are cut into `parts` by `parts` pieces before they are mapped. None is returned if an image is not enclosed or
-    leaves the charts, if there are more than `most` cells, or if a cell touches a cell of the set that is shifted by
-    one of the `turns` (in columns).
+    Cells are cut into `parts` by `parts` pieces before they are mapped. None is returned if there are no boxes, if an
+    image is not enclosed, if a box or an image leaves the charts, if there are more than `most` cells, or if a cell
+    touches a cell of the set that is shifted by one of the `turns` (in columns).
     """
-    member = new = numbered(grid, grid.met(Images.exact(start)))
+    first = grid.met(Images.exact(start))
+    if first.out.any() or not first.source.size:
+        return None
+    member = new = numbered(grid, first)
     while new.size:
         if member.size > most or _touches(grid, new, member, turns):
             return None
         found = list[Indices]()
-        for first in range(0, new.size, BLOCK):
-            met, lost = mapped(map, grid, cells(grid, new[first : first + BLOCK]), parts)
+        for at in range(0, new.size, BLOCK):
+            met, lost = mapped(map, grid, cells(grid, new[at : at + BLOCK]), parts)
             if lost.any() or met.out.any():
                 return None
             found.append(numbered(grid, met))

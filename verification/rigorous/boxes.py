@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import BallArray, WideOps, hull
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -91,9 +91,10 @@ class Turned:
 
     @property
     def charts(self) -> tuple[Chart, ...]:
-        """The chart, whose first coordinate is periodic and covers the fraction `1/turns` of a full turn."""
+        """The chart: the middle one of `turns` equal parts of the map's periodic chart, and periodic itself."""
         (chart,) = self.map.charts
-        return (chart._replace(x=(-np.pi / self.turns, np.pi / self.turns)),)
+        middle, half = (chart.x[1] + chart.x[0]) / 2, (chart.x[1] - chart.x[0]) / 2 / self.turns
+        return (chart._replace(x=(middle - half, middle + half)),)
 
     @property
     def label(self) -> str:
@@ -110,6 +111,10 @@ class PlaneImages:
     """A map of a rectangle of the plane, from `formula(x, y)` and the matrix entries `derivative(x, y)`, evaluated in
     balls.
 
+    The formula is continuous on the chart. The entries hold the derivative at every point of the box where there is
+    one: over a box that meets a corner of the graph, the hull of both sides. A formula that jumps needs a `BoxMap` of
+    its own. A float in a formula is the double, so that 1.4 is not 7/5: `from_text` reads exact numbers.
+
     >>> half = PlaneImages("halving", Chart("plane", (-1, 1), (-1, 1)), lambda x, y: (x / 2, y / 2),
     ...     lambda x, y: ((0.5, 0), (0, 0.5)))
     >>> box = Boxes(np.array([0]), (np.array([0.5]), np.array([1.0])), (np.array([0.0]), np.array([0.5])))
@@ -122,16 +127,50 @@ class PlaneImages:
     formula: Any
     derivative: Any
 
+    @classmethod
+    def from_text(cls, label: str, chart: Chart, x: str, y: str) -> "PlaneImages":
+        """The map whose coordinates are two formulas in `x` and `y`; SymPy differentiates them.
+
+        Numbers are exact: `1.4*x` and `7/5*x` are the same. `ValueError` for a text that is no formula, and for one
+        whose derivative is none, such as `abs(x)`.
+
+        >>> henon = PlaneImages.from_text("Henon", Chart("plane", (-2, 2), (-1, 1)), "1 - 1.4*x**2 + y", "0.3*x")
+        >>> box = Boxes(np.array([0]), (np.array([1.0]), np.array([1.0])), (np.array([0.5]), np.array([0.5])))
+        >>> [round(float(end[0]), 9) for end in (*henon.images(box).boxes.x, *henon.images(box).boxes.y)]
+        [0.1, 0.1, 0.3, 0.3]
+        """
+        from sympy import Symbol
+
+        from symbolic.expressions.text import kernel, load
+        from symbolic.tables.formula import parse
+
+        letters = Symbol("x", real=True), Symbol("y", real=True)
+        values = [parse(text, {"x": letters[0], "y": letters[1]}) for text in (x, y)]
+        slopes = [value.diff(letter) for value in values for letter in letters]
+        formula, entries = (
+            load(kernel("image", letters, {f"value{i}": each for i, each in enumerate(some)}), WideOps())
+            for some in (values, slopes)
+        )
+
+        def derivative(x: BallArray, y: BallArray) -> tuple[tuple[BallArray, ...], ...]:
+            found = entries(x, y)
+            return found[:2], found[2:]
+
+        return cls(label, chart, formula, derivative)
+
     @property
     def charts(self) -> tuple[Chart, ...]:
         return (self.chart,)
 
     def images(self, boxes: Boxes) -> Images:
-        centre, reach, whole = centred(boxes)
-        (a, b), (c, d) = self.derivative(*whole)
-        values = self.formula(*centre)
-        x, y = (value + p * reach[0] + q * reach[1] for value, (p, q) in zip(values, ((a, b), (c, d)), strict=True))
-        ends = x.lower(), x.upper(), y.lower(), y.upper()
+        """The images by the mean-value theorem; lost where one is not finite, or the low end of a box is not low."""
+        with np.errstate(all="ignore"):  # infinite and NaN entries count as not proved
+            centre, reach, whole = centred(boxes)
+            (a, b), (c, d) = self.derivative(*whole)
+            values = self.formula(*centre)
+            x, y = (value + p * reach[0] + q * reach[1] for value, (p, q) in zip(values, ((a, b), (c, d)), strict=True))
+            sound = (boxes.x[0] <= boxes.x[1]) & (boxes.y[0] <= boxes.y[1])
+            ends = np.where(sound, x.lower(), np.nan), x.upper(), y.lower(), y.upper()
         return collected([(np.arange(boxes.chart.size), boxes.chart, *ends)], boxes.chart.size)
 
 

@@ -44,6 +44,7 @@ class Cuboids:
             middle = self.middle + aside
             moved = middle - self.middle
             off = np.abs((self.middle - (middle - moved)) + (aside - moved))  # the exact rounding error of the middle
+            off = off + np.where(cut, np.abs(self.half - 2 * half), 0.0)  # that of the half, which may underflow
             parts.append(Cuboids(middle, np.where(off == 0, half, np.nextafter(half + off, np.inf))))
         return Cuboids(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("middle", "half")))
 
@@ -66,7 +67,8 @@ def exclude(
 
     `nothing_in` returns a mask of the boxes that are proved to hold nothing; the other boxes are halved. The search
     ends undecided after `budget` boxes, or at an undecided box with all sides below `smallest`. `tick` is called with
-    the number of boxes tested so far. `ValueError` if a box is not finite.
+    the number of boxes tested so far. `ValueError` if a box is not finite, and if there are no boxes, since an empty
+    cover is more likely a mistake than a region.
 
     >>> line = Cuboids(np.array([[0.0]]), np.array([[1.0]]))
     >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 2) > boxes.half[:, 0], 100, 1e-3).empty
@@ -74,7 +76,11 @@ def exclude(
     >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 1 / 3) > boxes.half[:, 0], 100, 1e-3).empty is None
     True
     """
-    if not (np.all(np.isfinite(start.middle)) and np.all((start.half >= 0) & np.isfinite(start.half))):
+    if not start.size:
+        raise ValueError("exclude: no boxes to search; give a cover with at least one")
+    with np.errstate(over="ignore"):
+        ends = np.abs(start.middle) + start.half
+    if not np.all((start.half >= 0) & np.isfinite(ends)):
         raise ValueError("exclude: a middle or a half width is not finite, or below 0; accepted: boxes with both ends")
     queue, tested = start, 0
     while queue.size:

@@ -28,6 +28,7 @@ Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 BLOCK = 1 << 14  # boxes mapped in one call: their arrays fit in the cache
 PAD = 1e-7  # in cells: more than the rounding of an index, up to LARGEST columns or rows
+TURNED, FAR = 2.0**-44, 2.0**50  # many turns away: the relative rounding of an index, and where one is not known
 LARGEST = 1 << 20
 CELLS = 1 << 24  # the most cells in all charts together: their counts take 300 MB
 Told = Callable[[float], None]  # called with the finished share of a long computation
@@ -57,7 +58,10 @@ class Rectangles(NamedTuple):
 
 @dataclass(frozen=True)
 class Grid:
-    """A grid of `columns` by `rows` cells in each chart; `ValueError` with more than `most` cells in all.
+    """A grid of `columns` by `rows` cells in each chart.
+
+    `ValueError` with more than `most` cells in all, and for a chart without inner points or with an end that is no
+    double.
 
     >>> from verification.rigorous.boxes import Chart
     >>> grid = Grid((Chart("plane", (0, 1), (0, 1)),), 4, 2)
@@ -75,6 +79,10 @@ class Grid:
             raise ValueError(f"grid: {self.columns} by {self.rows} cells; accepted: 1 to {LARGEST} each way")
         if self.columns * self.rows * len(self.charts) > self.most:
             raise ValueError(f"grid: {self.columns} by {self.rows} cells in each chart; accepted: {self.most} in all")
+        for chart in self.charts:
+            for low, high in (chart.x, chart.y):
+                if not (float(low) == low and float(high) == high and 1e-300 < high - low < 1e300):
+                    raise ValueError(f"grid: {chart}; accepted: ends that are doubles, the low one below the high one")
 
     def whole(self, size: int = 1) -> Cells:
         """Blocks of `size` by `size` cells that cover all charts."""
@@ -95,18 +103,26 @@ class Grid:
         return Boxes(cells.chart, *ends)
 
     def met(self, images: Images) -> Rectangles:
-        """The ranges of cells that closed rectangles meet, including cells that share only a border point with one."""
+        """The ranges of cells that closed rectangles meet, including cells that share only a border point with one.
+
+        A rectangle whose low end is above its high end, or whose ends are not finite, counts as leaving the chart.
+        """
         boxes, found = images.boxes, []
-        out = np.zeros(boxes.chart.size, dtype=bool)
+        unknown = ~np.logical_and.reduce([(-np.inf < a) & (a <= b) & (b < np.inf) for a, b in (boxes.x, boxes.y)])
+        out = unknown.copy()
         kept, turning = (np.array([getattr(c, name) for c in self.charts])[boxes.chart] for name in ("kept", "period"))
         for side, ends, count in (("x", boxes.x, self.columns), ("y", boxes.y, self.rows)):
             low, high = (np.array([getattr(chart, side)[i] for chart in self.charts])[boxes.chart] for i in (0, 1))
             scale = count / (high - low)
-            first, last = np.floor((ends[0] - low) * scale - PAD), np.floor((ends[1] - low) * scale + PAD)
+            first, last = (np.clip((np.where(unknown, low, end) - low) * scale, -2 * FAR, 2 * FAR) for end in ends)
+            first = np.floor(first - np.maximum(PAD, np.abs(first) * TURNED))
+            last = np.floor(last + np.maximum(PAD, np.abs(last) * TURNED))
             bounded = ~turning if side == "x" else np.ones(out.shape, dtype=bool)
             out |= bounded & ~kept & ((first < 0) | (last >= count))
             first, last = (np.where(bounded, np.clip(i, 0, count - 1), i) for i in (first, last))
             if side == "x":
+                far = turning & (np.abs(first) > FAR)
+                first, last = np.where(far, 0, first), np.where(far, count, last)
                 last = np.where(turning, np.minimum(last, first + count - 1), last)
                 first, last = (i - np.where(turning, np.floor(first / count) * count, 0) for i in (first, last))
             found += [first.astype(np.int64), last.astype(np.int64)]
@@ -138,7 +154,10 @@ def halved(cells: Cells) -> Cells:
 
 
 def mapped(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> tuple[Rectangles, Mask]:
-    """Cells that images of blocks meet, with blocks cut into `parts` by `parts`; and a mask of blocks not enclosed."""
+    """Cells that images of blocks meet, with blocks cut into `parts` by `parts`; and a mask of blocks not enclosed.
+
+    A piece for which the map gives no image and which it does not call lost counts as not enclosed.
+    """
     found, lost = [], np.zeros(cells.chart.size, dtype=bool)
     step = max(1, BLOCK // parts**2)
     for start in range(0, cells.chart.size, step):
@@ -146,7 +165,10 @@ def mapped(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | N
         boxes, source = grid.boxes(some).parts(parts, parts)
         images = map.images(boxes)
         met = grid.met(images)
-        lost[start + source[images.lost]] = True
+        unknown = np.ones(source.size, dtype=bool)
+        unknown[images.source] = False
+        unknown[images.lost] = True
+        lost[start + source[unknown]] = True
         found.append(met._replace(source=start + source[met.source]))
         if told is not None:
             told(min(1.0, (start + step) / cells.chart.size))
@@ -245,7 +267,13 @@ OUTSIDE = -1
 
 
 def transitions(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> Transitions:
-    """The transition graph of blocks that cover phase space or a part of it; the uncovered part counts as outside."""
+    """The transition graph of blocks that cover phase space or a part of it; the uncovered part counts as outside.
+
+    `ValueError` for a block that is not one of the blocks `grid.whole(size)` of its size.
+    """
+    ends = ((cells.column, grid.columns), (cells.row, grid.rows))
+    if any(np.any((count % cells.size != 0) | (at % cells.size != 0) | (at < 0) | (at >= count)) for at, count in ends):
+        raise ValueError("grid: a block lies across others of its size; accepted: blocks of Grid.whole")
     everywhere = np.arange(cells.chart.size)
     return joined(grid, cells, everywhere >= 0, arrows(map, grid, cells, everywhere, everywhere, parts, told))
 

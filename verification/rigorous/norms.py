@@ -8,6 +8,7 @@ from verification.arithmetic.arrays import BallArray
 Array = NDArray[np.float64]
 Matrix = list[list[BallArray]]
 ROUNDS = 400  # of power iterations
+LEAST = 1e-250  # an entry of a vector: products with smaller ones underflow
 SLACK = 1e-9  # relative; more than the rounding of a dozen operations
 
 
@@ -16,19 +17,20 @@ def shrinkage(size: Array, target: NDArray[np.int64]) -> float:
     set's target.
 
     `size` has shape `(2, 2, sets)` and bounds the derivative's entries in modulus over each set; set `i` is mapped to
-    set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`.
+    set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`. It is infinite where a bound
+    is negative, infinite or nan, and where a set has no target, which is written -1.
 
     >>> round(shrinkage(np.array([[[0.5], [8.0]], [[0.0], [0.25]]]), np.array([0])), 2)
     0.5
     """
-    if not np.all(np.isfinite(size)):
+    if not (size.size and np.all((size >= 0) & (size < np.inf)) and np.all(target >= 0)):
         return np.inf
     size, vectors = size * (1 + SLACK) + 1e-300, np.ones((2, size.shape[2]))
     for _ in range(ROUNDS):  # the bound below holds for any positive vectors
         image = np.zeros_like(vectors)
         np.maximum.at(image.T, target, np.einsum("ijk,jk->ik", size, vectors).T)
         vectors = vectors + image
-        vectors /= vectors.max()
+        vectors = np.maximum(vectors / vectors.max(), LEAST)
     moved = np.einsum("ijk,jk->ik", size, vectors)
     return float(np.max(moved / vectors[:, target])) * (1 + SLACK)
 

@@ -8,7 +8,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from functools import reduce
+from functools import lru_cache, reduce
 from operator import mul
 from typing import Any
 
@@ -41,6 +41,7 @@ WORDS: tuple[type[Expr], ...] = tuple(
 ROOT = 12  # the highest root
 
 
+@lru_cache(maxsize=64)
 def lower(table: Table) -> TableIR:
     """The table IR of a table; shape parameters without a value are inputs of its programs.
 

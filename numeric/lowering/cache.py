@@ -28,6 +28,7 @@ SETTLED = 2.0  # seconds after which a file that changes again has another time
 TEMPORARY = ".new-"  # a file before it is renamed
 FOR_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _said: set[str] = set()
+_sizes: dict[str, int] = {}  # bytes in a folder when it was last listed, and what this process has written since
 
 
 def folder() -> str | None:
@@ -138,7 +139,7 @@ def write(kind: str, *parts_and_content: str | bytes) -> None:
         with os.fdopen(handle, "wb") as file:
             file.write(_digest(name, content) + content)
         os.replace(temporary, os.path.join(place, name))
-        _bound(place)
+        _bound(place, len(content))
     except OSError as reason:
         if temporary is not None:
             with suppress(OSError):
@@ -179,18 +180,20 @@ def _entries(place: str) -> Iterator[tuple[str, int, float]]:
                 yield file.path, known.st_size, known.st_mtime
 
 
-def _bound(place: str) -> None:
-    """Removes the oldest entries until three quarters of the limit are left."""
+def _bound(place: str, written: int) -> None:
+    """Removes the oldest entries until three quarters of the limit are left; lists the folder only when it may be."""
+    _sizes[place] = _sizes.get(place, LIMIT) + written
+    if _sizes[place] <= LIMIT:
+        return
     kept = sorted(_entries(place), key=lambda entry: entry[2])
     size = sum(length for _, length, _ in kept)
-    if size <= LIMIT:
-        return
-    for path, length, _ in kept:
+    for path, length, _ in kept if size > LIMIT else ():
         if size <= LIMIT * 3 // 4:
-            return
+            break
         with suppress(OSError):
             os.unlink(path)
         size -= length
+    _sizes[place] = size
 
 
 def _trusted() -> str | None:

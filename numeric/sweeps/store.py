@@ -121,7 +121,7 @@ def opened(sweep: Sweep, path: Path) -> Iterator[Stored]:
     """The store of a sweep, new or to be resumed; `ValueError` if another sweep made it or another process uses it."""
     if ADDRESS.match(path.as_posix()):
         raise ValueError(
-            f"--store {path}: an object store has no files that appear at once; accepted: a directory on a disk, which "
+            f"--store {path}: an object store cannot rename a file in one step; accepted: a directory on a disk, which "
             "may be copied to an object store when the sweep is done"
         )
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):

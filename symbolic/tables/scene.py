@@ -246,10 +246,9 @@ class Scene:
         import tomllib
 
         if len(text) > LONGEST or DOTTED.search(QUOTED.sub("q", text)):
-            what = (
-                "holds a key of more than 16 words" if len(text) <= LONGEST else f"is longer than {LONGEST} characters"
-            )
-            raise ValueError(f"scene: the text {what}; accepted: keys such as shape.a, in a shorter file")
+            if len(text) > LONGEST:
+                raise ValueError(f"scene: the text is too long; accepted: at most {LONGEST} characters")
+            raise ValueError("scene: the text holds a key of more than 16 words; accepted: keys such as shape.a")
         try:
             said = tomllib.loads(text)
         except RecursionError:

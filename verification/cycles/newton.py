@@ -257,7 +257,7 @@ def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool =
         steps += [NewtonStep(level, float(context.log10(size))) for size in found.sizes or [context.mpf(10) ** -level]]
         if not found.settled:
             raise ValueError(
-                f"{problem.label}: {found.steps} Newton steps with {level} digits still correct by "
+                f"{problem.label}: after {found.steps} Newton steps with {level} digits the last correction is still "
                 f"1e{steps[-1].correction:.0f}; the cycle is lost or singular"
             )
     return Solution(problem, z, digits, tuple(steps))

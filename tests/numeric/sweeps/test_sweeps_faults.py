@@ -104,7 +104,7 @@ def test_a_whole_store_is_read_where_nothing_can_be_written(tmp_path, monkeypatc
 @pytest.mark.parametrize("address", ["memory://sweep", "s3://bucket/sweep"])
 def test_an_object_store_is_refused_in_one_sentence(address, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match="an object store has no files that appear at once; accepted: a directory"):
+    with pytest.raises(ValueError, match="an object store cannot rename a file in one step; accepted: a directory"):
         run(table(), Path(address))
 
     assert list(tmp_path.iterdir()) == []

@@ -89,7 +89,7 @@ class BoundaryCrisis(Certified):
         if len(self.saddle.start) != 1 or closure.turn != 1 or Fraction(*closure.shift) % 1 not in turns:
             raise ValueError(f"crisis: the {self.saddle.name} must be fixed by one bounce and a turn of the table")
         if self.scene.law.placed:
-            raise ValueError(f"crisis: law = {self.scene.law}; a round turns the table; accepted: laws of eta and lam")
+            raise ValueError(f"crisis: law = {self.scene.law} depends on the place; accepted: laws of eta and lam")
         if not all(abs(x) < FAR for x in (*self.saddle.start, *self.sink)):
             raise ValueError(f"crisis: the saddle at {self.saddle.start} or the sink at {self.sink} is out of range")
         if self.side not in (1, -1) or not 0 < low < high < 1 or not 0 <= self.start <= 1:

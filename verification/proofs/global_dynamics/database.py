@@ -128,7 +128,7 @@ def database(
     if not 0 <= min(lams) < max(lams) < 1:
         raise ValueError(f"lam = {min(lams)} to {max(lams)} is no range; accepted: 0 <= LOW < HIGH < 1")
     if min(len(values), len(lams)) < 2:
-        raise ValueError("a box has two ends; give LOW:HIGH:N with N of at least 2 for either parameter")
+        raise ValueError("N values bound N - 1 boxes; give LOW:HIGH:N with N of at least 2 for either parameter")
     if coarsest & (coarsest - 1) or columns % coarsest or rows % coarsest:  # each box would be left unknown
         raise ValueError(f"blocks of {coarsest} are no power of 2 that divides {columns} columns and {rows} rows")
     ends = scene.ranges.get(parameter)

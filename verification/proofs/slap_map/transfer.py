@@ -178,7 +178,9 @@ def launching_points(cells: int) -> tuple[Matrix, Matrix]:
             launch = at(arb(k) * 2 * quarter / cells)[0]
             units = (launch * cells / (2 * quarter) * GRAIN).floor().unique_fmpz() if launch.is_finite() else None
             if units is None:
-                raise ArithmeticError(f"ulam: the launching point of b = {k} cells is not known to {GRAIN}")
+                raise ArithmeticError(
+                    f"ulam: the launching point for b = {k} cells could not be enclosed to within {GRAIN}"
+                )
             return float(int(units)) / GRAIN
 
         below = [point(-k) for k in range(cells)] + [0.0]

@@ -41,7 +41,11 @@ def test_another_saddle_than_the_one_that_is_named_is_refused(found):
 
 @pytest.mark.parametrize(
     ("law", "said"),
-    [("-lam*eta + cos(3*theta)/20", "a round turns the table"), ("-lam*eta + s/50", "turns"), ("-eta", "by a margin")],
+    [
+        ("-lam*eta + cos(3*theta)/20", "depends on the place"),
+        ("-lam*eta + s/50", "on the place"),
+        ("-eta", "by a margin"),
+    ],
 )
 def test_a_law_without_the_crisis_hypotheses_is_refused(found, law, said):
     with pytest.raises(ValueError, match=said):

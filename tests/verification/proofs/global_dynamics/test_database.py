@@ -121,7 +121,7 @@ def test_blocks_that_do_not_fit_are_refused(size):
     ("lams", "shape", "words"),
     [
         ("0:1:3", "alpha=0:1/10:3", "accepted: 0 <= LOW < HIGH < 1"),
-        ("0:0.9:3", "alpha=1/20:1/20:1", "a box has two ends"),
+        ("0:0.9:3", "alpha=1/20:1/20:1", "N values bound N - 1 boxes"),
         ("0.5", "alpha=0:1/10:3", "is no range"),
     ],
 )

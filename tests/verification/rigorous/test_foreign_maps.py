@@ -68,6 +68,7 @@ MAPS = {
     "tent": (folded(2, "0.5", 0, INTERVAL), 64),
     "cat": (Torus(plane("2*x + y", "x + y", UNIT)), 32),
     "standard": (Torus(plane(f"x + y + {KICK}", f"y + {KICK}", UNIT)), 32),
+    "rotation": (plane("x + 3/10", "y", CIRCLE._replace(kept=True)), 32),
     "turn of a disc": (plane("3/5*x - 4/5*y", "4/5*x + 3/5*y", Chart("plane", (-1, 1), (-1, 1))), 32),
 }
 
@@ -183,7 +184,19 @@ def test_the_attractor_lies_in_the_published_polygon_and_attracts_its_points(nam
     assert {*vertex(graph.transitions, *orbits(name, x[within], y[within], 200))} <= {*graph.sets[attractor]}
 
 
-@pytest.mark.parametrize("name", ["cat", "standard", "turn of a disc"])
+def test_henons_quadrilateral_is_kept_by_outer_images():
+    """Henon 1976, section 4: the map takes it into itself, and does so with boxes, but for those on its border."""
+    map, grid = MAPS["Henon"][0], Grid((Chart("plane", (-1.5, 1.5), (-0.6, 0.6)),), 1024, 1024)
+    cells, boxes = grid.whole(), grid.boxes(grid.whole())
+    sides = [beyond(POLYGONS["Henon"], x, y) for x in boxes.x for y in boxes.y]
+    meets, wholly = np.min(sides, axis=0) <= 0, np.max(sides, axis=0) <= 0
+    block = Cells(*(field[meets] for field in cells))
+
+    assert wholly.sum() > 100_000
+    assert np.all(inside(grid, block, *mapped(map, grid, block))[wholly[meets]])
+
+
+@pytest.mark.parametrize("name", ["cat", "standard", "rotation", "turn of a disc"])
 def test_where_area_is_preserved_nothing_less_than_everything_attracts(name):
     graph = graph_of(name)
     everything = np.append(graph.transitions.leaf, name == "turn of a disc")  # whose corners leave the square

@@ -1,4 +1,4 @@
-"""Morse graphs and trapping regions of maps with known dynamics, and false statements that are refused."""
+"""Trapping regions of tables and their documents, and the grid on which they stand."""
 
 import json
 from dataclasses import replace
@@ -10,105 +10,13 @@ import pytest
 
 from symbolic.tables.scene import Scene
 from verification.app.cli import main
-from verification.arithmetic.arrays import ArrayOps, BallArray
 from verification.named.theorems import theorem
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.global_dynamics.regions import Region, region, sampled_share, shares
-from verification.rigorous.boxes import Boxes, Chart, Images, PlaneImages
-from verification.rigorous.graph import (
-    Cells,
-    Grid,
-    Rectangles,
-    halved,
-    inside,
-    mapped,
-    morse_graph,
-    refined,
-    transitions,
-)
+from verification.rigorous.boxes import Boxes, Chart, Images
+from verification.rigorous.graph import Cells, Grid, Rectangles, halved, inside, morse_graph, refined
 
 EGG = Scene("egg", alpha="0.08", lam="1/2")
-
-
-def henon() -> PlaneImages:
-    """Henon's map `x' = 1 - a*x**2 + y, y' = b*x` at `a = 1.4`, `b = 0.3`."""
-    a, b = (ArrayOps().q(p, 10) for p in (14, 3))
-    chart = Chart("plane", (-1.5, 1.5), (-0.6, 0.6))
-    return PlaneImages("Henon", chart, lambda x, y: (1 - a * x * x + y, b * x), lambda x, y: ((-2 * a * x, 1), (b, 0)))
-
-
-def logistic(r: Fraction) -> PlaneImages:
-    """The logistic map, with a second coordinate that is halved."""
-    letter = ArrayOps().q(r.numerator, r.denominator)
-    chart = Chart("plane", (-0.05, 1.05), (-1.0, 1.0))
-    return PlaneImages(
-        "logistic",
-        chart,
-        lambda x, y: (letter * x * (1 - x), y * 0.25),
-        lambda x, y: ((letter * (1 - 2 * x), 0.0), (0.0, 0.25)),
-    )
-
-
-def test_henons_quadrilateral_is_kept_by_outer_images():
-    """Henon 1976, section 4, prints the four vertices of a region that the map takes into itself."""
-    corners = np.array([(-1.33, 0.42), (1.32, 0.133), (1.245, -0.14), (-1.06, -0.5)])
-    map = henon()
-    grid = Grid(map.charts, 1024, 1024)
-    cells = grid.whole()
-    boxes = grid.boxes(cells)
-    meets = wholly = np.ones(cells.chart.size, dtype=bool)
-    for (px, py), (qx, qy) in zip(corners, np.roll(corners, -1, axis=0), strict=True):  # clockwise: inside is right
-        sides = [(qx - px) * (y - py) - (qy - py) * (x - px) for x in boxes.x for y in boxes.y]
-        meets, wholly = meets & (np.min(sides, axis=0) <= 0), wholly & (np.max(sides, axis=0) <= 0)
-    block = Cells(*(field[meets] for field in cells))
-    held = inside(grid, block, *mapped(map, grid, block))
-
-    assert wholly.sum() > 100_000
-    assert np.all(held[wholly[meets]])
-
-
-def test_henons_attractor_has_a_trapping_region():
-    map = henon()
-    graph = morse_graph(refined(map, Grid(map.charts, 1024, 1024), 8))
-    (attractor,) = [i for i in graph.attracting if graph.transitions.count not in graph.sets[i]]
-    block = graph.transitions.chosen(graph.trapping(attractor))
-    grid = graph.transitions.grid
-
-    assert not graph.trapping(attractor)[-1]
-    assert np.all(inside(grid, block, *mapped(map, grid, block)))
-    picture, (x, y) = grid.to_array(block, np.ones(block.chart.size, dtype=bool))[0], (0.1, 0.1)
-    for n in range(2_000):
-        x, y = 1 - 1.4 * x * x + y, 0.3 * x
-        if n > 50:
-            assert picture[int((x + 1.5) / 3 * 1024), int((y + 0.6) / 1.2 * 1024)]
-
-
-def test_the_logistic_maps_cycle_of_period_two_attracts():
-    map = logistic(Fraction(33, 10))
-    graph = morse_graph(refined(map, Grid(map.charts, 512, 32), 4))
-    found = [i for i in graph.attracting if graph.transitions.count not in graph.sets[i]]
-    fixed = 1 - 10 / 33
-    (attractor,) = found
-    boxes = graph.transitions.grid.boxes(
-        graph.transitions.chosen(np.isin(np.arange(graph.transitions.count + 1), graph.sets[attractor]))
-    )
-
-    assert not np.any((boxes.x[0] <= fixed) & (fixed <= boxes.x[1]))
-    for x in (0.4794270198, 0.8236032832):  # the cycle, to ten digits
-        assert np.any((boxes.x[0] <= x) & (x <= boxes.x[1]) & (boxes.y[0] <= 0) & (boxes.y[1] >= 0))
-
-
-def test_of_a_rotation_nothing_is_said_but_the_whole():
-    turn = ArrayOps().q(3, 10)
-    map = PlaneImages(
-        "rotation",
-        Chart("cylinder", (-np.pi, np.pi), (-1.0, 1.0), True, True),
-        lambda x, y: (x + turn, y),
-        lambda x, y: ((1.0, 0.0), (0.0, 1.0)),
-    )
-    graph = morse_graph(transitions(map, grid := Grid(map.charts, 64, 16), grid.whole()))
-
-    assert [len(members) for members in graph.sets] == [64 * 16]
 
 
 @pytest.fixture(scope="module")
@@ -170,14 +78,6 @@ def test_the_command_says_what_is_proved_and_its_certificates_check(tmp_path, ca
     assert (tmp_path / "morse.png").stat().st_size > 1000
     for path in tmp_path.glob("*.json"):
         assert main(["check", str(path)]) == 0
-
-
-def test_an_image_that_leaves_the_chart_leads_outside():
-    half, unit = BallArray(0.5), ((1.0, 0.0), (0.0, 1.0))
-    away = PlaneImages("shift", Chart("plane", (0, 1), (0, 1)), lambda x, y: (x + half, y), lambda x, y: unit)
-    graph = morse_graph(transitions(away, grid := Grid(away.charts, 8, 8), grid.whole()))
-
-    assert all(graph.trapping(i)[-1] for i in range(len(graph.sets)))
 
 
 CHARTS = Chart("turning", (-np.pi, np.pi), (-0.1, 0.7), True), Chart("plain", (0.1, 0.3), (-1.0, 1.0))

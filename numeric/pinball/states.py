@@ -239,8 +239,32 @@ class Orbit(Labelled, OrbitFields):
         """The outcome at each bounce: a `Status`, or an array of them."""
         return STATUSES[self.code]
 
+    @property
+    def flight(self) -> Array:
+        """The length of the flight before each bounce; nan at the start, and from where a particle stops.
+
+        >>> from numeric import PinballMap
+        >>> PinballMap("circle").orbit(0, 0, 2).flight.round(12).tolist()
+        [nan, 2.0, 2.0]
+        """
+        if self.map is None:
+            raise ValueError("flight: one step has no start to measure from; take it from PinballMap.orbit")
+        lengths = np.full(np.shape(self.x), np.nan)
+        lengths[1:] = np.where(self.code[1:] == 0, np.hypot(np.diff(self.x, axis=0), np.diff(self.y, axis=0)), np.nan)
+        return lengths
+
+    @property
+    def time(self) -> Array:
+        """The length of all flights up to each bounce, which is the time at speed 1; 0 at the start."""
+        lengths = self.flight
+        lengths[0] = 0
+        return np.cumsum(lengths, axis=0)
+
     def plot(self, axes: Any = None) -> Any:
-        """Draws the flights in the table and the bounces in phase space; on one given pair of `axes` only flights."""
+        """A Matplotlib figure of the flights in the table and the bounces in phase space; on given `axes` only flights.
+
+        `orbit.plot().savefig("orbit.png")` writes it.
+        """
         if self.map is None:
             raise ValueError("orbit.plot: only an orbit that PinballMap.orbit gave has its table; it draws itself")
         return plotted("results.flights", self, axes=axes)

@@ -59,7 +59,7 @@ class Attractors(Sequence[Attractor]):
     __hash__ = None  # type: ignore[assignment]
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the attractors in the table and in phase space, each in a colour; on given `axes` phase space alone."""
+        """A Matplotlib figure of the attractors in the table and in phase space; on given `axes` only the latter."""
         return plotted("results.attractors", self.map, self.found, axes=axes)
 
     def _rows(self) -> list[tuple[str, ...]]:
@@ -128,7 +128,7 @@ class LyapunovExponents:
     __hash__ = None  # type: ignore[assignment]
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the exponents with twice their errors, and how the errors fell; on given `axes` only the former."""
+        """A Matplotlib figure of the exponents with twice their errors; without `axes` also of how the errors fell."""
         return plotted("results.exponents", self.document, axes=axes)
 
     def __repr__(self) -> str:
@@ -182,7 +182,7 @@ class GridResult:
         return self.to_xarray().to_dataframe()
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the grid; on given `axes` its main panel alone."""
+        """A Matplotlib figure of the grid; on given `axes` its main panel alone."""
         return plotted(self.picture, self.to_xarray(), axes=axes)
 
     def __repr__(self) -> str:

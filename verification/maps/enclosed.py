@@ -17,16 +17,18 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from numeric import PinballMap
+from symbolic.tables.definition import exact
 from symbolic.tables.joins import JoinKind, contacts, following
+from symbolic.tables.law import Law
 from verification.arithmetic.balls import as_ball, bits_of, enclose, joined, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
-from verification.maps.exact import Bounce, ExactMap, closed_length
+from verification.maps.exact import Bounce, ExactMap, closed_length, float_map
 from verification.maps.first_hit import BITS, BallBoundary, Frame, free
 from verification.maps.flight import Curves, Landings, Obstacles, precisions
 from verification.maps.lengths import ExactArcLength
 from verification.maps.numbers import Balls
 
+DIGITS, SPARE = 50, 64  # digits without `digits` or `bits`; bits beyond the digits
 GUESSED = 40  # digits of a guess by mpmath
 Flight = Callable[[arb], tuple[arb, arb]]  # by the wall's parameter: 0 where the ray meets it, and its slope
 NEWTON = Stop(small=1e-6, steps=40)  # a guess has 15 digits, which double at each step
@@ -40,18 +42,32 @@ class Refusal(Enum):
 
 
 class EnclosedMap:
-    """The map of a `PinballMap`'s table in balls of `bits` bits.
+    """The map in balls, to `digits` digits and some more, or in balls of `bits` bits.
 
-    >>> from numeric import PinballMap
-    >>> ellipse = EnclosedMap(PinballMap("ellipse", a=2, lam=1), 1, bits=100)
-    >>> bounce = ellipse.bounce(ellipse.start(Fraction(0), Fraction(0)))
+    `table` is a table, its name, a scene or a `PinballMap`, as for `ExactMap`.
+
+    >>> ellipse = EnclosedMap("ellipse", a=2, lam=1, digits=30)
+    >>> bounce = ellipse.bounce(ellipse.start("0", "0"))
     >>> bounce.x.contains(-2), bounce.x.rad() < 1e-20
     (True, True)
 
     `lam` is a number or its text (`"9/10"` and `"0.9"` mean the same); a float stands for its exact binary value.
     """
 
-    def __init__(self, map: PinballMap, lam: Any, bits: int) -> None:
+    def __init__(
+        self,
+        table: Any,
+        lam: Any = None,
+        bits: int | None = None,
+        *,
+        digits: int | None = None,
+        law: Law | str | None = None,
+        **shape: Any,
+    ) -> None:
+        if bits is not None and digits is not None:
+            raise ValueError(f"EnclosedMap: digits = {digits} and bits = {bits} are given; give one of them")
+        map, lam = float_map(table, lam, law, shape)
+        bits = bits_of(digits or DIGITS, SPARE) if bits is None else bits
         self.map, self.bits, self.ops = map, bits, Balls()
         self.exact = ExactMap(map, GUESSED, lam)
         with working(bits):
@@ -305,9 +321,11 @@ class EnclosedMap:
 
 
 def number(value: Any, bits: int = 0) -> arb:
-    """An exact number, a float (with its exact binary value) or a ball, as a ball."""
+    """An exact number or its text, a float (with its exact binary value) or a ball, as a ball."""
     if isinstance(value, arb):
         return value
+    if isinstance(value, str):
+        value = exact("start", value)
     if isinstance(value, Fraction):
         return arb(fmpq(value.numerator, value.denominator))
     if isinstance(value, int | float):
@@ -318,7 +336,7 @@ def number(value: Any, bits: int = 0) -> arb:
 def perimeter(enclosed: EnclosedMap, digits: int) -> arb:
     """The length of the whole boundary, by rigorous integration of the speed.
 
-    >>> circle = EnclosedMap(PinballMap("circle"), 1, bits=100)
+    >>> circle = EnclosedMap("circle", bits=100)
     >>> bool(abs(perimeter(circle, 20) - 2 * arb.pi()) < 1e-15)
     True
     """

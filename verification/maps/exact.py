@@ -8,7 +8,7 @@ float64 step with this map of the same state, in units of 2**-52.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -23,6 +23,8 @@ from numeric import PinballMap, Status
 from numeric.flights.family import FORMULA, NEAR, Frame, law_of
 from numeric.flights.general import General
 from symbolic.tables.definition import exact
+from symbolic.tables.law import Law
+from symbolic.tables.scene import as_scene
 from verification.arithmetic.balls import as_ball, exact_balls, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.maps.flight import Curves, Landings, Obstacles, precisions
@@ -51,15 +53,20 @@ class Bounce:
 
 
 class ExactMap:
-    """The map of a `PinballMap`'s table in mpmath, to `digits` digits.
+    """The map in mpmath, to `digits` digits.
 
-    >>> from numeric import PinballMap
-    >>> exact = ExactMap(PinballMap("ellipse", a=2, lam=1), digits=30)
+    `table` is a table, its name or a scene, with exact numbers; or a `PinballMap`, whose `lam` then is the double with
+    which it computes, unless another `lam` is given.
+
+    >>> exact = ExactMap("ellipse", a=2, lam="1/2", digits=30)
     >>> print(exact.bounce(exact.start(0, 0)).x)
     -2.0
     """
 
-    def __init__(self, map: PinballMap, digits: int = 50, lam: Any = None) -> None:
+    def __init__(
+        self, table: Any, digits: int = 50, lam: Any = None, *, law: Law | str | None = None, **shape: Any
+    ) -> None:
+        map, lam = float_map(table, lam, law, shape)
         self.map, self.context = map, mpmath.MPContext()
         self.context.dps = digits + GUARD
         self.digits = digits
@@ -247,6 +254,14 @@ class ExactMap:
         if hasattr(value, "evalf"):
             return self.context.mpf(str(value.evalf(self.context.dps)))
         return self.context.mpf(float(value))
+
+
+def float_map(table: Any, lam: Any, law: Law | str | None, shape: Mapping[str, Any]) -> tuple[PinballMap, Any]:
+    """The map in float64 of a table, a name or a scene, and its exact contraction; a map, and `lam`, as they are."""
+    if isinstance(table, PinballMap) and law is None and not shape:
+        return table, lam
+    scene = as_scene(table, lam=lam, law=law, **shape)
+    return PinballMap(scene), scene.lam
 
 
 def closed_length(map: PinballMap, ops: Any, shape: Sequence[Any], component: int, theta: Any) -> Any:

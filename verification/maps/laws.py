@@ -37,6 +37,8 @@ from verification.maps.enclosed import EnclosedMap, Refusal, number
 from verification.maps.exact import Bounce, ExactMap
 from verification.maps.strategies import Particle, particles, reflections
 
+__all__ = ["area_sum_rule", "determinant", "every", "first_hit", "jacobian", "symmetry", "time_reversal_at_lam_1"]
+
 EPS = 2.0**-52
 UNITS = 4096  # of rounding allowed, times the condition of the flight
 GRAZING = 1e-3  # the least cosine of an angle of incidence
@@ -48,6 +50,10 @@ BITS = 160
 
 Check = Callable[[Particle], None]
 Test = Callable[[], None]
+
+
+def __dir__() -> list[str]:
+    return __all__
 
 
 def _test(check: Check, tables: Any, options: dict[str, Any], **drawn: Any) -> Test:

@@ -4,19 +4,22 @@ mpmath computes an approximate solution of the chord system, and `verification.p
 closed form, the two must agree. The true value lies within `radius` of `value`; both are decimals.
 """
 
+import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import mpmath
 from flint import arb
-from sympy import Expr, Integer, N, S, acos
+from sympy import Expr, Integer, N, S, acos, sympify
 
+from numeric.lowering.files import write_whole
 from symbolic import tables
 from symbolic.cycles import polygons, thresholds
-from symbolic.tables.definition import like
+from symbolic.tables.definition import exact, like
 from symbolic.tables.law import PAPERS_LAW, Law
 from symbolic.tables.table import alpha as alpha_symbol
 from symbolic.tables.table import lam as lam_symbol
@@ -86,6 +89,18 @@ class Located:
             "seconds": self.seconds,
         }
 
+    def save(self, path: str | Path) -> None:
+        """Writes the certificate as a JSON file, which `check` and `pinball check` read.
+
+        `ValueError` if the value has no certificate, or where the file cannot be written.
+        """
+        if self.proof is None:
+            raise ValueError(f"certificate: {self.name} was not proved; accepted: values that are certified")
+        try:
+            write_whole(path, json.dumps(self.proof.document(), indent=1) + "\n")
+        except OSError as why:
+            raise ValueError(f"certificate: {path} cannot be written ({why.strerror}); name another file") from None
+
     def __str__(self) -> str:
         return f"{self.title} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
 
@@ -109,20 +124,30 @@ class SearchOutcome:
     steps: Steps = ()
 
 
-def locate(name: str, digits: int = 30, law: Law = PAPERS_LAW, **shape: Expr) -> Located:
+def locate(name: str, digits: int = 30, law: Law | str = PAPERS_LAW, **shape: Any) -> Located:
     """The parameter value of the bifurcation `name` (see `NAMES`) to `digits` decimals; tangencies under any `law`.
+
+    The parameters that a name takes, such as `alpha`, `lam` or `n`, are exact numbers: `"2/25"`, `"0.08"`, a fraction.
+    `ValueError` names what is missing or out of range, and what is accepted.
 
     >>> locate("lambda-c", 20).value
     '0.0934003354313602414161'
+    >>> locate("saddle-node", 12, alpha="0.08").value
+    '0.3781212525901'
     """
     if name not in NAMES:
         raise ValueError(f"locate: no value is called {name!r}; accepted: {', '.join(NAMES)}{like(name, NAMES)}")
-    if not 1 <= digits <= MOST_DIGITS:
-        raise ValueError(f"locate: digits = {digits} is out of range; accepted: 1 to {MOST_DIGITS}")
+    if digits not in range(1, MOST_DIGITS + 1):
+        raise ValueError(f"locate: digits = {digits!r} is out of range; accepted: 1 to {MOST_DIGITS}")
     search, parameters = NAMES[name]
     shape = dict(USUAL.get(name, {})) | shape
     if set(shape) != set(parameters):
         raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(parameters)}")
+    shape = {letter: sympify(exact(f"locate {name}: {letter}", value)) for letter, value in shape.items()}
+    for letter in {"n", "period"} & {*shape}:
+        if not shape[letter].is_Integer:
+            raise ValueError(f"locate {name}: {letter} = {shape[letter]} is no integer")
+    law = law if isinstance(law, Law) else Law(law)
     if not law.uniform and not isinstance(search, partial):
         raise ValueError(f"locate {name}: law = {law}; accepted: {PAPERS_LAW}, and any law for tangencies of manifolds")
     started = time.perf_counter()
@@ -342,7 +367,7 @@ def _unit(parameter: str, value: Expr) -> Expr:
 
 
 def _listed(parameters: Any) -> str:
-    return ", ".join(f"--{parameter}" for parameter in parameters) or "no parameter"
+    return ", ".join(parameters) or "no parameter"
 
 
 NAMES: Mapping[str, tuple[Callable[..., SearchOutcome], tuple[str, ...]]] = {

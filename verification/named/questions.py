@@ -211,7 +211,10 @@ class FollowedOrbit:
         return self._of("border collision")
 
     def plot(self, axes: "Axes | None" = None) -> "Figure":
-        """A figure of the bounces along the branch, dashed where unstable, with its events; new, or on `axes`."""
+        """A Matplotlib figure of the bounces along the branch, dashed where unstable, with its events.
+
+        It is new, or that of the given `axes`; `branch.plot().savefig("branch.png")` writes it.
+        """
         from numeric.pinball.states import plotted
 
         made: Figure = plotted("dynamics.plotted", (self.branch,), None, axes=axes)
@@ -226,7 +229,7 @@ class FollowedOrbit:
         return f"FollowedOrbit(period {self.orbit.period}, {self.parameter} from {ends}: {events})"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BranchEvent:
     """An event on a branch, at a parameter value in float64; `certify` gives more digits and a proof."""
 
@@ -253,6 +256,9 @@ class BranchEvent:
     def supercritical(self) -> bool | None:
         """True if the bifurcation is supercritical: the new cycle is stable where the old one is not; None if open."""
         return self.event.form.supercritical if self.event.form else None
+
+    def __repr__(self) -> str:
+        return f"BranchEvent({self.kind} at {self.parameter} = {self.value:.9g})"
 
 
 def follow(orbit: PeriodicOrbit, *, points: int = 400, tick: Tick | None = None, **interval: Any) -> FollowedOrbit:
@@ -344,6 +350,7 @@ def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Locat
     """A proof in balls, to `digits` digits, of an event and its parameter, or of a cycle and its first bounce.
 
     Folds, period doublings, pitchforks and cycles have certificates. The checklist of the result says what holds;
+    `certify(...).save("fold.json")` writes the certificate, for `check` or `pinball check fold.json`.
     `notes["stability"]` is what the one-sided derivatives prove where the curvature jumps at a bounce.
 
     >>> axis = find_cycles("ellipse", a="3/2", lam="1/2", period=2).stable[0]
@@ -356,7 +363,7 @@ def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Locat
     from verification.named.events import proof_of
     from verification.named.locate import MOST_DIGITS, Located
 
-    if not 1 <= digits <= MOST_DIGITS:
+    if digits not in range(1, MOST_DIGITS + 1):
         raise ValueError(f"certify: digits = {digits!r} is out of range; accepted: 1 to {MOST_DIGITS}")
     started, notes = time.perf_counter(), dict[str, str]()
     if isinstance(found, PeriodicOrbit):
@@ -397,7 +404,7 @@ def _proof_of_cycle(orbit: PeriodicOrbit, digits: int) -> "UniqueCycle":
 def morse_graph(
     table: Any,
     *,
-    lam: Any,
+    lam: Any = None,
     columns: int = 256,
     rows: int = 128,
     coarsest: int = 4,
@@ -405,6 +412,8 @@ def morse_graph(
     **shape: Any,
 ) -> "MorseGraph":
     """The Morse sets of the map and their order, proved for a contraction, or for all of `lam=(low, high)` at once.
+
+    `lam` may be left out where `table` is a scene or a map, which have their own.
 
     The strip |phi| <= lam*pi/2, where every particle is after one bounce, is covered by `columns` times `rows` cells,
     at first in blocks of `coarsest`. From some bounce on, every orbit that meets no join is in one of the sets. Convex
@@ -419,7 +428,7 @@ def morse_graph(
 def trapping_region(
     table: Any,
     *,
-    lam: Any,
+    lam: Any = None,
     columns: int = 256,
     rows: int = 128,
     coarsest: int = 4,
@@ -453,6 +462,7 @@ def _graph(
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.rigorous.graph import Grid, morse_graph, refined
 
+    lam = as_scene(table, law=law, **shape).lam if lam is None else lam
     ends = [exact("lam", end) for end in (lam if isinstance(lam, tuple | list) else (lam, lam))]
     if len(ends) != 2 or not all(isinstance(end, Fraction) for end in ends):
         raise ValueError(f"lam = {lam!r} is no range of contractions; accepted: one rational number, or two")

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -60,18 +61,28 @@ def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
         return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
 
 
-def shown(kind: str, results: Sequence[Any], axes: "Axes | None" = None) -> "Figure":
+def shown(kind: str, results: Sequence[Any], axes: Any = None) -> "Figure":
     """Figure of results for a script or a notebook; on given axes, or new.
 
-    `kind` is `module.function` of this package, or the full name of a function.
+    `kind` is `module.function` of this package, or the full name of a function. A new figure is saved in the style in
+    which it was drawn.
     """
+    if isinstance(axes, str | Path):
+        path = repr(str(axes))
+        raise ValueError(f"plot: {path} is no pair of axes; plot() gives a Matplotlib figure: plot().savefig({path})")
     module, _, name = kind.rpartition(".")
     where = module if "." in module else f"verification.plots.{module}"
     with styled():
         made: Figure = getattr(import_module(where), name)(*results, axes=axes)
     if axes is None:
         vars(made)["_repr_png_"] = partial(_png, made)  # by which a notebook shows it
+        vars(made)["savefig"] = partial(_saved, made)
     return made
+
+
+def _saved(made: "Figure", *given: Any, **options: Any) -> None:
+    with styled():  # fonts and resolution are looked up when a figure is saved
+        type(made).savefig(made, *given, **options)
 
 
 def _png(made: "Figure") -> bytes:

@@ -34,3 +34,23 @@ def test_without_xarray_it_is_said_what_to_install(monkeypatch):
         ValueError, match=r"xarray is missing; install it with: pip install 'pinball-billiards\[sweep\]'"
     ):
         EGG.orbit(0.3, 0.1, 2).to_xarray()
+
+
+def test_time_is_the_length_of_the_flights_so_far_and_nan_after_the_last():
+    orbit = PinballMap("cardioid", lam="0.5").orbit([0.3, 0.0], [0.1, 0.0], 5)  # one regular, one into the cusp
+
+    assert np.array_equal(orbit.time[0], [0, 0])
+    assert np.allclose(np.diff(orbit.time, axis=0)[:, 0], orbit.flight[1:, 0])
+    assert np.allclose(orbit.flight[1:, 0], np.hypot(np.diff(orbit.x[:, 0]), np.diff(orbit.y[:, 0])))
+    assert np.isnan(orbit.flight[:, 1]).all()
+    with pytest.raises(ValueError, match="one step has no start"):
+        _ = EGG.step(0.3, 0.1).flight
+
+
+def test_a_picture_is_saved_as_the_command_saves_it_and_a_path_is_no_pair_of_axes(tmp_path):
+    EGG.orbit(0.3, 0.1, 6).plot().savefig(tmp_path / "orbit.png")
+    width = int.from_bytes((tmp_path / "orbit.png").read_bytes()[16:20], "big")
+
+    assert width == 1400
+    with pytest.raises(ValueError, match=r"plot\(\).savefig\('orbit.png'\)"):
+        EGG.orbit(0.3, 0.1, 6).plot("orbit.png")

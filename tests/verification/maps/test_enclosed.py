@@ -9,7 +9,7 @@ from flint import arb
 from sympy import Rational
 
 from numeric import PinballMap
-from symbolic import tables
+from symbolic import Scene, tables
 from verification.arithmetic.balls import working
 from verification.maps.enclosed import EnclosedMap, perimeter
 from verification.maps.exact import ExactMap
@@ -140,3 +140,15 @@ def test_a_contraction_that_is_text_means_the_decimal_that_it_shows():
         with working(400):
             assert (own.lam * 10 - 9).contains(0)
             assert own.lam.rad() < 1e-100
+
+
+def test_a_map_is_made_of_a_table_a_name_a_scene_or_a_map():
+    scene = Scene("egg", alpha="2/25", lam="1/3")
+    given = [(scene, {}), ("egg", {"alpha": "0.08", "lam": "1/3"}), (tables.egg(3), {"alpha": "2/25", "lam": "1/3"})]
+    for table, numbers in (*given, (PinballMap(scene), {"lam": "1/3"})):
+        exact, balls = ExactMap(table, digits=30, **numbers), EnclosedMap(table, digits=30, **numbers)
+        landed, held = exact.bounce(exact.start("0.1", "0.2")), balls.bounce(balls.start("1/10", "0.2"))
+        assert held.phi.rad() < 1e-30
+        assert abs(exact.middle(held.phi) - landed.phi) < 1e-30
+    with pytest.raises(ValueError, match="give one of them"):
+        EnclosedMap(scene, bits=100, digits=30)

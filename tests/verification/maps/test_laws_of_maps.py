@@ -71,4 +71,5 @@ def test_a_map_that_is_off_by_a_millionth_fails_with_a_note_on_its_particle(law,
 
     with pytest.raises(AssertionError) as failed:
         law("ellipse", **FEW)()
+    assert {law.__name__, "given"} & {*dir(laws)} == {law.__name__}
     assert "ellipse(a=" in "".join(failed.value.__notes__)

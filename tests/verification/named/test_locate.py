@@ -16,6 +16,7 @@ from verification.app.commands.locate import check_command as check
 from verification.app.commands.locate import command as locate_command
 from verification.cycles.cascade import cascade
 from verification.named.locate import NAMES, locate
+from verification.named.theorems import check as check_file
 
 ALPHA = Rational(2, 25)
 run = partial(CliRunner().invoke, standalone_mode=False)  # of a command, with its words
@@ -97,15 +98,17 @@ def test_the_papers_cascade_is_judged_digit_by_digit(n, printed, right):
     [
         ("lambda", {}, "no value is called 'lambda'; accepted: lambda-star"),
         ("lamda-star", {}, "; did you mean lambda-star"),
-        ("lambda-c", {"lam": Integer(0)}, "given --lam; it takes no parameter"),
-        ("doubling", {"alpha": ALPHA}, "it takes --alpha, --n"),
+        ("lambda-c", {"lam": Integer(0)}, "given lam; it takes no parameter"),
+        ("doubling", {"alpha": ALPHA}, "it takes alpha, n"),
         ("doubling", {"alpha": ALPHA, "n": Integer(40)}, "n = 40 is out of range; accepted: 2 to 17"),
         ("doubling", {"alpha": ALPHA, "n": Integer(17)}, "accepted for n = 17: up to 61 digits"),
         ("doubling", {"alpha": ALPHA, "n": Integer(2)}, "alpha = 2/25 has no lambda_2"),
+        ("doubling", {"alpha": ALPHA, "n": "5/2"}, "n = 5/2 is no integer"),
+        ("saddle-node", {"alpha": 0.08}, "alpha = 0.08 is a rounded float; write it exactly"),
         ("saddle-node", {"alpha": Integer(0)}, "alpha = 0 is a circle"),
         ("saddle-node", {"alpha": Rational(1, 5)}, r"alpha must lie in \[0, 1/10\]"),
         ("alpha-tilde", {"lam": Integer(2)}, "lam = 2 is out of range"),
-        ("window-end", {"alpha": ALPHA}, "given --alpha; it takes --alpha, --period"),
+        ("window-end", {"alpha": ALPHA}, "given alpha; it takes alpha, period"),
         ("window-end", {"alpha": ALPHA, "period": Integer(7)}, "accepted: 6, 8, 9, 12, 14, 15, 18, 20"),
         ("band-merging", {"alpha": ALPHA, "period": Integer(3)}, "accepted: 4, 8, 16"),
         ("interior-crisis", {"alpha": ALPHA, "n": Integer(8)}, "accepted: 1, 2, 3"),
@@ -116,6 +119,20 @@ def test_the_papers_cascade_is_judged_digit_by_digit(n, printed, right):
 def test_a_search_that_cannot_succeed_says_what_is_accepted(name, shape, message):
     with pytest.raises(ValueError, match=message):
         locate(name, 100 if shape.get("n") == 17 else 15, **shape)
+
+
+SAID = {"alpha-tilde": {"lam": "1/3"}, "saddle-node": {"alpha": "0.08"}, "doubling": {"alpha": Fraction(2, 25), "n": 3}}
+
+
+@pytest.mark.parametrize(("name", "shape"), SAID.items())
+def test_a_number_may_be_text_or_a_fraction_and_what_is_located_is_saved(name, shape, tmp_path):
+    found = locate(name, 19, **shape)
+    found.save(tmp_path / "proof.json")
+
+    assert found.value.startswith(KNOWN[name])
+    assert check_file(tmp_path / "proof.json").proved
+    with pytest.raises(ValueError, match=r"nowhere.* cannot be written"):
+        found.save(tmp_path / "nowhere" / "proof.json")
 
 
 def test_ends_where_a_bifurcation_degenerates_are_not_certified():

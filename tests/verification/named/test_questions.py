@@ -1,6 +1,7 @@
 """Questions on a scene: answers agree with closed forms, and a senseless question is refused in a sentence."""
 
 import json
+from fractions import Fraction
 from functools import cache
 from math import pi
 
@@ -15,7 +16,7 @@ from symbolic.tables.gallery import mushroom, semi_ellipse, sinai
 from symbolic.tables.table import Shape, alpha
 from verification.cycles.chords import Chords
 from verification.named.bifurcations import bifurcations
-from verification.named.questions import PeriodicOrbit, certify, find_cycles, follow
+from verification.named.questions import PeriodicOrbit, certify, find_cycles, follow, morse_graph, trapping_region
 from verification.named.theorems import checked
 
 EGG = Scene("egg", alpha="2/25", lam="1/2")
@@ -51,9 +52,18 @@ def test_a_branch_is_followed_to_its_fold_and_the_fold_is_certified():
     exact = saddle_node().subs(alpha, Rational(2, 25))
 
     assert found.certified
+    assert repr(fold) == "BranchEvent(fold at lam = 0.378121253)"
     assert abs(Rational(found.value) - exact.evalf(40)) <= Rational(found.radius) + Rational(1, 10**39)
     assert branch.flips == branch.pitchforks == branch.border_collisions == ()
     assert str(found).endswith("certified)")
+
+
+def test_a_graph_is_that_of_the_scene_s_own_contraction():
+    cells = {"columns": 64, "rows": 32}
+    scene = Scene("ellipse", a="3/2", lam="1/2")
+
+    assert len(morse_graph(scene, **cells).sets) == len(morse_graph("ellipse", a="3/2", lam="1/2", **cells).sets)
+    assert trapping_region(scene, **cells).lam == (Fraction(1, 2), Fraction(1, 2))
 
 
 def ranged(name, low, high):

@@ -26,9 +26,27 @@ Results
     Cycle               a cycle with its bounces
     SlapMap             result of `slap_map`
 
->>> from symbolic import curvature
+Letters
+    theta               boundary parameter; the polar angle of polar tables
+    theta0              boundary parameter at the start of a flight
+    theta1              boundary parameter at its landing
+    phi                 exit angle
+    eta                 incidence angle
+    lam                 contraction
+    a                   half the major axis of the ellipse
+    alpha               shape of the egg
+
+Letters are real symbols of SymPy, and another symbol of the same name, or the text "theta", is not one of them: put
+values in for the letters above. A letter of one's own is found in `table.shapes`, and `table.at` gives it a value.
+
+>>> from symbolic import curvature, tables, theta
 >>> curvature("circle")
 -1
+>>> pea = tables.polar("1 + b*cos(2*theta)", b="0:1/5")
+>>> curvature(pea).subs(theta, 0)
+(-5*b**2 - 6*b - 1)/(b**2 + 2*b + 1)**(3/2)
+>>> curvature(pea.at(b="1/10")).subs(theta, 0), curvature(pea).subs({theta: 0, pea.shapes[0].symbol: "1/10"})
+(-150/121, -150/121)
 """
 
 import os

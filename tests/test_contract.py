@@ -23,7 +23,7 @@ from verification import (
 
 FRONT = {
     "symbolic": "Scene Law tables curvature arc_length perimeter area derivative_matrix double_normals monodromy "
-    "multipliers thresholds slap_map generate",
+    "multipliers thresholds slap_map generate theta theta0 theta1 phi eta lam a alpha",
     "numeric": "PinballMap attractors basins exponents bifurcation_diagram parameter_space",
     "verification": "find_cycles follow certify locate check verify report work_precision trapping_region morse_graph "
     "ExactMap EnclosedMap laws strategies",

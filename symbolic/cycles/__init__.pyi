@@ -60,6 +60,8 @@ from .derivations import (
     generate,
     perimeter,
     slap_map,
+    theta0,
+    theta1,
 )
 from .normal_forms import QUARTIC, Map, a, bounce, chord, coefficient, composed, least_bend, return_map
 from .polygons import (
@@ -212,6 +214,8 @@ __all__ = [
     "stability_number",
     "stable_while_nonnegative",
     "straight_multipliers",
+    "theta0",
+    "theta1",
     "thresholds",
     "tilt",
     "tilt_tangent",

@@ -38,7 +38,7 @@ from symbolic.expressions.identities import over_one_root
 from symbolic.expressions.signs import Box, SignFinding, conjunction, positive, vanishes
 from symbolic.motion.collision import derivative_matrix, determinant
 from symbolic.tables import cardioid, circle, cuspless, egg, ellipse
-from symbolic.tables.table import Table, alpha, cos_eta1, cos_phi0, lam, theta
+from symbolic.tables.table import Table, alpha, cos_eta1, cos_phi0, exact_number, lam, theta
 from symbolic.tables.validity import parameter_box, root
 
 
@@ -52,11 +52,15 @@ class Frame:
     curvature: Expr
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Cycle:
     """A periodic orbit by its bounces, each a component's index and a boundary parameter.
 
     `box` holds the ranges of further parameters that `table` and the bounces may depend on.
+
+    >>> from symbolic.tables import polar
+    >>> Cycle("diameter", polar("2"), ((0, S.Zero), (0, pi)))
+    Cycle('diameter', polar('2'), ((0, 0), (0, pi)))
     """
 
     name: str
@@ -103,6 +107,9 @@ class Cycle:
         leaving = self.chord(i).dot(tangent) / self.length(i)
         arriving = self.chord(i - 1).dot(tangent) / self.length(i - 1)
         return shortened(leaving), shortened(arriving)
+
+    def __repr__(self) -> str:
+        return f"Cycle({self.name!r}, {self.table!r}, {self.bounces})"
 
     def _repr_latex_(self) -> str:
         from symbolic.tables.formula import equation  # needed in notebooks only
@@ -176,16 +183,27 @@ def flight_matrix(cycle: Cycle, i: int, contraction: Expr = lam) -> Matrix:
     )
 
 
-def monodromy(cycle: Cycle, base: int = 0, contraction: Expr = lam) -> Matrix:
+def given_cycle(label: str, cycle: Cycle) -> Cycle:
+    """`cycle`, which must be a cycle of this module; otherwise `ValueError`, which begins with `label`."""
+    if not isinstance(cycle, Cycle):
+        raise ValueError(
+            f"{label}: {repr(cycle)[:80]} is no exact cycle; accepted: a Cycle, such as one of double_normals(table)"
+        )
+    return cycle
+
+
+def monodromy(cycle: Cycle, base: int = 0, contraction: Expr | int | str = lam) -> Matrix:
     """The stability matrix of the cycle at bounce `base`: the product over one period.
 
-    The trace and the determinant do not depend on `base`; the entries do.
+    The trace and the determinant do not depend on `base`; the entries do. `contraction` is an exact number, such as
+    `"1/2"`, or an expression; a float is refused.
 
     >>> from symbolic.cycles.cycle import minor_axis
     >>> monodromy(minor_axis()).det().simplify()
     lam**2
     """
-    return Matrix(_monodromy(cycle, base, contraction))
+    slope = contraction if isinstance(contraction, Symbol) else exact_number("contraction", contraction)
+    return Matrix(_monodromy(given_cycle("monodromy", cycle), base, slope))
 
 
 @lru_cache(maxsize=256)

@@ -8,21 +8,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
+from inspect import Parameter, Signature
+from itertools import pairwise
 from typing import Any, TypeAlias
 
-from sympy import And, Expr, Interval, Matrix, Piecewise, S, Symbol, pi, simplify, sqrt
+from sympy import And, Basic, Expr, Integral, Interval, Matrix, Piecewise, S, Symbol, elliptic_e, pi, simplify, sqrt
 
 from symbolic.cycles import cycle as cycles
-from symbolic.cycles.cycle import Cycle, shortened, trace_and_determinant
+from symbolic.cycles.cycle import Cycle, given_cycle, shortened, trace_and_determinant
 from symbolic.cycles.thresholds import flip_contraction, focus_contraction, stability_number
 from symbolic.expressions.signs import nonnegative, positive, vanishes
-from symbolic.expressions.text import Kernel, kernel, load
+from symbolic.expressions.text import Kernel, checked, constant, kernel, load
 from symbolic.motion import collision
 from symbolic.tables import geometry, named
 from symbolic.tables.curves import size
-from symbolic.tables.definition import POINTS
+from symbolic.tables.definition import POINTS, exact
 from symbolic.tables.scene import Scene, given_table
-from symbolic.tables.table import Component, Table, theta
+from symbolic.tables.table import Component, Table, exact_number, theta
 from symbolic.tables.validity import enclosed_area, parameter_box, root
 
 Tabled: TypeAlias = Table | Scene | str  # or a map of `numeric`, which has a scene
@@ -66,24 +68,31 @@ def curvature(table: Tabled | Component) -> Any:
 def arc_length(table: Tabled | Component) -> Any:
     """Arc length from the start of the component to `theta`, in units of length; a dict by name for several components.
 
-    Where there is no closed form it contains an unevaluated integral, for `numeric` and `verification` to integrate.
+    It has a closed form, elementary or elliptic, where the squared speed is `p + q*cos(n*theta)`, and is an unevaluated
+    integral elsewhere. SymPy integrates that with `.subs(theta, 1).evalf(30)`; in float64,
+    `numeric.PinballMap(table, ...).arclength` has `s(theta)`, from the paper's origin, and `perimeter`.
 
     >>> arc_length("circle")
     theta + pi
+    >>> from symbolic import alpha
+    >>> arc_length("egg").subs({theta: 0, alpha: "1/10"}).evalf(20)
+    3.2112946665255501811
     """
 
     def derive(part: Component) -> Expr:
         length = geometry.arc_length(part)
+        if isinstance(length, Integral):  # nothing to simplify, and SymPy would try for minutes
+            return Integral(length.function, (length.variables[0], part.start, theta))
         return simplify(length - length.subs(theta, part.start))
 
     return _each(table, derive)
 
 
 def perimeter(table: Tabled) -> Expr:
-    """The length of the whole boundary.
+    """The length of the whole boundary; numbers where it is an unevaluated integral: see `arc_length`.
 
-    >>> perimeter("cardioid")
-    8
+    >>> perimeter("cardioid"), perimeter(named("egg").at(alpha="1/10")).evalf(20)
+    (8, 6.4225893330511003622)
     """
     return geometry.perimeter(table_of(table))
 
@@ -100,12 +109,13 @@ def area(table: Tabled) -> Expr:
     return found
 
 
-def derivative_matrix(table: Tabled | None = None, *components: int, **values: Expr) -> Matrix:
+def derivative_matrix(table: Tabled | None = None, *components: int, **values: Expr | int | str) -> Matrix:
     """`d(s1, phi1)/d(s0, phi0)` of one flight and one reflection. Paper: eq. (derivative_of_map).
 
     Without a table: in the paper's letters `K0, K1, t, cos_phi0, cos_eta1, lam`, each of which may be given a value.
     With a table: along the chord from `theta0` to `theta1`; `components` are their two indices, by default the first.
-    `lam` stands for the slope of the reflection law at the landing, with the opposite sign.
+    `lam` stands for the slope of the reflection law at the landing, with the opposite sign. Values are exact numbers,
+    such as `lam="1/2"`, or expressions; a float is refused.
 
     >>> derivative_matrix().det().simplify()
     cos_phi0*lam/cos_eta1
@@ -114,6 +124,7 @@ def derivative_matrix(table: Tabled | None = None, *components: int, **values: E
     [1,  -2],
     [0, lam]])
     """
+    values = {name: exact_number(name, value) for name, value in values.items()}
     if table is None:
         return collision.derivative_matrix(**values)
     parts, (here, there) = table_of(table).components, components or (0, 0)
@@ -234,7 +245,7 @@ def multipliers(cycle: Cycle) -> tuple[Expr, Expr]:
     >>> [mu.subs({a: 2, lam: 0}).simplify() for mu in multipliers(minor_axis())]
     [1/4, 0]
     """
-    return cycles.multipliers(*trace_and_determinant(cycle))
+    return cycles.multipliers(*trace_and_determinant(given_cycle("multipliers", cycle)))
 
 
 def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
@@ -242,13 +253,14 @@ def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
 
     At `flip` a multiplier is -1; the cycle is stable below. Above `focus` the multipliers are complex. A value is None
     if no such contraction exists in [0, 1] for any shape in the range; if it exists for some shapes only, it is a
-    formula with its condition. `ValueError` for other cycles.
+    formula with its condition, a SymPy `Piecewise`, whose value is `nan` for the other shapes. `ValueError` for other
+    cycles.
 
     >>> from symbolic.cycles.cycle import cuspless_horizontal
     >>> thresholds(cuspless_horizontal())
     {'flip': (1 - sqrt(11)/4)/(sqrt(11)/4 + 1), 'focus': None}
     """
-    if len(cycle.bounces) != 2 or not cycles.is_double_normal(cycle):
+    if len(given_cycle("thresholds", cycle).bounces) != 2 or not cycles.is_double_normal(cycle):
         raise ValueError(f"{cycle.name}: thresholds are known of cycles of period 2 that are normal at both ends")
     P = stability_number(cycle)
     box = {letter: range for letter, range in parameter_box(cycle.table).items() if letter in P.free_symbols}
@@ -271,6 +283,13 @@ def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]
 @lru_cache(maxsize=64)
 def _kernel(letters: tuple[Symbol, ...], names: tuple[str, ...], entries: tuple[Expr, ...]) -> Kernel:
     """The generated function that returns `entries`, the same for every arithmetic and every number of digits."""
+    for entry in entries:
+        if entry.has(Integral, elliptic_e):
+            raise ValueError(
+                "generate: there is no code of integrals and elliptic functions; for their numbers take "
+                "expression.subs(letter, number).evalf(digits), or numeric.PinballMap(table, ...).arclength in float64"
+            )
+        checked("generate", entry, set(letters))
     return kernel("value", letters, dict(zip(names, entries, strict=True)))
 
 
@@ -280,6 +299,9 @@ def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int =
     The function takes the free symbols in alphabetical order, `theta` first. `arithmetic` is `"numpy"`, `"mpmath"` or
     `"arb"` (with `digits`), or `"text"`, which returns the source in the closed vocabulary of
     `symbolic.expressions.text`; a rational is written `q(1, 3)` there and never rounded.
+
+    An argument is text such as `"0.1"`, an integer, a fraction, or an exact number of SymPy. A float stands for the
+    double that it is, which is not the decimal that it shows: 30 digits of `f(0.1)` are not those of `f("0.1")`.
 
     >>> from sympy import cos
     >>> from symbolic.tables.table import alpha
@@ -291,12 +313,19 @@ def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int =
     >>> f = generate(cos(theta) / 3, "arb", digits=20)
     >>> print(f(0).str(20))
     [0.33333333333333333333 +/- 3.34e-21]
+    >>> f = generate(alpha, "arb", digits=20)
+    >>> f("0.1").str(20, radius=False), f(0.1).str(20, radius=False)
+    ('0.10000000000000000000', '0.10000000000000000555')
     """
     entries = list(expression) if isinstance(expression, Matrix) else [S(expression)]
     letters = sorted(
         {x for entry in entries for x in entry.free_symbols}, key=lambda x: (x not in (theta, theta0, theta1), str(x))
     )
     names = ["value"] if len(entries) == 1 else [f"value{i}" for i in range(len(entries))]
+    for one, other in pairwise(letters):
+        if str(one) == str(other):
+            raise ValueError(f"generate: two symbols are called {one}; accepted: one, such as symbolic.{one}")
+    called = Signature([Parameter(str(letter), Parameter.POSITIONAL_OR_KEYWORD) for letter in letters])
     made = _kernel(tuple(letters), tuple(names), tuple(entries))
     if arithmetic == "text":
         return made.text
@@ -306,9 +335,20 @@ def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int =
     system, run = getattr(import_module(module), name)(digits)
     function = load(made, system)
 
-    def value(*arguments: Any, **named_arguments: Any) -> Any:
-        given = [*arguments, *(named_arguments[str(letter)] for letter in letters[len(arguments) :])]
-        return run(function, given, getattr(expression, "shape", None))
+    def number(letter: str, given: Any) -> Any:
+        """Text and numbers of SymPy in this arithmetic; other arguments as they are."""
+        if not isinstance(given, str | Basic):
+            return given
+        return run(load(constant(S(exact(letter, given))), system), [], None)
 
+    def value(*arguments: Any, **named_arguments: Any) -> Any:
+        try:
+            given = called.bind(*arguments, **named_arguments).arguments
+        except TypeError as why:
+            accepted = ", ".join(called.parameters) or "none"
+            raise TypeError(f"generated function: {why}; its arguments are: {accepted}") from None
+        return run(function, [number(*each) for each in given.items()], getattr(expression, "shape", None))
+
+    value.__dict__["__signature__"] = called
     value.__doc__ = f"Arguments: {', '.join(map(str, letters))}.\n\n{made.text}"
     return value

@@ -188,7 +188,7 @@ class _Reader:
             return self._inside()
         if kind not in ("name", "number") or (kind == "name" and text not in {**FUNCTIONS, **self.named}):
             own = (
-                f", or a letter with a number, {text}=NUMBER (at the prompt: --shape {text}=NUMBER)"
+                f", or a letter of your own: {text}='LOW:HIGH' in Python, --shape {text}=NUMBER at the prompt"
                 if kind == "name" and "theta" in self.named
                 else ""
             )

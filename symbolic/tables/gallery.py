@@ -41,8 +41,8 @@ def polar(
     """The table bounded by `rho(theta)`, `-pi <= theta < pi`, in polar coordinates.
 
     Text is parsed by `symbolic.tables.formula`, which executes nothing. Each parameter of the formula is a keyword (one
-    of `letters`) with its range, `LOW:HIGH`. The boundary is proved simple for all values in the range; `Table.at`
-    gives the parameter a value.
+    of `letters`) with its range, `LOW:HIGH`; a letter that is not in the formula is refused. The boundary is proved
+    simple for all values in the range; `Table.at` gives the parameter a value.
 
     >>> polar("1 + b*cos(2*theta)", b="0:1/5").shapes[0].range
     Interval(0, 1/5)
@@ -54,6 +54,7 @@ def polar(
     """
     shapes, undefined = (*shapes, *_ranges(name, letters)), tuple(undefined)
     rho = _exact(rho, shapes)
+    _in_use(name, letters, rho)
     whole = arc(name, rho * cos(theta), rho * sin(theta), -pi, pi)
     table = closed_and_finite(Table(name, (whole,), shapes, undefined))
     simple = not shapes and not undefined and positive_radius(name, rho)
@@ -76,6 +77,7 @@ def parametric(
     """
     shapes = (*shapes, *_ranges(name, letters))
     whole = Component(name, (_exact(x, shapes), _exact(y, shapes)), -pi, pi)
+    _in_use(name, letters, *whole.point)
     found = validated(Table(name, (whole,), shapes, tuple(undefined)))
     return _over_ranges(found) if letters else found
 
@@ -90,7 +92,9 @@ def support(h: Expr | str, name: str = "support", **letters: str) -> Table:
     24*pi/25
     """
     ranges = _ranges(name, letters)
-    x, y = supported(_exact(h, ranges))
+    h = _exact(h, ranges)
+    _in_use(name, letters, h)
+    x, y = supported(h)
     found = parametric(x, y, name, ranges)
     return _over_ranges(found) if letters else found
 
@@ -113,6 +117,16 @@ def _ranges(name: str, letters: Mapping[str, str]) -> list[Shape]:
             raise ValueError(f"{name}: {letter} = {text} is no range; accepted: LOW:HIGH with LOW < HIGH")
         found.append(Shape(Symbol(letter, real=True), Interval(*ends), "is outside of the range that was given"))
     return found
+
+
+def _in_use(name: str, letters: Iterable[str], *formulas: Expr) -> None:
+    """`ValueError` for a letter that is in none of the formulas."""
+    used = {symbol.name for formula in formulas for symbol in formula.free_symbols}
+    for letter in letters:
+        if letter not in used:
+            raise ValueError(
+                f"{name}: the formula has no letter {letter}; it has: {', '.join(sorted(used - {'theta'})) or 'none'}"
+            )
 
 
 def _over_ranges(table: Table) -> Table:

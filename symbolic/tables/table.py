@@ -9,7 +9,7 @@ name and different assumptions are different, so everything in the package takes
 
 from dataclasses import dataclass, replace
 
-from sympy import Expr, Float, Interval, Rational, S, Symbol, cos, sin
+from sympy import Expr, Float, Interval, Rational, S, Symbol, cos, pi, sin
 from sympy import sympify as exact  # converts Python numbers; never called on text
 
 from symbolic.expressions.signs import interval_text
@@ -30,6 +30,8 @@ SHOWN: dict[str, str] = {
     "cos_phi0": r"\cos \varphi_{0}",
     "cos_eta1": r"\cos \eta_{1}",
 }
+
+SHOWN_UP_TO = 90  # characters of the formulas in the representation of a table
 
 theta = Symbol("theta", real=True)  # boundary parameter; the polar angle for polar tables
 s = Symbol("s", real=True)  # arc length, counterclockwise
@@ -123,12 +125,16 @@ class Fit:
         return self.uncertainty + max(self.residual, self.between or S.Zero)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Table:
     """A billiard table, exact: `shapes` are its free shape parameters, `fixed` the values of the others, by name.
 
     `origin` is the place from which the paper counts arc length: a component's index and a parameter on it;
     `s` grows counterclockwise, which is the direction of `theta`.
+
+    >>> from symbolic.tables import polar, stadium
+    >>> polar("1 + b*cos(2*theta)", b="0:1/5"), stadium()
+    (polar('b*cos(2*theta) + 1', b='0:1/5'), Table('stadium', 4 components))
     """
 
     name: str
@@ -180,6 +186,19 @@ class Table:
                 return component
         names = ", ".join(component.name for component in self.components)
         raise ValueError(f"{self.name}: no component {name}; it has: {names}")
+
+    def __repr__(self) -> str:
+        """What was given, where it fits on a line; otherwise the name and what the boundary consists of."""
+        first, count = self.components[0], len(self.components)
+        rho = first.radius
+        call, formulas = ("parametric", first.point) if rho is None else ("polar", (rho,))
+        said = [repr(str(formula)) for formula in formulas] + [f"name={self.name!r}"] * (self.name != call)
+        if self.fit is not None:
+            call, said = "Table", [repr(self.name), f"{len(self.fit.points)} points"]
+        elif count > 1 or self.undefined or (first.start, first.end) != (-pi, pi) or len("".join(said)) > SHOWN_UP_TO:
+            call, said = "Table", [repr(self.name), f"{count} component{'s' * (count > 1)}"]
+        said += [f"{each.symbol}='{each.range.start}:{each.range.end}'" for each in self.shapes]
+        return f"{call}({', '.join(said)})"
 
     def _repr_latex_(self) -> str:
         from symbolic.tables.formula import latex  # imports this module

@@ -1,18 +1,35 @@
 """The derivations offered by `symbolic`: the paper's formulas from one call each, and the code generated from them."""
 
+import re
+from fractions import Fraction
+from time import process_time
+
 import flint
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sympy import Rational, latex, pi, simplify, sqrt
+from sympy import Integral, Rational, Symbol, latex, pi, simplify, sqrt
 
 import symbolic
 from numeric import PinballMap
-from symbolic import curvature, derivative_matrix, double_normals, generate, monodromy, multipliers, tables, thresholds
-from symbolic.cycles.derivations import theta0, theta1
+from symbolic import (
+    a,
+    alpha,
+    curvature,
+    derivative_matrix,
+    double_normals,
+    generate,
+    lam,
+    monodromy,
+    multipliers,
+    tables,
+    theta,
+    theta0,
+    theta1,
+    thresholds,
+)
 from symbolic.cycles.thresholds import alpha_tilde, flip_contraction, focus_contraction, lambda_c, lambda_minus
-from symbolic.tables.table import a, alpha, lam, theta
 
 PEA = tables.polar("1 + b*cos(2*theta)", b="0:1/5")
 B = PEA.shapes[0].symbol
@@ -103,6 +120,37 @@ def test_the_numeric_jacobian_is_the_symbolic_matrix_along_the_chord(name, at, p
     assert np.allclose(map.derivative(at, phi), expected, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.parametrize("kind", ["numpy", "mpmath", "arb"])
+@pytest.mark.parametrize("b", ["1/3", Rational(1, 3), Fraction(1, 3), pi / 10, sqrt(2) / 6], ids=str)
+def test_generated_code_takes_exact_numbers(kind, b):
+    exact = curvature(PEA).subs({theta: 2, B: b}).evalf(40)
+
+    assert abs(Rational(str(generate(curvature(PEA), kind, digits=30)(2, b)).strip("[").split()[0]) / exact - 1) < 1e-14
+    assert generate(lam, "arb", digits=30)("0.1") != generate(lam, "arb", digits=30)(0.1)
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda: monodromy(double_normals(PEA)[0], contraction=0.5), "contraction = 0.5 is a rounded float; write it"),
+        (
+            lambda: derivative_matrix("egg", lam=0.5),
+            "lam = 0.5 is a rounded float; write it exactly, as the text '0.5'",
+        ),
+        (lambda: thresholds("egg"), "thresholds: 'egg' is no exact cycle; accepted: a Cycle, such as one of double_"),
+        (lambda: monodromy(PEA), r"monodromy: polar('b*cos(2*theta) + 1', b='0:1/5') is no exact cycle"),
+        (lambda: generate(symbolic.perimeter(PEA), "arb"), "generate: there is no code of integrals and elliptic"),
+        (lambda: generate(lam + Symbol("lam")), "generate: two symbols are called lam; accepted: one, such as"),
+        (lambda: generate(theta * lam)(0), "missing a required argument: 'lam'; its arguments are: theta, lam"),
+        (lambda: tables.polar("1 + cos(theta)/9", c="0:1"), "polar: the formula has no letter c; it has: none"),
+        (lambda: tables.polar("1 + c*cos(theta)"), "or a letter of your own: c='LOW:HIGH' in Python"),
+    ],
+)
+def test_what_is_no_answer_is_one_sentence(ask, said):
+    with pytest.raises((ValueError, TypeError), match=re.escape(said)):
+        ask()
+
+
 def test_the_slap_map_of_the_circle_goes_to_the_other_side():
     slap = symbolic.slap_map("circle")
 
@@ -114,3 +162,15 @@ def test_lengths_and_areas_are_the_closed_forms():
     assert symbolic.perimeter("cardioid") == 8
     assert simplify(symbolic.area("cuspless") - (15 * sqrt(3) / 16 + pi)) == 0
     assert symbolic.arc_length("circle").subs(theta, pi) == 2 * pi
+
+
+@pytest.mark.parametrize(
+    "rho", ["1 + cos(3*theta)/20 + cos(2*theta)/40", "1 + cos(5*theta)/40", "1 + exp(cos(theta))/9"]
+)
+def test_a_length_without_closed_form_is_one_integral_at_once(rho):
+    table = tables.polar(rho)
+    began, length = process_time(), symbolic.arc_length(table)
+
+    assert process_time() - began < 2
+    assert isinstance(length, Integral)
+    assert abs(length.subs(theta, pi).evalf(20) - PinballMap(table).arclength.perimeter) < 1e-13

@@ -297,14 +297,14 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
 
 def _cascades(said: Document) -> list[Block]:
     """A sentence for each chain of period doublings: the ratios of their distances, and an estimate of the limit."""
-    flips = {e["branch"]: (float(e["value"]), e["born"]) for e in said["events"] if e["kind"] == "flip"}
-    chained = {born for _, born in flips.values()}
+    flips = [event for event in said["events"] if event["kind"] == "flip"]
+    after = [_next_doubling(flip, flips) for flip in flips]
     blocks: list[Block] = []
-    for first in sorted(set(flips) - chained):
-        values, at = list[float](), first
-        while at in flips:
-            values.append(flips[at][0])
-            at = flips[at][1]
+    for start in sorted(set(range(len(flips))) - set(after), key=lambda i: flips[i]["branch"]):
+        values, at = list[float](), start
+        while at is not None:
+            values.append(float(flips[at]["value"]))
+            at = after[at]
         gaps = np.diff(values)
         if len(gaps) < 2 or not (np.all(gaps > 0) or np.all(gaps < 0)):
             continue
@@ -312,13 +312,19 @@ def _cascades(said: Document) -> list[Block]:
         limits = [b + (b - a) / (FEIGENBAUM - 1) for a, b in pairwise(values)]
         blocks.append(
             Paragraph(
-                f"Cascade from family {first} of period {said['families'][first]['period']}: {len(values)} doublings "
-                f"in a row; successive distances have the ratios {ratios}; Feigenbaum's is 4.6692. If further ones "
+                f"Cascade from family {flips[start]['branch']} of period {flips[start]['period']}: "
+                f"{len(values)} doublings in a row; successive distances have the ratios {ratios}; Feigenbaum's is 4.6692. If further ones "
                 f"shrink by that number the cascade accumulates at {limits[-1]:.8g} ± "
                 f"{abs(limits[-1] - limits[-2]):.1g}: an estimate from the last two distances, not proved."
             )
         )
     return blocks
+
+
+def _next_doubling(flip: Document, flips: Sequence[Document]) -> int | None:
+    """The index of the first doubling of the family that is born at `flip`; the family may double again elsewhere."""
+    there = [i for i, e in enumerate(flips) if e["branch"] == flip["born"] and e["period"] == 2 * flip["period"]]
+    return min(there, key=lambda i: abs(float(flips[i]["value"]) - float(flip["value"])), default=None)
 
 
 def family_blocks(asked: Asked, said: Document) -> list[Block]:

@@ -248,6 +248,21 @@ def test_the_json_lists_events_attractors_and_exponents_and_an_event_of_image_cy
     assert len(document["events"]) == len({json.dumps(event) for event in document["events"]})
 
 
+def test_a_cascade_is_whole_although_its_families_double_again_elsewhere():
+    """Doublings at 1 - 5^-k, each family once more near the end of its life; and one family that is born twice."""
+    once = [(1 - 5.0**-k, 3 * 2**k, k, k + 1) for k in range(5)]
+    again = [(2.0 + k, 3 * 2**k, k, 7 if k == 1 else None) for k in range(3)]
+    events = [
+        {"kind": "flip", "period": n, "value": repr(at), "branch": on, "born": born, "key": "", "supercritical": None}
+        for at, n, on, born in sorted(once + again)
+    ]
+    _, *said = lives.event_blocks({"events": events, "command": ""}, {}, [])
+
+    assert len(said) == 1
+    assert said[0].text.startswith("Cascade from family 0 of period 3: 5 doublings in a row; successive distances have")
+    assert "ratios 5.0000, 5.0000, 5.0000;" in said[0].text
+
+
 def test_a_folder_takes_page_json_and_article(tmp_path):
     out = tmp_path / "ellipse"
 

@@ -313,8 +313,8 @@ def _cascades(said: Document) -> list[Block]:
         blocks.append(
             Paragraph(
                 f"Cascade from family {flips[start]['branch']} of period {flips[start]['period']}: "
-                f"{len(values)} doublings in a row; successive distances have the ratios {ratios}; Feigenbaum's is 4.6692. If further ones "
-                f"shrink by that number the cascade accumulates at {limits[-1]:.8g} ± "
+                f"{len(values)} doublings in a row; successive distances have the ratios {ratios}; Feigenbaum's is "
+                f"4.6692. If further ones shrink by that number the cascade accumulates at {limits[-1]:.8g} ± "
                 f"{abs(limits[-1] - limits[-2]):.1g}: an estimate from the last two distances, not proved."
             )
         )

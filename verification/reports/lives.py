@@ -1,6 +1,7 @@
 """Families of cycles from birth to death: their table, their events with proofs, and pictures of large families."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -281,7 +282,7 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
         where = ShownNumber(proof["value"], proof["error"], known) if proof else solved(float(event["value"]), LOCATED)
         side = {True: "supercritical", False: "subcritical", None: ""}[event["supercritical"]]
         born = "-" if event["born"] is None else f"family {event['born']}"
-        words = BifurcationKind[event["kind"].upper()].value
+        words = kind_of(event)
         checks = proof["checks"] if proof else "left for more time"
         rows.append((where, words, side, str(event["period"]), f"family {event['branch']}", born, checks))
     caption = (
@@ -293,6 +294,24 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
         Listing(caption, columns, tuple(rows), said["command"]) if rows else Paragraph("No family has an event.")
     )
     return [first, *_cascades(said), *more]
+
+
+def kind_of(event: Document) -> str:
+    """The kind of an event in words, such as "period doubling"."""
+    return BifurcationKind[event["kind"].upper()].value
+
+
+def named_certificates(said: Document, proved: Mapping[str, Document], blocks: Sequence[Block]) -> list[Block]:
+    """The blocks with the certificates first, in the order of the table of events, by kind, period and value."""
+    words: dict[str, str] = {}
+    for event in said["events"]:
+        file = proved.get(event["key"], {}).get("file")
+        if file:
+            at = f"{event['parameter']} = {float(event['value']):#.6g}"
+            words[file] = f"{kind_of(event)} of period {event['period']} at {at}"
+    known = {block.name: block for block in blocks if isinstance(block, Certificate) and block.name in words}
+    first = [replace(known[name], words=text) for name, text in words.items() if name in known]
+    return [*first, *(block for block in blocks if block not in known.values())]
 
 
 def _cascades(said: Document) -> list[Block]:

@@ -320,7 +320,8 @@ def _cascades(said: Document) -> list[Block]:
     after = [_next_doubling(flip, flips) for flip in flips]
     blocks: list[Block] = []
     for start in sorted(set(range(len(flips))) - set(after), key=lambda i: flips[i]["branch"]):
-        values, at = list[float](), start
+        values: list[float] = []
+        at: int | None = start
         while at is not None:
             values.append(float(flips[at]["value"]))
             at = after[at]

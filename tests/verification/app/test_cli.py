@@ -58,7 +58,9 @@ def test_verify_writes_the_report_and_json_has_standard_output_to_itself(capsys,
     monkeypatch.chdir(tmp_path)
     assert main(["verify", "--only", "cuspless.lambda_c", "--json", "-"]) == 0
 
-    (claim,) = json.loads(capsys.readouterr().out)["claims"]
+    said = capsys.readouterr()
+    (claim,) = json.loads(said.out)["claims"]
+    assert "\n1 claim: 1 confirmed, " in said.err
     assert claim["id"] == "cuspless.lambda_c"
     assert (tmp_path / "report" / "report.html").exists()
     assert json.loads((tmp_path / "report" / "report.json").read_text())["claims"][0]["verdict"] == claim["verdict"]

@@ -237,7 +237,7 @@ GROUPS = {
     },
     "The paper": {
         "verify": "Is each claim of the paper true?",
-        "claims": "A folder for another paper: its sentences, and who judges them.",
+        "claims": "What the paper claims, or a folder for another paper's claims.",
         "figure": "One of the paper's figures, or the data behind it.",
     },
     "Tools": {
@@ -282,11 +282,30 @@ class Questions(click.Group):
         command: click.Command = getattr(import_module(f"verification.app.commands.{home}"), attribute)
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        name, command, rest = super().resolve_command(ctx, args)
+        if command is not None and not ctx.resilient_parsing:
+            refuse_repeated(command, rest)
+        return name, command, rest
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         wide = max(map(len, COMMANDS))  # the same column in all groups
         for title, commands in GROUPS.items():
             with formatter.section(title):
                 formatter.write_dl([(name.ljust(wide), about) for name, about in commands.items()])
+
+
+def refuse_repeated(command: click.Command, words: Sequence[str]) -> None:
+    """Raises click's error if an option that takes one value is given twice; click would keep the last."""
+    context, given = click.Context(command), list[click.Parameter]()
+    with suppress(click.UsageError):  # what else is wrong is said when the command reads its words
+        given = context.command.make_parser(context).parse_args([*words])[2]
+    for option in given:
+        once = isinstance(option, click.Option) and not (option.multiple or option.is_flag or option.count)
+        if once and given.count(option) > 1:
+            raise click.UsageError(f"{option.opts[0]} is given {given.count(option)} times; accepted: once")
 
 
 @click.group(
@@ -397,9 +416,10 @@ def sentence(error: click.ClickException) -> str:
     message = error.format_message().strip().removesuffix(".")
     context = getattr(error, "ctx", None)
     if isinstance(error, click.NoSuchOption) and context is not None:
-        options = {name for each in context.command.get_params(context) for name in each.opts if name[0] == "-"}
-        known = sorted(options)
-        return f"no option is called {error.option_name}; accepted: {', '.join(known)}{like(error.option_name, known)}"
+        known = [each for each in context.command.get_params(context) if not getattr(each, "hidden", False)]
+        options = {name for each in known for name in each.opts if name[0] == "-"}
+        names = sorted(options)
+        return f"no option is called {error.option_name}; accepted: {', '.join(names)}{like(error.option_name, names)}"
     kind = getattr(getattr(error, "param", None), "type", None)
     if isinstance(kind, click.Choice) and " is not one of " in message:
         return message + like(message.partition(" is not one of ")[0].rpartition(": ")[2].strip("'"), kind.choices)

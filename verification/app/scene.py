@@ -240,8 +240,10 @@ def _fitting(name: str, known: tuple[str, ...], shape: dict[str, str | None]) ->
 
 
 def _contraction(lam: str | None) -> Any:
-    value = "missing" if lam is None else exact("--lam", lam)
-    if isinstance(value, str) or not 0 <= value <= 1:
+    if lam is None:
+        raise ValueError("--lam is missing; accepted: numbers in [0, 1], as in --lam 1/2")
+    value = exact("--lam", lam)
+    if not 0 <= value <= 1:
         raise ValueError(f"--lam = {value} is no contraction; accepted: numbers in [0, 1]")
     return value
 

@@ -93,10 +93,16 @@ class Picture:
 
 @dataclass(frozen=True)
 class Certificate:
-    """The content of a certificate file, which `pinball check` reads."""
+    """The content of a certificate file, which `pinball check` reads; `words` say what it proves, or its name does."""
 
     name: str
     document: Mapping[str, Any]
+    words: str = ""
+
+    @property
+    def title(self) -> str:
+        """What it proves."""
+        return self.words or str(self.document["name"])
 
 
 Block = Paragraph | Formula | Listing | Picture | Certificate

@@ -1,6 +1,7 @@
 """Families of cycles from birth to death: their table, their events with proofs, and pictures of large families."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -281,7 +282,7 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
         where = ShownNumber(proof["value"], proof["error"], known) if proof else solved(float(event["value"]), LOCATED)
         side = {True: "supercritical", False: "subcritical", None: ""}[event["supercritical"]]
         born = "-" if event["born"] is None else f"family {event['born']}"
-        words = BifurcationKind[event["kind"].upper()].value
+        words = kind_of(event)
         checks = proof["checks"] if proof else "left for more time"
         rows.append((where, words, side, str(event["period"]), f"family {event['branch']}", born, checks))
     caption = (
@@ -295,16 +296,35 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
     return [first, *_cascades(said), *more]
 
 
+def kind_of(event: Document) -> str:
+    """The kind of an event in words, such as "period doubling"."""
+    return BifurcationKind[event["kind"].upper()].value
+
+
+def named_certificates(said: Document, proved: Mapping[str, Document], blocks: Sequence[Block]) -> list[Block]:
+    """The blocks with the certificates first, in the order of the table of events, by kind, period and value."""
+    words: dict[str, str] = {}
+    for event in said["events"]:
+        file = proved.get(event["key"], {}).get("file")
+        if file:
+            at = f"{event['parameter']} = {float(event['value']):#.6g}"
+            words[file] = f"{kind_of(event)} of period {event['period']} at {at}"
+    known = {block.name: block for block in blocks if isinstance(block, Certificate) and block.name in words}
+    first = [replace(known[name], words=text) for name, text in words.items() if name in known]
+    return [*first, *(block for block in blocks if block not in known.values())]
+
+
 def _cascades(said: Document) -> list[Block]:
     """A sentence for each chain of period doublings: the ratios of their distances, and an estimate of the limit."""
-    flips = {e["branch"]: (float(e["value"]), e["born"]) for e in said["events"] if e["kind"] == "flip"}
-    chained = {born for _, born in flips.values()}
+    flips = [event for event in said["events"] if event["kind"] == "flip"]
+    after = [_next_doubling(flip, flips) for flip in flips]
     blocks: list[Block] = []
-    for first in sorted(set(flips) - chained):
-        values, at = list[float](), first
-        while at in flips:
-            values.append(flips[at][0])
-            at = flips[at][1]
+    for start in sorted(set(range(len(flips))) - set(after), key=lambda i: flips[i]["branch"]):
+        values: list[float] = []
+        at: int | None = start
+        while at is not None:
+            values.append(float(flips[at]["value"]))
+            at = after[at]
         gaps = np.diff(values)
         if len(gaps) < 2 or not (np.all(gaps > 0) or np.all(gaps < 0)):
             continue
@@ -312,13 +332,19 @@ def _cascades(said: Document) -> list[Block]:
         limits = [b + (b - a) / (FEIGENBAUM - 1) for a, b in pairwise(values)]
         blocks.append(
             Paragraph(
-                f"Cascade from family {first} of period {said['families'][first]['period']}: {len(values)} doublings "
-                f"in a row; successive distances have the ratios {ratios}; Feigenbaum's is 4.6692. If further ones "
-                f"shrink by that number the cascade accumulates at {limits[-1]:.8g} ± "
+                f"Cascade from family {flips[start]['branch']} of period {flips[start]['period']}: "
+                f"{len(values)} doublings in a row; successive distances have the ratios {ratios}; Feigenbaum's is "
+                f"4.6692. If further ones shrink by that number the cascade accumulates at {limits[-1]:.8g} ± "
                 f"{abs(limits[-1] - limits[-2]):.1g}: an estimate from the last two distances, not proved."
             )
         )
     return blocks
+
+
+def _next_doubling(flip: Document, flips: Sequence[Document]) -> int | None:
+    """The index of the first doubling of the family that is born at `flip`; the family may double again elsewhere."""
+    there = [i for i, e in enumerate(flips) if e["branch"] == flip["born"] and e["period"] == 2 * flip["period"]]
+    return min(there, key=lambda i: abs(float(flips[i]["value"]) - float(flip["value"])), default=None)
 
 
 def family_blocks(asked: Asked, said: Document) -> list[Block]:

@@ -12,7 +12,7 @@ from functools import partial
 from importlib.resources import files
 
 from jinja2 import Environment, StrictUndefined
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from verification.paper.report.findings import escaped
 from verification.paper.report.mathml import font_style, formula, formulas, mathml, remark
@@ -155,7 +155,7 @@ def _certificate(block: Certificate) -> Markup:
     return Markup(
         '<p class="certificate"><a download="{0}.json" href="{1}">certificate {0}.json</a>: {2} '
         "<code>pinball check {0}.json</code></p>"
-    ).format(block.name, address("application/json", document.encode()), remark(str(escape(block.document["name"]))))
+    ).format(block.name, address("application/json", document.encode()), remark(block.title))
 
 
 HEAD = r"""\documentclass{article}
@@ -231,7 +231,7 @@ def _shares(given: Listing) -> list[int]:
 
 
 def _tex_certificate(given: Certificate) -> str:
-    return rf"\texttt{{{escaped(given.name)}.json}}: {tex(str(given.document['name']))}"
+    return rf"\texttt{{{escaped(given.name)}.json}}: {tex(given.title)}"
 
 
 def _tex_cell(cell: str | ShownNumber) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-LABELS = 14  # events with words on a diagram, at most; others are lines only
+LABELS = 14  # curves with words, at most; others are lines only
 COLOURS = tuple(colour for colour in PALETTE if colour != "#7f7f7f")
 REST = "#b0a08a"  # colour of further families
 GROUND = {"chaotic": "#5a6478", "neutral": "#c3cad6", "stopped": "#e3dccb", "anything else": "#f3f3ef"}
@@ -186,24 +186,18 @@ def _alone(axes: "Axes") -> tuple[list[Any], list[str]]:
 
 
 def _events(axes: Sequence["Axes"], events: Sequence[tuple[float, str, float]], ends: tuple[float, float]) -> None:
-    """Draws lines at the events, with texts above the most important ones, moved apart where they would overlap."""
-    near, at = 0.022 * (ends[1] - ends[0]), -np.inf
-    worded = sorted(sorted(events, key=lambda event: -event[2])[:LABELS])
-    for value, _, _ in events:
+    """Draws lines at the events, with texts above those that most starts reach, as far as there is room."""
+    near, worded = 0.03 * (ends[1] - ends[0]), list[tuple[float, str, float]]()
+    for event in sorted(events, key=lambda event: -event[2]):
         for each in axes:
-            each.axvline(value, color="#b3261e", lw=0.4, alpha=0.4)
-    places = list[float]()
-    for value, _, _ in worded:
-        at = max(value, at + near)
-        places.append(at)
-    for k in range(len(places) - 1, -1, -1):  # back from the right edge
-        most = ends[1] if k == len(places) - 1 else places[k + 1] - near
-        places[k] = min(places[k], most)
-    for (value, words, _), place in zip(worded, places, strict=True):
+            each.axvline(event[0], color="#b3261e", lw=0.4, alpha=0.4)
+        if all(abs(event[0] - other[0]) >= near for other in worded):
+            worded.append(event)
+    for value, words, _ in worded:
         axes[0].annotate(
             words,
             (value, 1.0),
-            (place, 1.03),
+            (value, 1.03),
             xycoords=("data", "axes fraction"),
             textcoords=("data", "axes fraction"),
             rotation=60,

@@ -400,9 +400,7 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
     marks = [(float(value), words, 1.0) for value, words in touching.lines]
     for event in seen.get("events", []):
         share = seen["families"][event["branch"]]["largest"]
-        marks.append(
-            (float(event["value"]), f"{event['kind'].replace('_', ' ')} {event['period']}", share[1] / share[2])
-        )
+        marks.append((float(event["value"]), f"{lives.kind_of(event)} {event['period']}", share[1] / share[2]))
     if seen:
         blocks["events"] += lives.event_blocks(seen, proved, touching.blocks)
         blocks["families"] += lives.family_blocks(asked, seen)
@@ -414,6 +412,8 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
             blocks["diagram"] += dynamics.diagram_blocks(asked, parts, found["data"], marks, seen or None)
         elif name == "plane":
             blocks["plane"] += dynamics.plane_blocks(asked, parts, found["data"], curves, _best(parts, "regions"))
+        elif found["name"] == "events" and seen:
+            blocks["events"] += lives.named_certificates(seen, proved, Section.read(found).blocks)
         elif not name.startswith("life") or _still(found, name, seen):
             blocks[found["name"]] += Section.read(found).blocks
     if not seen:

@@ -58,10 +58,21 @@ def test_verify_writes_the_report_and_json_has_standard_output_to_itself(capsys,
     monkeypatch.chdir(tmp_path)
     assert main(["verify", "--only", "cuspless.lambda_c", "--json", "-"]) == 0
 
-    (claim,) = json.loads(capsys.readouterr().out)["claims"]
+    said = capsys.readouterr()
+    (claim,) = json.loads(said.out)["claims"]
+    assert "\n1 claim: 1 confirmed, " in said.err
     assert claim["id"] == "cuspless.lambda_c"
     assert (tmp_path / "report" / "report.html").exists()
     assert json.loads((tmp_path / "report" / "report.json").read_text())["claims"][0]["verdict"] == claim["verdict"]
+
+
+def test_claims_are_listed_and_those_that_several_globs_name_are_judged(capsys, tmp_path):
+    assert main(["claims", "list", "--section", "5"]) == 0
+    assert "\ncuspless.lambda_c " in capsys.readouterr().out
+    asked = ["--only", "ellipse.P1", "--only", "cuspless.lambda_?"]
+    assert main(["verify", *asked, "--no-figures", "--report", str(tmp_path), "--json", "-"]) == 0
+    ids = {claim["id"] for claim in json.loads(capsys.readouterr().out)["claims"]}
+    assert ids == {"ellipse.P1", "cuspless.lambda_c"}
 
 
 def test_a_result_that_cannot_be_written_is_kept_elsewhere(tmp_path):
@@ -80,6 +91,11 @@ def test_a_result_that_cannot_be_written_is_kept_elsewhere(tmp_path):
     ("arguments", "sentence"),
     [
         (["verify", "--only", "elipse.*"], "--only 'elipse.*' matches no claim; the nearest are: ellipse."),
+        (["verify", "--only", "a,b"], "accepted: one name at a time, as in --only 'a' --only 'b'"),
+        (["slap", "circle", "--law", "-eta", "--law=-lam*eta"], "--law is given 2 times; accepted: once"),
+        (["slap", "egg", "--alpha", "0.08", "--lam", "0.5"], "--lam 0.5: the slap map is the limit at lam = 0; leave"),
+        (["claims", "old"], "Invalid value for 'new|list': 'old' is not one of 'new', 'list'"),
+        (["claims", "new"], "DIR is missing; accepted: pinball claims new DIR"),
         (["verify", "--digits", "0"], "accepted: integers from 1 to 10000"),
         (["verify", "--digits", "9" * 5000], "accepted: integers from 1 to 10000"),
         (["verify", "--digits"], "'--digits' requires an argument"),
@@ -164,7 +180,7 @@ def test_a_scene_file_is_taken_by_a_command_and_its_contraction_may_be_changed(s
         ("--polar 1+b*cos(theta) --shape b=0.1:1/4 --lam 1", "--shape b=0.1:1/4 varies a parameter; this"),
         ("--scene nowhere.toml", "--scene 'nowhere.toml' cannot be read"),
         ("circle --polar 1 --lam 1", "one table is needed, polar and circle given"),
-        ("circle", "--lam = missing is no contraction; accepted: numbers in [0, 1]"),
+        ("circle", "--lam is missing; accepted: numbers in [0, 1], as in --lam 1/2"),
         ("circle --lam 1.0001", "--lam = 10001/10000 is no contraction; accepted: numbers in [0, 1]"),
         ("circle --lam -1", "--lam = -1 is no contraction"),
         ("circle --lam sqrt(2)", "--lam = sqrt(2) is no contraction"),

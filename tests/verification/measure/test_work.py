@@ -1,6 +1,7 @@
 """Work-precision diagrams: the Pareto front, kept promises, visible faults, and choices that follow the table."""
 
 import json
+import math
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -151,6 +152,7 @@ def test_pinball_work_writes_rows_table_and_diagram(tmp_path, capsys):
 
     assert status == 0
     assert "single shooting" in printed
+    assert f"\nvalue {math.pi / 3:.14f}" in printed
     assert target.read_bytes().startswith(b"<?xml")
     assert document["questions"][0]["name"] == "cycle-2"
     assert {row["method"] for row in document["rows"]} >= {"float64, Newton", "arb, certified"}

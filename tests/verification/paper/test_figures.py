@@ -201,7 +201,7 @@ def test_a_figure_goes_where_out_says_and_its_data_where_json_says(tmp_path, cap
     ("arguments", "said"),
     [
         (["egg-slep"], "NAME = egg-slep is no figure; accepted: ellipse-configuration, "),
-        ([], "NAME = missing is no figure; accepted: "),
+        ([], "NAME is missing; accepted: "),
         (
             ["egg-slap", "--out", "egg.jpg"],
             "--out = egg.jpg has the ending '.jpg'; accepted endings: .png, .svg, .pdf, .webp",

@@ -273,4 +273,4 @@ def test_help_says_that_the_judges_of_a_folder_are_run(capsys):
     assert main(["verify", "--help"]) == 0
     told = " ".join(capsys.readouterr().out.split())
 
-    assert "this option runs them, so give it folders only that you would run" in told
+    assert "this option runs, so use only folders that you trust" in told

@@ -124,6 +124,9 @@ def test_digits_that_differ_are_marked_and_no_others():
         ("(T0^2)' = 49/324 at both", r"\left(T_{0}^{2}\right)' = \frac{49}{324}"),
         ("below 9e-04*a", r"9 \cdot 10^{-4} \, a"),
         ("a = 2 (trace -2)", "a = 2"),
+        ("with (T_0^2)'(s) > 1 there", r"\left(T_{\mathrm{0}}^{2}\right)'\left(s\right) > 1"),
+        ("stable for every lam < 1, a focus above it", r"\lambda < 1"),
+        ("for lam < 1, a and b", r"\lambda < 1,\; a"),
     ],
 )
 def test_a_formula_within_a_sentence_is_set_as_one(text, latex):
@@ -132,6 +135,7 @@ def test_a_formula_within_a_sentence_is_set_as_one(text, latex):
 
 def test_words_are_no_formulas():
     assert formulas("a cycle of period 4, or a strip; at the end (in the sense of 2.1), I see: it is a union") == []
+    assert formulas("kappa''(0) < -1") == []  # the argument keeps its parentheses
 
 
 def test_the_letter_has_each_substantial_erratum_and_is_balanced():

@@ -20,7 +20,7 @@ from verification.named.questions import PeriodicOrbit
 from verification.paper.report.mathml import remark
 from verification.reports import lives, planes
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Known, Listing, Picture, Section, ShownNumber
+from verification.reports.blocks import Certificate, Known, Listing, Picture, Section, ShownNumber
 from verification.reports.page import further
 from verification.reports.report import composed, report
 from verification.reports.scene import double_normals, inflections, properties
@@ -246,6 +246,31 @@ def test_the_json_lists_events_attractors_and_exponents_and_an_event_of_image_cy
     for event in document["events"]:
         assert {"kind", "period", "parameter", "value", "radius", "certified"} <= set(event)
     assert len(document["events"]) == len({json.dumps(event) for event in document["events"]})
+
+
+def test_a_cascade_is_whole_although_its_families_double_again_elsewhere():
+    """Doublings at 1 - 5^-k, each family once more near the end of its life; and one family that is born twice."""
+    once = [(1 - 5.0**-k, 3 * 2**k, k, k + 1) for k in range(5)]
+    again = [(2.0 + k, 3 * 2**k, k, 7 if k == 1 else None) for k in range(3)]
+    events = [
+        {"kind": "flip", "period": n, "value": repr(at), "branch": on, "born": born, "key": "", "supercritical": None}
+        for at, n, on, born in sorted(once + again)
+    ]
+    _, *said = lives.event_blocks({"events": events, "command": ""}, {}, [])
+
+    assert len(said) == 1
+    assert said[0].text.startswith("Cascade from family 0 of period 3: 5 doublings in a row; successive distances have")
+    assert "ratios 5.0000, 5.0000, 5.0000;" in said[0].text
+
+
+def test_certificates_stand_in_the_order_of_the_events_with_their_kind_period_and_value():
+    places = [("0.33333333", "pitchfork"), ("0.5", "flip")]
+    events = [{"kind": kind, "period": 2, "parameter": "lam", "value": x, "key": kind} for x, kind in places]
+    proved = {"flip": {"file": "event-0"}, "pitchfork": {"file": "event-1"}}
+    blocks = [Certificate(f"event-{i}", {"name": "long"}) for i in range(2)]
+
+    titles = [each.title for each in lives.named_certificates({"events": events}, proved, blocks)]
+    assert titles == ["pitchfork of period 2 at lam = 0.333333", "period doubling of period 2 at lam = 0.500000"]
 
 
 def test_a_folder_takes_page_json_and_article(tmp_path):

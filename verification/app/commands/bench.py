@@ -293,7 +293,9 @@ def work_command(
     for each in questions:
         own = [row for row in rows if row.question == each.name]
         sure = "a certified ball" if each.certified else "a long run with its error bar, not a proof"
-        output.console.print(f"\n{each.title}: {each.answers}\nerror {each.unit}, against {sure}")
+        output.console.print(
+            f"\n{each.title}: {each.answers}\nvalue {each.values()}\nerror {each.unit}, against {sure}"
+        )
         output.console.print(plain(own))
     if scene is None and not is_checkout():
         output.console.print(f"\n{MISSING}")

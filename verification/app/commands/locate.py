@@ -104,7 +104,7 @@ def command(
     if certificate is not None:
         _write(certificate, found)
     output.write(found.to_dict(), [found], n or period)
-    show(output, found)
+    show(output, found, "search and proof")
     return DONE if found.certified else FAILED
 
 
@@ -147,7 +147,7 @@ def of_scene(
     document = {"name": name, "period": int(period), "parameter": parameter, "from": str(ends[0]), "to": str(ends[1])}
     output.write({**document, "found": [one.to_dict() for one in found]}, *([found] if found else []))
     for one in found:
-        show(output, one)
+        show(output, one, "proof")
     if not found:
         said = f"no {name} of period {period} found for {parameter} from {ends[0]} to {ends[1]}"
         output.console.print(f"{said} from cycles at {count} values; --searches {3 * count} looks at more")
@@ -219,12 +219,12 @@ def marked(path: str, scene: Scene, parameter: str) -> "Marked":
     return Marked(float(proof.result["value"]), words)
 
 
-def show(output: Output, found: "Located") -> None:
-    """Prints the value, the checklist and the notes."""
+def show(output: Output, found: "Located", timed: str) -> None:
+    """Prints the value, the checklist and the notes; `timed` says what took the seconds."""
     from verification.named.locate import GMPY2, WORDS
 
     said = "certified" if found.certified else "not certified"
-    output.console.print(f"{found.title} = {found.value} +- {found.radius}  ({said}, {found.seconds:.2f} s)")
+    output.console.print(f"{found.title} = {found.value} +- {found.radius}  ({said}, {timed} {found.seconds:.2f} s)")
     for item, value in found.checks.items():
         output.console.print(f"  {item.replace('_', ' '):28} {WORDS[value]}")
     notes = {**found.notes, "arithmetic": f"mpmath {'on' if GMPY2 else 'without'} gmpy2 to search, arb to prove"}
@@ -290,7 +290,7 @@ def _checked(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     result, follows = proof.result, proof.follows
     document = {"name": proof.name, **result, "certified": certified, "checks": checks, "seconds": seconds}
     value = f" = {result['value']} +- {result['radius']}" if result else ""
-    lines = [f"{proof.name}{value}  ({'' if certified else 'not '}certified, {seconds:.2f} s)"]
+    lines = [f"{proof.name}{value}  ({'' if certified else 'not '}certified, proof {seconds:.2f} s)"]
     lines += [f"  {item.replace('_', ' '):28} {WORDS[outcome]}" for item, outcome in checks.items()]
     scene = given["scene"]
     if result and "lam" in scene and "law" in scene and "lam" not in words_of([scene["law"]]):

@@ -222,8 +222,15 @@ def show_ends(console: "Console", told: list[list[dict[str, Any]]], keys: Sequen
 ROWS = 33  # points shown to people
 
 
+def _only_zero(context: click.Context, option: click.Parameter, value: str | None) -> None:
+    """Refuses a contraction other than 0."""
+    if value is not None and exact("--lam", value) != 0:
+        raise ValueError(f"--lam {value}: the slap map is the limit at lam = 0; leave --lam out")
+
+
 @click.command(epilog="Example: pinball slap egg --alpha 0.08 --iterates 4 --points 1000 --json slap.json")
 @table_options
+@click.option("--lam", hidden=True, expose_value=False, callback=_only_zero)
 @click.option("--iterates", type=Whole(1, 1000), default=1, show_default=True, help="Up to which power.")
 @click.option("--points", type=Whole(2, 1_000_000), default=200, show_default=True, help="On each component.")
 @plot_option("results.slap", "the graphs of the iterates, and the slope")

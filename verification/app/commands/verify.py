@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from numeric.lowering.files import write_whole
+from symbolic.tables.definition import like
 from verification.app.cli import DONE, FAILED, Output, Whole, json_option
 from verification.paper.claims.claim import seconds
 from verification.paper.report import report
@@ -88,7 +89,8 @@ def show_figure(console: "Console", known: "Mapping[str, Figure]") -> None:
 
 def _picture(known: "Mapping[str, Figure]", name: str | None) -> "Figure":
     if name is None or name not in known:
-        raise ValueError(f"NAME = {name or 'missing'} is no figure; accepted: {', '.join(known)}")
+        wrong = "NAME is missing" if name is None else f"NAME = {name} is no figure"
+        raise ValueError(f"{wrong}; accepted: {', '.join(known)}{like(name or '', known)}")
     return known[name]
 
 
@@ -148,17 +150,30 @@ def _free(port: int) -> int:
 
 
 @click.command(epilog="Example: pinball claims new my_paper, then pinball verify --claims my_paper")
-@click.argument("what", type=click.Choice(["new"]))
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.argument("what", metavar="new|list", type=click.Choice(["new", "list"]))
+@click.argument("folder", metavar="[DIR]", required=False)
+@click.option("--section", metavar="LABEL", help="List the claims of a section, such as 6.3, 6 or Abstract.")
 @json_option
-def claims_command(what: str, folder: Path, output: Output) -> int:
-    """Creates a folder for the claims of another paper, with one sentence and its judge as an example to replace.
+def claims_command(what: str, folder: str | None, section: str | None, output: Output) -> int:
+    """Lists the claims of a paper, or creates a folder for those of another paper.
 
-    It has paper.toml (title, authors, where it was printed, its sections, its sentences as printed) and judges.py.
+    `list` prints the id and the sentence of each claim, of the paper or of the one in DIR. `new` writes DIR with one
+    sentence and its judge as an example to replace: paper.toml (title, authors, where it was printed, its sections, its
+    sentences as printed) and judges.py.
     """
-    from verification.paper.claims.folder import begin
+    from verification.paper.claims.folder import OWN, begin, paper
 
-    written = [str(path) for path in begin(folder)]
+    if what == "list":
+        claims = chosen((), section, paper(folder or OWN))
+        output.write({"claims": [{"id": each.id, "section": each.section, "quote": each.quote} for each in claims]})
+        wide = max(len(claim.id) for claim in claims)
+        for claim in claims:
+            output.console.print(f"{claim.id:<{wide}}  {' '.join(claim.quote.split())}")
+        return DONE
+    if folder is None or section is not None:
+        wrong = "DIR is missing" if folder is None else f"--section {section} is for pinball claims list"
+        raise ValueError(f"{wrong}; accepted: pinball claims new DIR")
+    written = [str(path) for path in begin(Path(folder))]
     output.write({"written": written})
     output.console.print(f"{' and '.join(written)} are written; pinball verify --claims {folder} judges what they say.")
     return DONE
@@ -168,7 +183,7 @@ def claims_command(what: str, folder: Path, output: Output) -> int:
 @click.option(
     "--claims", "source", metavar="DIR", help="Another paper: its folder, or polygons, elastic, laws. Runs its judges."
 )
-@click.option("--only", metavar="GLOB", default="*", show_default=True, help="Judge the claims whose id matches.")
+@click.option("--only", metavar="GLOB", multiple=True, help="Judge the claims whose id matches; may be given again.")
 @click.option("--section", metavar="LABEL", help="Judge the claims of a section, such as 6.3, 6 or Abstract.")
 @click.option("--changed", is_flag=True, help="Judge what depends on changed code; keep the rest of the last report.")
 @click.option("--digits", type=Whole(1, 10_000), default=15, show_default=True, help="Digits of the values.")
@@ -180,7 +195,7 @@ def claims_command(what: str, folder: Path, output: Output) -> int:
 @json_option
 def command(
     source: str | None,
-    only: str,
+    only: tuple[str, ...],
     section: str | None,
     changed: bool,
     digits: int,
@@ -279,7 +294,7 @@ class Last:
 IMAGE = re.compile(r'<img src="data:image/[^;]*;base64,([^"]*)" data-figure="([^"]*)"')
 
 
-def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
+def chosen(only: Sequence[str], section: str | None, about: "Paper") -> "list[Claim]":
     """The claims that --only and --section select; `ValueError` with the accepted ids or sections if there is none."""
     claims = list(about.claims)
     if section is not None:
@@ -289,7 +304,7 @@ def chosen(only: str, section: str | None, about: "Paper") -> "list[Claim]":
             labels = ", ".join(label(name) for name in about.sections if name in known)
             raise ValueError(f"--section {section!r} has no claim; accepted: {labels}")
         claims = [claim for claim in claims if claim.section in there]
-    wanted = matching(only, [claim.id for claim in claims])
+    wanted = {name for glob in only or "*" for name in matching(glob, [claim.id for claim in claims])}
     return [claim for claim in claims if claim.id in wanted]
 
 
@@ -320,6 +335,9 @@ def matching(only: str, ids: Sequence[str]) -> list[str]:
     """
     found = [each for each in ids if fnmatchcase(each, only)]
     if not found:
+        if "," in only:
+            again = " ".join(f"--only {each.strip()!r}" for each in only.split(",") if each.strip())
+            raise ValueError(f"--only {only!r} is no name of a claim; accepted: one name at a time, as in {again}")
         near = ", ".join(get_close_matches(only.strip("*"), ids, 3, 0))
         raise ValueError(f"--only {only!r} matches no claim; the nearest are: {near}")
     return found

@@ -26,10 +26,11 @@ import numpy as np
 from flint import arb, fmpq
 
 from numeric.sweeps.workers import own_command
-from verification.arithmetic.balls import as_ball, bits_of, working
+from verification.arithmetic.balls import as_ball, bits_of, decimal, working
 from verification.measure.work.row import MethodResult, timed
 
 COUNTS = ("particles", "points")  # the units of settings that say how many answers a call gives
+SHOWN = 3  # numbers of a reference in text
 GUARD = 20  # extra digits of a reference
 Answer = Sequence[Any]
 
@@ -97,6 +98,12 @@ class Question:
     methods: tuple[Method, ...]
     certified: bool = True
     most_digits: int = 1000
+
+    def values(self) -> str:
+        """The reference as text: the first `SHOWN` numbers to 15 digits, each with a bound of its error."""
+        found = self.reference(15)
+        first = ["{} ± {}".format(*decimal(value, 15)) for value in map(enclosed, found[:SHOWN])]
+        return "; ".join(first) + (f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else "")
 
 
 def enclosed(value: Any) -> arb:

@@ -72,6 +72,8 @@ TOKEN = re.compile(
     r"|(?P<mark>[()\[\]|]'?)|(?P<comma>, )"
 )
 WORTH = re.compile(r"[\w)\]|']\s*(?:\*\*|[*/^<>=]|!=|[-+]\s|[-+](?=[\w(]))|\w\(|\|.")
+ARTICLE = re.compile(r", a$")  # "lam < 1, a focus": no letter, unless a conjunction or a verb comes next
+NO_NOUN = re.compile(r"(?! [A-Za-z]{2})| (?:and|or|is|are|in|at|as|to|with)\b")
 APPOSED = re.compile(r"\w -\d")  # a word and a negative number, as in "trace -2": no subtraction
 PAIR = re.compile(r"([\[(])((?:[^\[\](),;:]|\([^()]*\))+), ((?:[^\[\](),;:]|\([^()]*\))+)([\])])")
 AN_ELEMENT = re.compile(rf"\b({NAME}) in (?=[\[(])")
@@ -221,6 +223,8 @@ def _set(piece: str, text: str, start: int) -> str | None:
         or piece.startswith("- ")
         or not WORTH.search(piece)
         or APPOSED.search(piece)
+        or (start and piece[0] == "(" and text[start - 1] in "')]")  # an argument, as in kappa''(0) < 1
+        or (ARTICLE.search(piece) and not NO_NOUN.match(text, start + len(piece)))
         or (start and (text[start - 1].isalnum() or text[start - 1] in "\\_^*/"))
     ):
         return None
@@ -290,6 +294,9 @@ class _Source:
                 return f"{self.latex(left, 1)} {'+' if isinstance(op, ast.Add) else '-'} {self.latex(right, 2)}", 1
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return _call(name, [self.latex(each) for each in arguments]), ATOM
+            case ast.Call(func=ast.Call() as function, args=arguments, keywords=[]):  # as in (f^2)'(s)
+                inside = ", ".join(self.latex(each) for each in arguments)
+                return rf"{self.latex(function)}\left({inside}\right)", ATOM
             case ast.Compare(left=left, ops=ops, comparators=others):
                 pairs = zip(ops, others, strict=True)
                 return self.latex(left) + "".join(f" {SIGNS[type(op)]} {self.latex(each)}" for op, each in pairs), 0

@@ -28,7 +28,7 @@ function filter() {
   }
   for (const group of all(".grade")) group.hidden = group.querySelector("li:not([hidden])") === null;
   const shown = claims.filter((claim) => !claim.hidden).length;
-  document.getElementById("shown").textContent = `${shown} of ${claims.length} claims shown`;
+  document.getElementById("shown").textContent = `${shown} of ${claims.length} ${claims.length === 1 ? "claim" : "claims"} shown`;
   reach();
 }
 const form = document.getElementById("filters");

@@ -235,7 +235,7 @@ def counts(results: Iterable["Result"]) -> dict[str, int]:
 def summary(results: Sequence["Result"]) -> str:
     """One line with the number of claims and the number with each verdict."""
     parts = ", ".join(f"{number} {verdict}" for verdict, number in counts(results).items())
-    return f"{len(results)} claims: {parts}."
+    return f"{len(results)} claim{'s' if len(results) != 1 else ''}: {parts}."
 
 
 def made_with() -> dict[str, str]:

@@ -4,39 +4,34 @@
 # the five-pointed flower $\rho = 1 + \cos(5\theta)/40$.
 
 # +
-from IPython.display import Math, display
-from sympy import S, pi
+from sympy import N, Rational
 
-from numeric import PinballMap
-from symbolic import tables
-from symbolic.cycles import thresholds as double_normal
-from symbolic.cycles.cycle import Cycle
-from symbolic.motion.chords import convexity
-from symbolic.tables import geometry
-from symbolic.tables.formula import latex
-from symbolic.tables.table import theta
-
-
-def show(left, right):
-    display(Math(f"{left} = {latex(right)}"))
-
+from numeric import PinballMap, attractors
+from symbolic import Scene, curvature, double_normals, monodromy, tables, theta, thresholds
+from verification import certify, find_cycles, follow
 
 # -
 
+# The curvature at a tip:
+
 flower = tables.polar("1 + cos(5*theta)/40", "flower")
-show(r"\kappa(0)", geometry.curvature(flower.components[0]).subs(theta, 0))
-print("convex:", convexity(flower).outcome.value)
+curvature(flower).subs(theta, 0)
 
 # ## Period 2, in closed form
 #
-# Each point of the flower faces a flat part, so there is a cycle of period 2 along that diameter.
+# Each point of the flower faces a flat part, so there is a cycle of period 2 along that diameter, one up to rotations.
 
-diameter = Cycle("diameter", flower, ((0, S.Zero), (0, pi)))
-P = double_normal.stability_number(diameter)
-show("P", P)
-threshold = double_normal.flip_contraction(P)
-show(r"\lambda_{\rm flip}", threshold)
-print(float(threshold))
+(diameter,) = double_normals(flower)
+monodromy(diameter)
+
+# It doubles its period at the contraction
+
+threshold = thresholds(diameter)["flip"]
+threshold
+
+# or, in decimals,
+
+float(threshold)
 
 # ## An orbit, and both exponents
 map = PinballMap(flower, lam="1/2")
@@ -49,35 +44,20 @@ print(float(found.nu_plus), float(found.nu_minus))
 
 # Where 500 random particles end:
 
-# +
-from IPython.display import Image
-
-from numeric.dynamics.attractors import find
-from verification.plots.results import drawn
-
-Image(drawn("results.attractors", (map, find(map, 500, 1)), ".png"))
-# -
+attractors(flower, lam="1/2", orbits=500, seed=1).plot()
 
 # ## A certified doubling
 #
-# The same threshold on the chord system, in balls, with the whole checklist.
+# The cycle is found at one contraction and followed to its doubling. This is proved in balls, with the whole checklist.
 
-# +
-from verification.arithmetic.balls import decimal
-from verification.cycles.problem import Problem
-from verification.cycles.recurrence import BifurcationKind
-from verification.named.locate import proof_near
-
-problem = Problem(flower, (0, 0), BifurcationKind.FLIP, free="lam")
-proof = proof_near(problem, [0.0, 3.141592653589793, float(threshold)], 30)
-print(decimal(proof.value, 30)[0])
+cycle = find_cycles(Scene(flower, lam="1/10"), period=2).stable[0]
+branch = follow(cycle, lam=("1/10", "1/5"))
+proof = certify(branch.flips[0], digits=30)
+print(proof)
 for item, answer in proof.checks.items():
     print(f"  {item:30} {answer}")
 
 # ## A check that can fail
 
-# +
-from verification.arithmetic.balls import real_ball
-
-assert proof.proved
-assert proof.value.overlaps(real_ball(threshold, 40))
+assert all(proof.checks.values())
+assert abs(N(threshold, 50) - Rational(proof.value)) < Rational(proof.radius)

@@ -27,8 +27,8 @@ M
 # ## One number decides
 #
 # For *any* cycle of period 2, in any table, the monodromy has determinant $\lambda^2$ and trace $(1+\lambda)^2 P -
-# 2\lambda$ with $P = (1 + tK_0)(1 + tK_1)$, where $t$ is the length of the flight and $K_0$, $K_1$ are the curvatures at
-# its ends. The minor axis has $t = 2$:
+# 2\lambda$ with $P = (1 + tK_0)(1 + tK_1)$, where $t$ is the length of the flight and $K_0$, $K_1$ are the curvatures
+# at its ends. The minor axis has $t = 2$:
 
 P = (1 + 2 * simplify(kappa.subs(theta, pi / 2))) ** 2
 P

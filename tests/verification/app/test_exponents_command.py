@@ -98,7 +98,7 @@ def test_an_error_that_is_reached_is_done(capsys):
     ("wrong", "words"),
     [
         (("--until-error", "0"), "--until-error = 0.0 is no error"),
-        (("--orbits", "1"), "1 is not in the range 2<=x"),
+        (("--orbits", "1"), "--orbits is given 2 times; accepted: once"),
         (("--start-law", "nowhere"), "'nowhere' is not one of"),
     ],
 )

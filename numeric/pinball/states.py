@@ -381,7 +381,7 @@ def labelled(columns: Mapping[str, Any], axes: tuple[str, ...]) -> "xr.Dataset":
         import xarray
     except ImportError:
         raise ValueError(
-            "to_xarray: xarray is missing; install it with: pip install 'pinball-billiards[sweep]'"
+            "to_xarray: xarray is missing; install it with: pip install '.[sweep]' in a checkout"
         ) from None
     arrays = {name: np.asarray(values) for name, values in columns.items()}
     whole = max(values.ndim for values in arrays.values())

@@ -174,7 +174,7 @@ class GridResult:
             return kept.dataset()
         except ImportError:
             raise ValueError(
-                "to_xarray: xarray is missing; install it with: pip install 'pinball-billiards[sweep]'"
+                "to_xarray: xarray is missing; install it with: pip install '.[sweep]' in a checkout"
             ) from None
 
     def to_pandas(self) -> Any:

@@ -399,11 +399,11 @@ def missing(error: ModuleNotFoundError) -> str:
     """A sentence that names the missing package and the command that installs it.
 
     >>> missing(ModuleNotFoundError(name="zarr.storage"))
-    "zarr is missing; install it with: pip install 'pinball-billiards[sweep]'"
+    "zarr is missing; install it with: pip install '.[sweep]' in a checkout"
     """
     package = (error.name or str(error)).partition(".")[0]
     extra = f"[{EXTRAS[package]}]" if package in EXTRAS else ""
-    return f"{package} is missing; install it with: pip install 'pinball-billiards{extra}'"
+    return f"{package} is missing; install it with: pip install '.{extra}' in a checkout"
 
 
 def sentence(error: click.ClickException) -> str:

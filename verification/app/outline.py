@@ -118,7 +118,7 @@ def _of_drawing(data: Data, ending: str, text: str) -> Outline:
         drawing = drawings.of_svg(data.path, text) if ending == ".svg" else drawings.of_dxf(data.path)
     except ModuleNotFoundError:
         raise ValueError(
-            f"--data needs the package {package}; install it with: pip install 'pinball-billiards[outline]'"
+            f"--data needs the package {package}; install it with: pip install '.[outline]' in a checkout"
         ) from None
     runs, unit, notes = drawing.runs, drawing.unit, list(drawing.notes)
     layers = list(dict.fromkeys(run.layer for run in runs if run.layer))

@@ -118,6 +118,8 @@ STYLE: Any = {
     "path.simplify": True,
     "savefig.dpi": 200,
     "svg.fonttype": "path",
+    "pdf.fonttype": 42,
+    "ps.fonttype": 42,
     "svg.hashsalt": "pinball",
 }
 BLACK, DARK, MIDDLE, LIGHT = "#000000", "#1f4e79", "#c8691c", "#9fc5e8"  # in order of lightness
@@ -145,7 +147,9 @@ def styled() -> Iterator[None]:
     try:
         import matplotlib
     except ImportError:
-        raise ValueError("figure: Matplotlib is missing; install pinball-billiards[plot], or ask for --json") from None
+        raise ValueError(
+            "figure: Matplotlib is missing; install it with: pip install '.[plot]' in a checkout, or ask for --json"
+        ) from None
     with matplotlib.rc_context(STYLE):
         yield
 

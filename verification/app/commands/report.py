@@ -45,7 +45,7 @@ def needed() -> None:
     if absent:
         extras = ",".join(EXTRAS[name] for name in NEEDED)
         are = f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} missing"
-        raise ValueError(f"report: {are}; install what it needs with: pip install 'pinball-billiards[{extras}]'")
+        raise ValueError(f"report: {are}; install what it needs with: pip install '.[{extras}]' in a checkout")
 
 
 @click.command(epilog="Example: pinball report --polar '1 + cos(5*theta)/40' --minutes 2 --out flower.html")

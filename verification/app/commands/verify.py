@@ -128,7 +128,7 @@ LOOPBACK = "127.0.0.1"
 def explore_command(port: int, show: bool, output: Output) -> int:
     """A live table on a page of this machine: drag the particle, move the contraction, find cycles.
 
-    The page is served on 127.0.0.1 only, until Ctrl-C. It needs pip install 'pinball-billiards[explore]'.
+    The page is served on 127.0.0.1 only, until Ctrl-C. It needs pip install '.[explore]' in a checkout.
     """
     from verification.app.live import serve
 
@@ -359,7 +359,9 @@ def drawable(output: Output, wanted: "Sequence[object]") -> bool:
     """True if Matplotlib is installed; if it is not, but pictures are wanted, prints a line that says so."""
     if not wanted or find_spec("matplotlib") is not None:
         return True
-    output.console.print("The report has no figures: Matplotlib is missing; install pinball-billiards[plot].")
+    output.console.print(
+        "The report has no figures: Matplotlib is missing; install it with: pip install '.[plot]' in a checkout."
+    )
     return False
 
 

@@ -126,7 +126,8 @@ def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr
 def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """The entries of a scene for a table of the paper, and its shape parameters' values, which are still empty."""
     if name not in PAPER:
-        raise ValueError(f"no table is called {name!r}; the paper's are {', '.join(PAPER)}")
+        known = (*PAPER, *GALLERY)
+        raise ValueError(f"no table is called {name!r}; accepted: {', '.join(known)}{like(name, known)}")
     if isinstance(K, bool) or not isinstance(K, int) or K < 2:
         raise ValueError(f"{name}: K = {K!r} is no number of points; K must be an integer of at least 2")
     if K != POINTS and name != "egg":

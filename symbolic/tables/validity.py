@@ -23,6 +23,7 @@ from sympy import (
     cos,
     expand,
     factor_list,
+    floor,
     integrate,
     nan,
     oo,
@@ -129,7 +130,8 @@ def radius_over(table: Table) -> bool:
     ranges = {p.symbol: (p.range.start, p.range.end) for p in table.shapes}
     found = sign_in(rho, {theta: (-TURN, TURN), **ranges})
     if found.outcome is Outcome.REFUTED and not table.undefined:
-        where = ", ".join(f"{symbol} = {value.evalf(6)}" for symbol, value in found.at)
+        at = ((x, value - 2 * pi * floor((value + pi) / (2 * pi)) if x == theta else value) for x, value in found.at)
+        where = ", ".join(f"{symbol} = {value.evalf(6)}" for symbol, value in at)
         raise ValueError(f"{table.name}: rho = {rho} is not positive at {where}")
     return found.outcome is Outcome.PROVED
 

@@ -192,7 +192,7 @@ def shown(argument: str, holds: bool | None) -> SignFinding:
 
 
 def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding from a proof in balls: proved or, if the proof fails, unknown (never refuted).
+    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted).
 
     >>> answer(True, "").outcome.name, answer(False, "").outcome.name
     ('PROVED', 'UNKNOWN')

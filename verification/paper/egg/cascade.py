@@ -13,14 +13,14 @@ from numeric.sweeps.run import in_memory
 from numeric.sweeps.space import parameter_space
 from symbolic.cycles.polygons import saddle_node
 from symbolic.cycles.thresholds import tilt
-from symbolic.expressions.signs import Outcome, SignFinding, positive
+from symbolic.expressions.signs import SignFinding, positive
 from symbolic.tables import egg as table_of
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha
 from verification.cycles.cascade import attractor
 from verification.named.cascades import cascade
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, judges, sampled, shown
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, shown
 from verification.paper.egg.period2 import SHAPES
 from verification.paper.egg.stability import attracting_4, chaos_at
 from verification.paper.judges.attractors import STARTS, egg, proved_at, unsettled
@@ -38,11 +38,6 @@ LAMS = np.round(np.arange(0.05, 0.96, 0.05), 3)
 PROVED = Fraction(3, 128)  # the largest contraction up to which the cycles are proved
 STOPS = (0.03, 0.01, 1e-12)  # tolerances of Newton's method
 STRIPS = (("0.0795", "0.382", 12, 2e-4), ("0.08", "0.3716", 12, 2e-4))  # neighbouring shapes, with starts
-
-
-def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
-    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @cache

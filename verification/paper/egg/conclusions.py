@@ -22,7 +22,7 @@ from symbolic.tables.table import K1, alpha, lam, theta
 from verification.named.attractors import certificate
 from verification.named.cascades import Cascade, cascade
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, zero
 from verification.paper.judges.attractors import (
     SHAPE,
     STARTS,
@@ -45,11 +45,6 @@ DIFFERENT = (("0.36", 4, 5e-3), ("0.3716", 12, 2e-4), ("0.4915", 9, 1e-3))  # co
 WEAK = "0.99"
 NEAR_ELASTIC = ("0.97", "0.99")
 EVEN, ODD = (4, 6), (5, 7)
-
-
-def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
-    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 @judges("map.mixture")

@@ -20,14 +20,14 @@ from numeric.pinball.sampling import phase_starts
 from symbolic.cycles.defocusing import expands
 from symbolic.cycles.splitting import grazing, radius_defects, rate, splits
 from symbolic.cycles.thresholds import lambda_c
-from symbolic.expressions.signs import Outcome, SignFinding
+from symbolic.expressions.signs import SignFinding
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.table import K0, cos_eta1, cos_phi0, lam
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.balls import enclose
 from verification.arithmetic.iteration import telling
 from verification.paper.claims.claim import Claim, Judgement
-from verification.paper.claims.judges import by, counterexample, judges, sampled, zero
+from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, zero
 from verification.paper.judges.cuspless import attracting_below
 from verification.paper.judges.exponents import SPECTRA_SEED as SEED
 from verification.paper.judges.located import certified, located, subcritical
@@ -219,11 +219,6 @@ def _cross(a: NDArray[np.complex128], b: NDArray[np.complex128]) -> Array:
 
 PROVED_TO, NEAR = 0.1, 1e-6  # the end of the proof in lam; a distance from lambda-star
 ANGLE = 0.04  # the meaning given to "phi close to 0"; phi-star is -0.029
-
-
-def answer(holds: bool | None, reason: str) -> SignFinding:
-    """The finding from a three-valued proof: proved or, if the proof fails, unknown (never refuted)."""
-    return SignFinding(Outcome.PROVED if holds else Outcome.UNKNOWN, reason)
 
 
 def corner(check: str, reason: str) -> SignFinding:

@@ -83,7 +83,7 @@ class Count:
 
     @property
     def volume(self) -> Array:
-        """Growth of areas, without the factors `lam`: logarithms per bounce."""
+        """The logarithm of the growth of areas per bounce, without the part `log(lam)`."""
         return self._rows[1, : self.blocks]
 
     @property

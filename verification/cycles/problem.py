@@ -273,7 +273,7 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool | None:
-        """True when the cycle born at a flip is stable, next to the unstable one; None if undecided.
+        """True if the cycle born at a flip is stable where it exists beside the unstable old one; None if undecided.
 
         The new cycle lies on the side of the sign of `branch`. The multiplier has the derivative `-speed/turn`, which
         tells on which side the old cycle is unstable. At a supercritical flip the two sides agree.

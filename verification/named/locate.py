@@ -174,7 +174,7 @@ def _searched(problem: Problem, start: list[float], digits: int, in_balls: bool 
 def _box(
     system: System, start: list[float], digits: int, guard: int, sizes: tuple[int, int], in_balls: bool = False
 ) -> tuple[tuple[tuple[arb, ...], arb, int, int], Steps]:
-    """Centre, radius, bits, digits of a box, and Newton's steps; `sizes` are digits: of the radius, of the centre."""
+    """A box (centre, radius, bits, digits) and Newton's steps; `sizes` are the digits of its radius and its centre."""
     tick = telling(f"{digits} digits")
     solution = refined(system, start, sizes[1], in_balls)
     tick(MPMATH_SHARE)

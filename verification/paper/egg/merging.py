@@ -2,9 +2,9 @@
 
 A set of boxes around an end of one diameter grows until it is mapped into itself. Up to `lam = 0.442` it is disjoint
 from its copies rotated by thirds; at 0.44345 an orbit goes from one diameter to another. The contractions at which such
-a region exists (it holds all starts near an end of one diameter and is disjoint from its copies) form an open set, so
-there is a first contraction without one in between. In the same interval, at 0.4434352, a tangency of manifolds is
-proved.
+a region exists (it holds all starts near an end of one diameter and is disjoint from its copies) form an open set,
+so between 0.442 and 0.44345 there is a smallest contraction at which no such region exists. In the same interval, at
+0.4434352, a tangency of manifolds is proved.
 """
 
 from fractions import Fraction

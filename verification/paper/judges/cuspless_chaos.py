@@ -204,7 +204,7 @@ def below_star(claim: Claim) -> Judgement:
 
 @judges("cuspless.chaotic_above_star")
 def chaotic_above_star(claim: Claim) -> Judgement:
-    """Chaos is proved up to 1/10 by a polygon, and above by a cone of beams; not that it is on one attractor."""
+    """Chaos is proved for `lam` up to 1/10 by a polygon and above by a cone of beams; one attractor is not proved."""
     return Judgement(
         by(
             "from lambda* to 1/10, and from there to 1, almost every start of an open set stretches, and "

@@ -191,7 +191,7 @@ def sentence(text: str) -> Markup:
 
 
 def opening(text: str) -> Markup:
-    """The first words of a text, as HTML, if it is long."""
+    """The first words of a long text, as HTML."""
     return sentence(text[: text.rindex(" ", 0, OPENING)].rstrip(".,:;") + ".")[:-1]
 
 

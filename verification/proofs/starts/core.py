@@ -58,7 +58,7 @@ class AbsorbingTube:
             raise ValueError(f"{self}: accepted: at least one cell, and bounds above 0")
 
     def holds(self, sets: Parallelograms, *sizes: tuple[float, float]) -> Mask:
-        """A mask of the sets within a tube with one of the given bounds `(outer, width)`, by default its own."""
+        """A mask of the sets in a tube with bounds `(outer, width)` out of `sizes`; without these, in this tube."""
         theta, phi = sets.middle
         with np.errstate(invalid="ignore"):
             far = sets.reach()

@@ -31,7 +31,7 @@ MOST = 1 << 19  # the most labels
 
 
 class Targets(NamedTuple):
-    """Ranges of rows, one for each source and each column that images of the source may meet."""
+    """For each source, and each column that its images may meet: the range of rows that they may meet there."""
 
     source: Indices
     chart: Indices
@@ -74,7 +74,7 @@ def reduced(how: np.ufunc, size: int, at: Indices, values: Array) -> Array:
 
 
 def image_labels(map: CurveMap, boxes: Boxes, slopes: BallArray) -> Landed:
-    """The images of curves in any number of boxes, computed in blocks."""
+    """The labels that images of curves in these boxes may meet, computed for a block of boxes at a time."""
     rows = []
     for start in range(0, boxes.chart.size, BLOCK):
         some = slice(start, start + BLOCK)

@@ -74,8 +74,10 @@ find_cycles("ellipse", a="3/2", lam="9/10", period=2)
 #
 # An orbit that starts next to the major axis is carried away from it and ends on the minor axis.
 
-# +
 orbit = PinballMap("ellipse", lam=0.9, a="3/2").orbit(1e-9, 0.0, 2000)
+orbit.plot()
+
+# +
 assert abs(orbit.x[-1]) < 1e-9
 assert abs(abs(orbit.y[-1]) - 1) < 1e-9
 

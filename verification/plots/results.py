@@ -7,6 +7,7 @@ reflection law, also if they have several components or holes.
 from collections.abc import Mapping, Sequence
 from functools import partial
 from importlib import import_module
+from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from numeric import PinballMap
+from numeric.lowering.files import write_whole
 from verification.plots.sheet import (
     AXES,
     FAINT,
@@ -80,9 +82,15 @@ def shown(kind: str, results: Sequence[Any], axes: Any = None) -> "Figure":
     return made
 
 
-def _saved(made: "Figure", *given: Any, **options: Any) -> None:
+def _saved(made: "Figure", target: Any, **options: Any) -> None:
+    """Saves a figure in its style to a file, whole or not at all, or to an open file."""
+    buffer = BytesIO() if isinstance(target, str | Path) else target
+    if buffer is not target:
+        options = {"format": Path(target).suffix[1:] or "png"} | options
     with styled():  # fonts and resolution are looked up when a figure is saved
-        type(made).savefig(made, *given, **options)
+        type(made).savefig(made, buffer, **options)
+    if buffer is not target:
+        write_whole(target, buffer.getvalue())
 
 
 def _png(made: "Figure") -> bytes:

@@ -237,7 +237,7 @@ def test_a_missing_extra_is_one_sentence_with_the_command_that_brings_it(
     for module in (package, f"{package}.disassemble"):
         monkeypatch.setitem(sys.modules, module, None)
 
-    assert re.search(rf"install .*pinball-billiards\[{extra}\]", refusal(capsys, *arguments.split()))
+    assert re.search(rf"pip install '\.\[{extra}\]' in a checkout", refusal(capsys, *arguments.split()))
 
 
 def test_help_loads_no_mathematics():

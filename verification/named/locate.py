@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import mpmath
 from flint import arb
-from sympy import Expr, Integer, N, S, acos, sympify
+from sympy import Expr, Integer, N, S, acos
 
 from numeric.lowering.files import write_whole
 from symbolic import tables
@@ -143,7 +143,7 @@ def locate(name: str, digits: int = 30, law: Law | str = PAPERS_LAW, **shape: An
     shape = dict(USUAL.get(name, {})) | shape
     if set(shape) != set(parameters):
         raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(parameters)}")
-    shape = {letter: sympify(exact(f"locate {name}: {letter}", value)) for letter, value in shape.items()}
+    shape = {letter: S(exact(f"locate {name}: {letter}", value)) for letter, value in shape.items()}
     for letter in {"n", "period"} & {*shape}:
         if not shape[letter].is_Integer:
             raise ValueError(f"locate {name}: {letter} = {shape[letter]} is no integer")

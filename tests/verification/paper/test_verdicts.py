@@ -253,7 +253,7 @@ FACTS = [  # claim, verdicts before and after, module, word, what it means of wh
      lambda real: lambda: replace(real(), starts=real().starts[::-1])),
     ("egg.basins_intermingled", SUPPORTED, OPEN, basins, "common", returns((PROVED, UNKNOWN))),
     ("cuspless.two_basins", CONFIRMED, OPEN, basins, "division",
-     lambda real: lambda: replace(real(), annulus=replace(real().annulus, low=0.17))),
+     lambda real: lambda: replace(real(), annulus=replace(real().annulus, growth=1.06))),  # by 1.0105 and more it is
     ("egg.slap_critical_points", CORRECTED, REFUTED, period2, "crossings", lambda _: lambda: one_zero(budget=10)),
     ("egg.period3_attracting", CORRECTED, REFUTED, period3, "elastic_trace", lambda real: lambda _: real(False)),
     ("map.smooth_basin_boundaries", CONFIRMED, OPEN, nearly_round, "edge", altered(radius=0.03)),

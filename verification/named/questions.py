@@ -136,7 +136,7 @@ class PeriodicOrbits(Sequence[PeriodicOrbit]):
             for o in self.orbits[:SHOWN]
         ]
         more = f"<p>and {len(self) - SHOWN} more</p>" if len(self) > SHOWN else ""
-        return html_table(("period", "stability", "multipliers", "", "first bounce"), rows) + more
+        return html_table(("period", "stability", "multiplier", "second multiplier", "first bounce"), rows) + more
 
 
 def find_cycles(

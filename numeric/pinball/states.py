@@ -247,18 +247,17 @@ class Orbit(Labelled, OrbitFields):
         >>> PinballMap("circle").orbit(0, 0, 2).flight.round(12).tolist()
         [nan, 2.0, 2.0]
         """
-        if self.map is None:
-            raise ValueError("flight: one step has no start to measure from; take it from PinballMap.orbit")
-        lengths = np.full(np.shape(self.x), np.nan)
-        lengths[1:] = np.where(self.code[1:] == 0, np.hypot(np.diff(self.x, axis=0), np.diff(self.y, axis=0)), np.nan)
-        return lengths
+        return self._flights()[0]
 
     @property
     def time(self) -> Array:
         """The length of all flights up to each bounce, which is the time at speed 1; 0 at the start."""
-        lengths = self.flight
-        lengths[0] = 0
-        return np.cumsum(lengths, axis=0)
+        return self._flights()[1]
+
+    def _flights(self) -> tuple[Array, Array]:
+        if self.map is None:
+            raise ValueError("flight: one step has no start to measure from; take it from PinballMap.orbit")
+        return flights(self.x, self.y, self.code)
 
     def plot(self, axes: Any = None) -> Any:
         """A Matplotlib figure of the flights in the table and the bounces in phase space; on given `axes` only flights.
@@ -353,6 +352,22 @@ class Slap(Labelled, SlapFields):
 
     def __repr__(self) -> str:
         return f"Slap({many(len(self.theta) - 1, 'iterate')} of {many(self.theta[0].size, 'start')})"
+
+
+def flights(x: Array, y: Array, code: NDArray[np.int64]) -> tuple[Array, Array]:
+    """The length of the flight before each bounce, and of all up to it, along the first axis of the arrays.
+
+    Both are nan from where a particle stops. At the start the first is nan and the second 0.
+
+    >>> lengths, times = flights(np.array([0.0, 3.0, 3.0]), np.array([0.0, 4.0, 5.0]), np.array([0, 0, 0]))
+    >>> lengths.tolist(), times.tolist()
+    ([nan, 5.0, 1.0], [0.0, 5.0, 6.0])
+    """
+    lengths = np.full(np.shape(x), np.nan)
+    lengths[1:] = np.where(code[1:] == 0, np.hypot(np.diff(x, axis=0), np.diff(y, axis=0)), np.nan)
+    times = lengths.copy()
+    times[0] = 0
+    return lengths, np.cumsum(times, axis=0)
 
 
 def many(count: int, word: str) -> str:

@@ -89,15 +89,17 @@ class Located:
             "seconds": self.seconds,
         }
 
-    def save(self, path: str | Path) -> None:
-        """Writes the certificate as a JSON file, which `check` and `pinball check` read.
+    @property
+    def certificate(self) -> str | None:
+        """The text of the certificate's file, which `check` and `pinball check` read; None without a proof."""
+        return None if self.proof is None else json.dumps(self.proof.document(), indent=1) + "\n"
 
-        `ValueError` if the value has no certificate, or where the file cannot be written.
-        """
-        if self.proof is None:
+    def save(self, path: str | Path) -> None:
+        """Writes the certificate's file; `ValueError` if there is no certificate, or the file cannot be written."""
+        if (certificate := self.certificate) is None:
             raise ValueError(f"certificate: {self.name} was not proved; accepted: values that are certified")
         try:
-            write_whole(path, json.dumps(self.proof.document(), indent=1) + "\n")
+            write_whole(path, certificate)
         except OSError as why:
             raise ValueError(f"certificate: {path} cannot be written ({why.strerror}); name another file") from None
 

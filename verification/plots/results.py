@@ -82,15 +82,14 @@ def shown(kind: str, results: Sequence[Any], axes: Any = None) -> "Figure":
     return made
 
 
-def _saved(made: "Figure", target: Any, **options: Any) -> None:
-    """Saves a figure in its style to a file, whole or not at all, or to an open file."""
-    buffer = BytesIO() if isinstance(target, str | Path) else target
-    if buffer is not target:
-        options = {"format": Path(target).suffix[1:] or "png"} | options
-    with styled():  # fonts and resolution are looked up when a figure is saved
-        type(made).savefig(made, buffer, **options)
-    if buffer is not target:
-        write_whole(target, buffer.getvalue())
+def _saved(made: "Figure", file: Any, **options: Any) -> None:
+    """Saves a figure in its style to an open file, or whole or not at all to the file of a path."""
+    if isinstance(file, str | Path):
+        _saved(made, buffer := BytesIO(), **{"format": Path(file).suffix[1:] or "png"} | options)
+        write_whole(file, buffer.getvalue())
+    else:
+        with styled():  # fonts and resolution are looked up when a figure is saved
+            type(made).savefig(made, file, **options)
 
 
 def _png(made: "Figure") -> bytes:

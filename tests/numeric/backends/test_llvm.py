@@ -36,7 +36,7 @@ class Words(Family):
         return []
 
 
-Words.__abstractmethods__ = frozenset()  # nothing else is asked of it
+Words.__abstractmethods__ = frozenset()  # the tests need no other method
 
 COUNTER = iter(range(10**6))
 

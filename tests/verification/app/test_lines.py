@@ -45,7 +45,7 @@ def test_sentences_break_at_words_on_a_terminal_and_stand_on_one_line_in_a_file(
     monkeypatch.setenv("COLUMNS", "80")
     status = main(list(command))
     whole = capsys.readouterr()
-    monkeypatch.setenv("FORCE_COLOR", "1")  # which is how Rich is told of a terminal
+    monkeypatch.setenv("FORCE_COLOR", "1")  # Rich then writes as to a terminal
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     assert main(list(command)) == status
     broken = capsys.readouterr()

@@ -3,7 +3,6 @@
 `pinball check` verifies a certificate without the search that found it.
 """
 
-import json
 import os
 import time
 from collections.abc import Mapping
@@ -243,11 +242,11 @@ def writable(path: str) -> None:
 
 
 def _write(path: str, found: "Located") -> None:
-    if found.proof is None:
+    if (certificate := found.certificate) is None:
         raise ValueError(
             f"--certificate: {found.name} was not proved here; accepted: names and shapes that are certified"
         )
-    write_whole(Path(path), json.dumps(found.proof.document(), indent=1) + "\n")
+    write_whole(path, certificate)
 
 
 @click.command(epilog="Example: pinball locate lambda-c --certificate lambda_c.json && pinball check lambda_c.json")

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from numeric.pinball.sampling import boundary, flight_through
-from numeric.pinball.states import KEYS, STATUSES, Orbit
+from numeric.pinball.states import KEYS, STATUSES, Orbit, flights
 from symbolic.tables.definition import exact
 from verification.app.scene import start_of
 
@@ -187,10 +187,7 @@ def columns(
             for name, rows in found.items():
                 rows[0, i] = first.get(name, np.nan)
     if {*fields} & {*MORE}:
-        flight = np.hypot(np.diff(found["x"], axis=0), np.diff(found["y"], axis=0))
-        flight = np.where(found["code"][1:] == 0, flight, np.nan)
-        found["flight"] = np.concatenate([np.full((1, len(starts)), np.nan), flight])
-        found["time"] = np.concatenate([np.zeros((1, len(starts))), np.cumsum(flight, axis=0)])
+        found["flight"], found["time"] = flights(found["x"], found["y"], found["code"])
     return {name: found[name] for name in (*fields, "code") if name in found}
 
 

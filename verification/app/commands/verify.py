@@ -304,7 +304,7 @@ def chosen(only: Sequence[str], section: str | None, about: "Paper") -> "list[Cl
             labels = ", ".join(label(name) for name in about.sections if name in known)
             raise ValueError(f"--section {section!r} has no claim; accepted: {labels}")
         claims = [claim for claim in claims if claim.section in there]
-    wanted = {name for glob in only or "*" for name in matching(glob, [claim.id for claim in claims])}
+    wanted = {name for glob in only or ("*",) for name in matching(glob, [claim.id for claim in claims])}
     return [claim for claim in claims if claim.id in wanted]
 
 

@@ -243,7 +243,7 @@ def test_numbers_whose_roundings_are_not_covered_prove_nothing():
 def test_numbers_that_leave_something_out_prove_nothing():
     balance, y, w, v, high = proving()
     assert not balance.holds(0, y, w, v, high - 0.1)
-    less = balance.weights(0, y, high - 0.1)  # with these all holds but what is asked of the masses
+    less = balance.weights(0, y, high - 0.1)  # all hypotheses but that on the masses hold
     assert not balance.holds(0, y, *less, high - 0.1)
     assert not balance.holds(0, y, 0 * w, v, high)  # no bound for the mass next to ends
     assert not balance.holds(0, y, w, 0 * v, high)  # nor for that next to new ends

@@ -28,7 +28,7 @@ from symbolic.tables.law import Law, lengths
 from symbolic.tables.polynomial import cubic
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Component, Table, eta, lam, s, theta
-from symbolic.tables.validity import parameter_box, root, validated
+from symbolic.tables.validity import parameter_box, radius_over, root, validated
 
 DEEP = 12  # nested operations, beyond which derivatives are not written out
 LARGEST = 4000  # numbers and operations of a coordinate, which is written out three times
@@ -100,6 +100,15 @@ def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any
         return table.table if isinstance(table, Scene) else tables.of_gallery(table.name, dict(table.lengths))
     given = tables.named(table, K) if isinstance(table, str) else table
     return given.at(**{name: exact(value) for name, value in shape.items()}) if shape else given
+
+
+@lru_cache(maxsize=64)
+def proved_throughout(table: Table) -> bool:
+    """Is it proved, by a positive radius, that the table is one for all values of its free shape parameters?"""
+    try:
+        return radius_over(table)
+    except ValueError:  # some values give no table; others may
+        return False
 
 
 def in_unit(table: Table, length: Fraction, x: Fraction, y: Fraction) -> Table:

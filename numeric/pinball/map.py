@@ -81,7 +81,9 @@ class PinballMap:
         self.exact_shape = self._shape(shape)
         names = [entry.name for entry in self.ir.shape]
         if names and not isinstance(table, str | Scene | Named):
-            _ = self.table  # proves that the boundary bounds a table with
+            from numeric.lowering.lower import proved_throughout
+
+            _ = proved_throughout(table) or self.table  # which proves that the boundary bounds a table
         boundary = Boundary(self.ir, [float(value) for value in self.exact_shape])
         self.unit = unit_of(boundary)
         if self.unit != ONE:  # computations are done there, and results are converted back

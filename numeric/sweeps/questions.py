@@ -359,7 +359,11 @@ def _scene_over(table: Any, law: Law | str | None, given: dict[str, Any], varied
     middle = {name: (shape_value(name, given[name][0]) + shape_value(name, given[name][1])) / 2 for name in varied}
     numbers = {**given, **middle}
     map = _one_map(table, numbers.pop("lam"), law, numbers)
-    return text_of(map.scene), float(map.lam)
+    scene = map.scene
+    for name in varied:
+        if name != "lam":  # all values share the kernels of one map
+            scene = scene.spanning(name, *(shape_value(name, end) for end in given[name]))
+    return text_of(scene), float(map.lam)
 
 
 def _on_grid(sweep: Sweep, picture: str) -> GridResult:

@@ -234,6 +234,27 @@ class Scene:
         )
         return other
 
+    def spanning(self, parameter: str, low: Any, high: Any) -> "Scene":
+        """The same scene, with the range from `low` to `high` for a parameter of its table or law.
+
+        The parameter keeps its value if it is inside, otherwise it gets the middle. Maps at all its values then share
+        their kernels. A parameter of a table of the paper has a range of its own, and gets a value only.
+
+        >>> Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}}).spanning("b", 0, "1/30").ranges
+        {'b': (Fraction(0, 1), Fraction(1, 30))}
+        """
+        first, last = (exact(parameter, end) for end in (low, high))
+        known = {**self.shape, **{name: exact(name, text) for name, text in self.law.numbers}}
+        if parameter not in known:
+            accepted = ", ".join(["lam", *known])
+            raise ValueError(f"{parameter} is no parameter that varies in {self}; accepted: {accepted}")
+        if not first < last:
+            raise ValueError(f"{parameter} from {low} to {high} is no interval; the first must be the smaller")
+        value = known[parameter] if first < known[parameter] < last else (first + last) / 2
+        ranged = "table" not in self.document or parameter not in self.shape
+        number: dict[str, Any] = {parameter: f"{value}:{first}..{last}" if ranged else value}
+        return self.at(**number)
+
     # ---- text and back
 
     @classmethod

@@ -74,6 +74,7 @@ def bifurcations(
     ((parameter, ends),) = varied.items()
     scene = as_scene(table, **{name: own for name, own in interval.items() if name != parameter})
     ends_of(parameter, ends)
+    scene = scene if parameter == "lam" else scene.spanning(parameter, *ends)
     found = Continuation(scene, parameter, tuple(ends), starts, seed, tick=tick or (lambda said: None))
     if kind is None:
         return found.run(values)

@@ -15,9 +15,8 @@ from typing import Any
 from numeric import PinballMap
 from numeric.lowering.files import write_whole
 from numeric.sweeps.run import connected
-from symbolic.tables.definition import exact
 from symbolic.tables.law import Law
-from symbolic.tables.scene import Scene, as_scene
+from symbolic.tables.scene import as_scene
 from verification.reports import crises as tangencies
 from verification.reports import lives, planes
 from verification.reports import scene as exactly
@@ -157,7 +156,7 @@ def report(
     second = None if vary is None else (vary[0], str(vary[1]), str(vary[2]))
     scene = as_scene(table, lam=at[len(at) // 2] if isinstance(lam, tuple) else None, law=law, **shape)
     if vary is not None:
-        scene = _placed(scene, *vary)
+        scene = scene.spanning(*vary)
     if isinstance(lam, tuple):
         parameter, low, high = "lam", *lam
     elif vary is None:
@@ -177,24 +176,6 @@ def report(
     parts = Parts(page.with_suffix(".parts"), asked.digest, scheduler)
     parts.made(asked)
     return worked(asked, parts, page, clock() + 60 * minutes, clock, tick, latex)
-
-
-def _placed(scene: Scene, parameter: str, low: Any, high: Any) -> Scene:
-    """The scene with an interval for one of its parameters; its table is proved to exist over this interval.
-
-    The parameter keeps its value if it is inside the interval; otherwise it gets the middle of the interval.
-    """
-    ends = [exact(parameter, end) for end in (low, high)]
-    if parameter not in (*scene.shape, *dict(scene.law.numbers)):
-        accepted = ", ".join(["lam", *scene.shape, *dict(scene.law.numbers)])
-        raise ValueError(f"report: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
-    if not ends[0] < ends[1]:
-        raise ValueError(f"report: {parameter} from {low} to {high} is no interval; the first must be the smaller")
-    own = {**scene.shape, **{name: exact(name, text) for name, text in scene.law.numbers}}[parameter]
-    value = own if ends[0] < own < ends[1] else (ends[0] + ends[1]) / 2
-    ranged = "table" not in scene.document or parameter not in scene.shape  # a table of the paper has its own
-    number: dict[str, Any] = {parameter: f"{value}:{ends[0]}..{ends[1]}" if ranged else value}
-    return scene.at(**number)
 
 
 def worked(

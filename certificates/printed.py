@@ -27,7 +27,6 @@ CLAIMS: dict[str, list[str]] = LISTED["files"]  # of the paper's report: what sa
 WITHOUT: dict[str, str] = LISTED["without"]  # and why
 ALSO: dict[str, str] = LISTED["partly"]  # parts of a sentence that have none here
 FOLLOWING = ("nu_plus", "nu_minus", "multiplier of a round, out", "in")  # columns
-FOLLOWED = 6  # bounces of cycles whose certificates inside of reports have enough digits to be followed all round
 
 
 def value(given: dict[str, Any]) -> Fraction:
@@ -110,11 +109,9 @@ def main(args: list[str]) -> int:
     found = [(page, number, [*files.values()]) for page, number in of_pages()]
     found += [("docs/trust.md", number, [files[name]] if name in files else []) for name, number in of_trust()]
     for page, inside, told in kept_reports():
-        counts = [len(given.get("components", ())) for given in inside]  # a tangency has none
-        ready = [given for given, n in zip(inside, counts, strict=True) if n <= FOLLOWED or n > check.SHORT]
-        here = [*ready, *files.values()]
+        here = [*inside, *files.values()]
         found += [(f"docs/reports/{page}.json", number, here) for number in told]
-        for given in ready if "--prove" in args else ():
+        for given in inside if "--prove" in args else ():
             sys.stdout.write(f"{page}: {check.checked(given).splitlines()[0]}\n")
     for claim, file, number in of_claims(report) if report.exists() else ():
         found.append((claim, number, [files[file]] if file in files else []))

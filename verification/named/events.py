@@ -67,6 +67,11 @@ def proof_of(
     return proof_near(problem, [*(float(v) for v in x), event.value], digits)
 
 
+def digits_to_follow(period: int) -> int:
+    """More digits of a proof, with which the independent checker can follow a cycle all round."""
+    return 2 * period if 6 < period <= FOLLOWED else 0
+
+
 def _centred(ring: Chords, x: Array) -> Array | None:
     """The half cycle, rotated by a symmetry of the table so that its mirror is `theta -> -theta`, or None."""
     if ring.closure.turn != -1:
@@ -79,6 +84,7 @@ def _centred(ring: Chords, x: Array) -> Array | None:
 
 
 Tick = Callable[[str], None]
+FOLLOWED = 32  # bounces, at most, that the independent checker follows all round
 SWITCHES = 3  # crossings at which a branch is left for the one that is born there
 BORN = 60  # points of that branch
 SAME = 2e-3  # in parts of the plane's size, and of the determinant: a point so near lies on a curve
@@ -173,7 +179,8 @@ class EventCurve:
 
     Each point has the two parameters and `det M - 1`; those of codimension two are listed in `special` by name. `depth`
     is the number of doublings and pitchforks between the branch that was followed and the cycle of the curve. `proved`
-    lists points of the curve at which the event is proved in balls: an exact shape, the contraction, its radius.
+    lists points of the curve at which the event is proved in balls: an exact shape, the contraction, its radius; and
+    `certificates` the certificates of these points.
     """
 
     kind: str
@@ -185,6 +192,7 @@ class EventCurve:
     depth: int = 0
     command: str = ""
     proved: Sequence[Sequence[str]] = ()
+    certificates: Sequence[dict[str, Any]] = field(default=(), repr=False)
 
     def document(self) -> dict[str, Any]:
         """The curve as JSON."""
@@ -234,7 +242,8 @@ def curves_along(
                 continue
             points = [[float(x) for x in (*p.z[-2:], p.tests["volume"])] for p in found.points]
             special, ends = [(d.kind.value, *d.parameters) for d in found.special], [why for _, why in found.ends]
-            curve = EventCurve(kind, period, near, points, special, ends, depth, "", proved_on(event, found, plane))
+            proved, certificates = proved_on(event, found, plane)
+            curve = EventCurve(kind, period, near, points, special, ends, depth, "", proved, certificates)
             if not any(curve.runs_as(each) for each in alike):
                 seen.append(curve)
                 yield curve
@@ -247,26 +256,31 @@ def curves_along(
             return
 
 
-def proved_on(event: Event, found: CodimensionOneCurve, plane: Plane, digits: int = 12) -> list[tuple[str, str, str]]:
-    """Points spread over a curve at which the event is proved: an exact shape, the contraction, and its radius.
+def proved_on(
+    event: Event, found: CodimensionOneCurve, plane: Plane, digits: int = 12
+) -> tuple[list[tuple[str, str, str]], list[dict[str, Any]]]:
+    """Points spread over a curve at which the event is proved, and their certificates.
 
-    Between these points the curve is known in float64 only. Empty if the parameter is one of the law.
+    A point is an exact shape, the contraction, and its radius. Between these points the curve is known in float64 only.
+    Empty if the parameter is one of the law.
     """
-    (letter, _), ring, rows = plane.two, event.ring, list[tuple[str, str, str]]()
+    rows, certificates = list[tuple[str, str, str]](), list[dict[str, Any]]()
+    (letter, _), ring = plane.two, event.ring
     if not isinstance(ring, Chords) or letter not in {p.symbol.name for p in plane.table.shapes}:
-        return rows
+        return rows, certificates
     for share in PROVED_AT:
         text = f"{found.points[int(share * (len(found.points) - 1))].z[-2]:.6g}"
         try:
             for z in found.crossing(float(text)):
                 here = replace(ring, table=plane.table.at(**{letter: exact(letter, text)}))
                 at = replace(event, ring=here, point=replace(event.point, z=z[[*range(len(z) - 2), -1]]), x=z[:-2])
-                proof = proof_of(at, digits)
+                proof = proof_of(at, digits + digits_to_follow(ring.period))
                 if proof is not None and proof.proved:
+                    certificates.append(proof.document())
                     rows.append((text, *decimal(proof.value, digits)))
         except (ValueError, ZeroDivisionError):
             continue
-    return rows
+    return rows, certificates
 
 
 def curve_of(

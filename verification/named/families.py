@@ -292,8 +292,11 @@ class Continuation:
         except (ValueError, ZeroDivisionError) as why:
             self.unfollowed.append(Unfollowed(seen.value, cycle.period, share, str(why)))
             return FAILED
-        number = len(self.families)
-        self.families.append(CycleFamily(found, self.size))
+        new, number = CycleFamily(found, self.size), len(self.families)
+        known = self._known(new.period, *new.marked_start)  # starts next to a fold lie between no two of its points
+        if known is not None:
+            return known
+        self.families.append(new)
         self._descend(number)
         return number
 

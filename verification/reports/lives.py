@@ -21,7 +21,7 @@ from verification.cycles.cascade import FEIGENBAUM
 from verification.cycles.chords import Chords
 from verification.cycles.recurrence import BifurcationKind
 from verification.named.attractors import joined
-from verification.named.events import proof_of
+from verification.named.events import digits_to_follow, proof_of
 from verification.named.families import SETS, SURE, Continuation, FamilyEvent
 from verification.named.questions import PeriodicOrbit, Tick, follow
 from verification.plots.dynamics import plotted
@@ -46,7 +46,6 @@ Document = dict[str, Any]
 Made = tuple[list[Block], list[Effort], Document]
 MOST = 250  # points of a branch, each way
 LOCATED = 9  # digits of an event
-FOLLOWED = 32  # bounces, at most, that the independent checker follows all round, which takes digits for each of them
 CERTAIN = {BifurcationKind.BRANCH_POINT: 7}  # where branches cross the equations are singular
 VALUES, SHAPES = (50, 200, 400, 800), (10, 40, 80, 160)  # of the contraction, or of another letter, at each level
 DRAWN_ALONE = 6  # families that have a picture of their own
@@ -415,8 +414,7 @@ def located(asked: Asked, event: Event, name: str, branch: Branch) -> tuple[Show
     between = float(np.max(np.abs(np.diff(branch.values)), initial=0.0))  # two points, one of them on either side
     digits, step = CERTAIN.get(event.kind, LOCATED), 0.0 if event.located else between
     plain = solved(event.value, digits, step)
-    period = event.ring.period
-    more = 2 * period if 6 < period <= FOLLOWED else 0
+    more = digits_to_follow(event.ring.period)
     lam = None if asked.parameter == "lam" else S(asked.scene.lam)
     try:
         proof = proof_of(event, asked.digits + more, asked.parameter, lam)

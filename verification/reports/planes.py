@@ -12,7 +12,7 @@ from verification.cycles.branch import Branch
 from verification.named.events import EventCurve, Plane, curves_along
 from verification.named.questions import Tick, follow
 from verification.reports.asked import Asked
-from verification.reports.blocks import Block, Cell, Effort, Known, Listing, Paragraph, ShownNumber, solved
+from verification.reports.blocks import Block, Cell, Certificate, Effort, Known, Listing, Paragraph, ShownNumber, solved
 from verification.reports.lives import MOST, Document, Made, followed, orbit_of, start_of
 
 STEPS = Steps(largest=0.2, most=150)  # of a curve
@@ -95,6 +95,8 @@ def curve_blocks(asked: Asked, found: Sequence[Document]) -> list[Block]:
             f"{place.format(*curve['near'])}; {len(curve['points'])} points, each solved for in float64."
         )
         blocks.append(Listing(caption, ("what", letter, "lambda"), tuple(rows), curve["command"]))
+        for point, document in enumerate(curve["certificates"], 1):
+            blocks.append(Certificate(f"curve-{number}-{point}", document))
     if not found:
         blocks.append(
             Paragraph("No curve: the cycles that were followed met no fold, doubling or pitchfork on their way.")

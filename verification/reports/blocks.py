@@ -7,7 +7,7 @@ it is known: exactly, by a proof in balls, in float64, or from a sample with its
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import Enum
-from math import floor, log10
+from math import ceil, floor, isfinite, log10
 from typing import Any
 
 
@@ -46,6 +46,18 @@ def solved(value: float, digits: int, error: float = 0.0) -> ShownNumber:
     """
     unit = 10.0 ** (floor(log10(abs(value))) + 1 - digits) if value else 10.0**-digits
     return ShownNumber(f"{value:.{digits}g}", f"{max(unit / 2, error):.0e}", Known.FLOAT)
+
+
+def sampled(value: float, error: float, least: float = 5e-6) -> ShownNumber:
+    """A sampled number with one digit of its error, which counts as `least` if it is smaller, and no digit beyond.
+
+    >>> sampled(0.57198, 0.03).words, sampled(-0.285951, 5e-17).words
+    ('0.57 ± 3e-02', '-0.285951 ± 5e-06')
+    """
+    if not isfinite(error):
+        return ShownNumber(f"{value:.5g}", known=Known.SAMPLED)
+    error = float(f"{max(error, least):.0e}")
+    return ShownNumber(f"{value:.{max(0, ceil(-log10(error)))}f}", f"{error:.0e}", Known.SAMPLED)
 
 
 Cell = str | ShownNumber

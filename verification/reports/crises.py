@@ -27,7 +27,7 @@ from verification.proofs.manifolds.certificate import contact_of, contact_said
 from verification.proofs.manifolds.proof import LEAST_DIGITS
 from verification.proofs.manifolds.tangency import Touch
 from verification.reports.asked import Asked, Parts
-from verification.reports.blocks import Block, Certificate, Effort, Known, Listing, Paragraph, ShownNumber
+from verification.reports.blocks import Block, Certificate, Effort, Known, Listing, Paragraph, ShownNumber, sampled
 from verification.reports.dynamics import density
 from verification.reports.parted import near_changes, told_of
 
@@ -159,7 +159,7 @@ def _row(said: Document, proof: Document) -> tuple[Any, ...]:
         where = ShownNumber(f"{said['value']:.12f}", f"{said['error']:.0e}", Known.FLOAT)
         stretch = [ShownNumber(f"{x:.6g}", f"{SHOWN * abs(x):.0e}", Known.FLOAT) for x in said["multipliers"]]
         checks = f"open: {proof['open']}" if "open" in proof else "left for more time"
-    middle = ShownNumber(f"{(low + high) / 2:.4f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
+    middle = sampled((low + high) / 2, (high - low) / 2)
     return where, str(said["period"]), *stretch, str(said["contact"]["bounces"]), checks, middle
 
 

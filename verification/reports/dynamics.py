@@ -23,7 +23,7 @@ from verification.arithmetic.balls import decimal, working
 from verification.named.attractors import Member, certificate, exponents, joined
 from verification.reports import pictures
 from verification.reports.asked import DRAWN, Asked, Parts
-from verification.reports.blocks import Block, Effort, Known, Listing, Paragraph, Picture, ShownNumber, solved
+from verification.reports.blocks import Block, Effort, Known, Listing, Paragraph, Picture, ShownNumber, sampled, solved
 
 Found = tuple[list[Block], list[Effort], dict[str, Any]]
 POINTS = 1200  # on the graph of the slap map
@@ -34,7 +34,6 @@ FEW = 0.02  # share of cells met below which a portrait is drawn with larger poi
 CLOSE = 3, 0.35  # so many events in such a part of the interval get a picture of their own
 APART = 3e-3  # in parts of the table's size: marks of different cycles differ by more
 FLAT = 1e-4  # an exponent this near 0 may be 0
-ROUNDED = 5e-6  # error of an exponent that is shown with five decimals
 EXPONENT, SHOWN, BITS = 5, 8, 128  # digits of a cycle's exponents, in float64 and in balls, and the bits of these
 LISTED = 11  # contractions of a diagram whose exponents are listed
 
@@ -283,7 +282,7 @@ def diagram_blocks(
         (
             f"{value:.6g}",
             counted(round(share * said["orbits"]), said["orbits"]),
-            "every particle stops" if nu is None else ShownNumber(f"{nu:.5f}", f"{error:.1g}", Known.SAMPLED),
+            "every particle stops" if nu is None else sampled(nu, error),
         )
         for value, share, nu, error in said["rows"]
     )
@@ -377,8 +376,7 @@ def _known(scene: Scene, member: Member) -> Three:
     first = member.first
     if member.kind is not Kind.CYCLE:
         errors = zip((first.nu_plus, first.nu_minus), first.errors, strict=True)
-        sampled = [ShownNumber(f"{nu:.5f}", f"{max(error, ROUNDED):.0e}", Known.SAMPLED) for nu, error in errors]
-        plus, minus = (number if np.isfinite(float(number.value)) else "-" for number in sampled)
+        plus, minus = (sampled(nu, error) if np.isfinite(nu) else "-" for nu, error in errors)
         return plus, minus, ShownNumber("seen", known=Known.SAMPLED)
     plus, minus = (solved(nu, EXPONENT) if np.isfinite(nu) else "-" for nu in (first.nu_plus, first.nu_minus))
     try:

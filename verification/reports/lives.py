@@ -37,6 +37,7 @@ from verification.reports.blocks import (
     Paragraph,
     Picture,
     ShownNumber,
+    sampled,
     solved,
 )
 from verification.reports.dynamics import counted, wrapped
@@ -218,7 +219,7 @@ def chaos(asked: Asked, said: Document) -> Made:
         row = joined(find(map, SETS, asked.seed, images=True), SETS, value)
         for one in row.members:
             if one.kind is Kind.CHAOTIC:
-                nu = ShownNumber(f"{one.nu_plus:.4f}", f"{max(one.first.errors[0], 5e-5):.0e}", Known.SAMPLED)
+                nu = sampled(one.nu_plus, one.first.errors[0], 5e-5)
                 group = f"{one.symmetry}, {one.copies}"
                 doubt = one.first.doubt or "-"
                 rows.append((f"{value:.6g}", group, counted(one.share.count, SETS), nu, str(row.attractors), doubt))
@@ -379,8 +380,7 @@ def family_blocks(asked: Asked, said: Document) -> list[Block]:
 
 
 def _between(ends: Sequence[float]) -> ShownNumber:
-    middle, half = sum(ends) / 2, abs(ends[1] - ends[0]) / 2
-    return ShownNumber(f"{middle:.6g}", f"{half:.1g}", Known.SAMPLED)
+    return sampled(sum(ends) / 2, abs(ends[1] - ends[0]) / 2)
 
 
 def missing_blocks(asked: Asked, said: Document) -> list[Block]:
@@ -394,7 +394,8 @@ def missing_blocks(asked: Asked, said: Document) -> list[Block]:
         blocks.append(Paragraph(check["words"]))
     blocks.append(
         Paragraph(
-            f"The check used {total} starts at {asked.parameter} = {', '.join(f'{x:.4g}' for x in check['values'])}. "
+            f"The check used {total} starts, at the values {', '.join(f'{x:.4g}' for x in check['values'])} of "
+            f"{asked.parameter}. "
             f"At one value {said['starts']} starts miss what attracts a share of {SURE / said['starts']:.2g} with a "
             f"chance of 5 %; at k values they miss a share of {SURE / said['starts']:.2g}/k. "
             f"{said['small']} of {said['total']} starts ended on anything else than a family, a "

@@ -17,7 +17,7 @@ from numeric.dynamics.phase_points import PhasePoints
 from numeric.pinball.sampling import interior_starts
 from numeric.sweeps.sweep import measured
 from verification.reports.asked import Asked
-from verification.reports.blocks import Block, Cell, Known, Listing, Paragraph, ShownNumber
+from verification.reports.blocks import Block, Cell, Listing, Paragraph, sampled
 
 PARTICLES, TRANSIENT, BOUNCES, WATCHED = 64, 5_000, 1_000, 400
 NONE = (
@@ -73,10 +73,10 @@ def told_of(asked: Asked, rows: Sequence[Mapping[str, Any]]) -> Block:
     cells: list[tuple[Cell, ...]] = []
     for row in rows:
         low, high = row["between"]
-        where = ShownNumber(f"{(low + high) / 2:.5f}", f"{(high - low) / 2:.0e}", Known.SAMPLED)
+        where = sampled((low + high) / 2, (high - low) / 2)
         if row["angle"]:
             angle, error, count = row["angle"]
-            cells.append((where, str(count), ShownNumber(f"{angle:.3g}", f"{max(error, 1e-12):.0e}", Known.SAMPLED)))
+            cells.append((where, str(count), sampled(angle, error, 1e-12)))
         else:
             cells.append((where, "0", "chaos that ends: no attractor"))
     command = asked.command("bifurcation", f"--lams {asked.low}:{asked.high}:150")

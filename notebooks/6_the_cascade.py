@@ -7,13 +7,11 @@
 # +
 from itertools import pairwise
 
-from mpmath import nstr
-from sympy import Rational
+from mpmath import mp, mpf, nstr
 
-from verification.named.curves import accumulation
-from verification.named.locate import locate
+from numeric import bifurcation_diagram
+from verification import locate
 
-SHAPE = Rational(2, 25)
 # -
 
 # ## Certified doublings
@@ -22,38 +20,77 @@ SHAPE = Rational(2, 25)
 # doubling: a cycle in the box, unique, admissible, of minimal period, one simple multiplier $-1$, crossed with
 # non-zero speed, and a normal-form coefficient of known sign.
 
-doublings = {n: locate("doubling", 20, alpha=SHAPE, n=Rational(n)) for n in (3, 4, 5, 6)}
+doublings = {n: locate("doubling", 50, alpha="2/25", n=n) for n in range(3, 9)}
+doublings[3]
+
 printed = {3: "0.372", 4: "0.389", 5: "0.393", 6: "0.3935"}
 for n, each in doublings.items():
-    print(n, each.value, "certified" if each.certified else "not certified", "| printed", printed[n])
+    print(n, each.value[:22], "certified" if each.certified else "not certified", "| printed", printed.get(n, "-"))
 
-# $\lambda_3$ is 0.371 to three digits, not 0.372, and $\lambda_6$ is 0.3933, not 0.3935.
-#
-# Where random particles are after a long time, as a density, with the certified values as lines:
+# $\lambda_3$ is 0.371 to three digits, not 0.372, and $\lambda_6$ is 0.3933, not 0.3935. At each doubling a stable
+# cycle is born:
 
-# +
-import numpy as np
-from IPython.display import Image
+doublings[8].notes["kind"]
 
-from numeric.sweeps.fields import bifurcation
-from numeric.sweeps.run import run
-from numeric.sweeps.sweep import text_of
-from symbolic import Scene
-from verification.plots.results import Marked, drawn
+# Where random balls are after a long time, as a density; the red lines are the doublings:
 
-sweep = bifurcation(text_of(Scene("egg", alpha=SHAPE)), np.linspace(0.35, 0.4, 400), 20, 100, 2000, 4000, 1)
-lines = [Marked(float(each.value), f"doubling {n}") for n, each in doublings.items()]
-Image(drawn("grids.bifurcation", (run(sweep), lines), ".png"))
-# -
+diagram = bifurcation_diagram("egg", alpha="2/25", lam=("0.35", "0.4"), bounces=1000).plot()
+for each in doublings.values():
+    diagram.axes[0].axvline(float(each.value), color="red", linewidth=0.8)
+diagram
 
 # ## The end of the cascade
 #
-# Two extrapolations that share nothing but the doublings (iterated Aitken and Wynn's epsilon) give $\lambda_\infty$ and
-# Feigenbaum's $\delta$; their difference is the error estimate. These two are *estimated*, not certified.
+# The gaps between doublings shrink by a ratio that tends to Feigenbaum's $\delta$ [Feigenbaum1979]. Two extrapolations
+# of a sequence share nothing but its terms. Aitken's process removes one geometric term at a time, and is repeated:
 
-end = accumulation(SHAPE, 8)
-print("lambda_oo =", nstr(end.limit.value, 12), "+-", nstr(end.limit.error, 2))
-print("delta     =", nstr(end.ratio.value, 8), "+-", nstr(end.ratio.error, 2))
+
+# +
+def aitken(terms):
+    """The limit by Aitken's process, repeated while three terms remain."""
+    while len(terms) >= 3:
+        triples = zip(terms, terms[1:], terms[2:], strict=False)
+        terms = [z - (z - y) ** 2 / (z - 2 * y + x) for x, y, z in triples]
+    return terms[-1]
+
+
+# -
+
+# Wynn's epsilon algorithm builds a table, $\varepsilon_{k+1}^{(i)} = \varepsilon_{k-1}^{(i+1)} +
+# 1/(\varepsilon_k^{(i+1)} - \varepsilon_k^{(i)})$, whose even columns approach the limit:
+
+
+# +
+def wynn(terms):
+    """The limit by Wynn's epsilon algorithm: the last entry of the last even column."""
+    before, column, limit = [0] * (len(terms) + 1), terms, terms[-1]
+    for order in range(1, len(terms)):
+        steps = [y - x for x, y in pairwise(column)]
+        before, column = column, [before[i + 1] + 1 / step for i, step in enumerate(steps)]
+        limit = column[-1] if order % 2 == 0 else limit
+    return limit
+
+
+# -
+
+# The largest difference between extrapolations is the error estimate. The first line is $\delta$. For the second,
+# $\lambda_\infty$, Wynn's algorithm also runs on the sequence from which the term of ratio $1/\delta$ has been removed.
+# These two numbers are *estimated*, not certified.
+
+# +
+mp.dps = 60
+delta = mpf("4.669201609102990671853203820466")
+values = [mpf(each.value) for each in doublings.values()]
+gaps = [y - x for x, y in pairwise(values)]
+ratios = [x / y for x, y in pairwise(gaps)]
+ratio = wynn(ratios)
+ratio_error = max(abs(ratio - other) for other in (aitken(ratios), wynn(ratios[:-1])))
+print("delta     =", nstr(ratio, 8), "+-", nstr(ratio_error, 2))
+
+end = wynn(values)
+end_error = abs(end - wynn([(delta * y - x) / (delta - 1) for x, y in pairwise(values)]))
+print("lambda_oo =", nstr(end, 12), "+-", nstr(end_error, 2))
+# -
 
 # Work grows linearly with the period, because the chord system is cyclic and tridiagonal and is never written as a
 # dense matrix; the cascade goes on to period $2^{15}$.
@@ -62,10 +99,10 @@ print("delta     =", nstr(end.ratio.value, 8), "+-", nstr(end.ratio.error, 2))
 #
 # The first ratios of the gaps approach $\delta = 4.669201609\ldots$ [Feigenbaum1979].
 
-values = [float(doublings[n].value) for n in (3, 4, 5, 6)]
-gaps = [b - a for a, b in pairwise(values)]
-ratios = [a / b for a, b in pairwise(gaps)]
-print(ratios)
+print([nstr(x, 10) for x in ratios])
 assert all(each.certified for each in doublings.values())
-assert abs(ratios[-1] - 4.669201609) < 0.15
-assert abs(end.ratio.value - 4.669201609) < 3 * end.ratio.error < 1e-2
+assert all(each.notes["kind"].startswith("supercritical") for each in doublings.values())
+assert abs(ratios[1] - delta) < 0.15
+assert abs(ratio - delta) < 3 * ratio_error < 1e-2
+assert values[-1] < end < values[-1] + gaps[-1]
+assert end_error < 1e-7

@@ -200,7 +200,7 @@ def fixed_points() -> list[tuple[Expr, Expr]]:
     return [ends for ends, side in found if sum(ends) * side > 0]
 
 
-ABOVE = Rational(151, 100)  # between the least values of (T0**2)' on its two branches, 1.506... and 1.656...
+ABOVE = Rational(151, 100)  # between the least values of (T0**2)' on its two branches, 1.506... and 1.890...
 
 
 def zeros(expression: Expr) -> list[tuple[tuple[Expr, Expr], int]]:

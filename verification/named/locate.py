@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -103,16 +104,24 @@ class Located:
         except OSError as why:
             raise ValueError(f"certificate: {path} cannot be written ({why.strerror}); name another file") from None
 
+    @property
+    def said(self) -> str:
+        """`certified`, or which items of the checklist are not proved."""
+        left = ", ".join(f"{item.replace('_', ' ')} {WORDS[value]}" for item, value in self.checks.items() if not value)
+        return f"not certified: {left}" if left else "certified"
+
     def __str__(self) -> str:
-        return f"{self.title} = {self.value} +- {self.radius} ({'' if self.certified else 'not '}certified)"
+        return f"{self.title} = {self.value} +- {self.radius} ({self.said})"
 
     def __repr__(self) -> str:
         return f"Located({self})"
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{item}</td><td>{WORDS[value]}</td></tr>" for item, value in self.checks.items())
-        said = "certified" if self.certified else "not certified"
-        return f"<p>{self.title} = {self.value} &plusmn; {self.radius}, {said}</p><table>{rows}</table>"
+        from numeric.pinball.states import html_table
+
+        rows = [*((item, WORDS[value]) for item, value in self.checks.items()), *self.notes.items()]
+        table = html_table(("item", "result"), [(item.replace("_", " "), text) for item, text in rows])
+        return f"<p>{escape(str(self)).replace('+-', '&plusmn;')}</p>{table}"
 
 
 @dataclass(frozen=True)

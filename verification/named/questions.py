@@ -78,11 +78,24 @@ class PeriodicOrbit:
         """True if both multipliers lie inside the unit circle, in float64; always False where areas are preserved."""
         return self.stability.value == "stable"
 
+    def plot(self, axes: "Axes | None" = None) -> "Figure":
+        """A Matplotlib figure of the cycle in the table and in phase space; on given `axes` only in the table."""
+        from numeric import PinballMap
+
+        orbit = PinballMap(self.scene).orbit(self.theta[0], self.phi[0], self.period, self.components[0])
+        made: Figure = orbit.plot(axes)
+        return made
+
     def __repr__(self) -> str:
-        mu = ", ".join(f"{m.real:.5g}" if m.imag == 0 else f"{m:.5g}" for m in self.multipliers)
+        mu = ", ".join(short(m, 5) for m in self.multipliers)
         kind = self.stability.value
         side = "one-sided " if self.one_sided else ""
         return f"PeriodicOrbit(period {self.period}, {kind}, {side}multipliers {mu}, theta[0] = {self.theta[0]:.6g})"
+
+
+def short(multiplier: complex, digits: int) -> str:
+    """A multiplier as text, without the imaginary part where that is 0."""
+    return f"{multiplier.real if multiplier.imag == 0 else multiplier:.{digits}g}"
 
 
 class PeriodicOrbits(Sequence[PeriodicOrbit]):
@@ -132,7 +145,7 @@ class PeriodicOrbits(Sequence[PeriodicOrbit]):
         from numeric.pinball.states import html_table
 
         rows = [
-            (o.period, o.stability.value, *(f"{mu:.6g}" for mu in o.multipliers), f"{o.theta[0]:.9f}")
+            (o.period, o.stability.value, *(short(mu, 6) for mu in o.multipliers), f"{o.theta[0]:.9f}")
             for o in self.orbits[:SHOWN]
         ]
         more = f"<p>and {len(self) - SHOWN} more</p>" if len(self) > SHOWN else ""
@@ -224,7 +237,8 @@ class FollowedOrbit:
         return tuple(event for event in self.events if event.kind == kind)
 
     def __repr__(self) -> str:
-        ends = f"{min(self.branch.values):.6g} to {max(self.branch.values):.6g}"
+        met = [*self.branch.values, *(event.value for event in self.events)]  # a fold lies beyond all points
+        ends = f"{min(met):.6g} to {max(met):.6g}"
         events = ", ".join(f"{event.kind} at {event.value:.9g}" for event in self.events) or "no event"
         return f"FollowedOrbit(period {self.orbit.period}, {self.parameter} from {ends}: {events})"
 

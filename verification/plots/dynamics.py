@@ -185,28 +185,32 @@ def runs(branch: Branch, bounce: int) -> Iterator[tuple[list[float], list[float]
     """Pieces `(parameters, angles, stable)` of a branch, cut where the stability changes or the angle jumps by 2*pi."""
     values: list[float] = []
     angles: list[float] = []
-    for a, b in pairwise(branch.points):
-        stable = spectrum_of(b).stable
+    attracts = [spectrum_of(point).stable for point in branch.points]
+    for end, inner in ((0, 1), (-1, -2)):  # of areas that are preserved, as at lam = 1, the neighbour decides
+        if len(attracts) > 1 and np.max(np.abs(spectrum_of(branch.points[end]).multipliers)) < 1 + NEUTRAL:
+            attracts[end] = attracts[inner]
+    for (a, b), (before, stable) in zip(pairwise(branch.points), pairwise(attracts), strict=True):
         ends = [(float(p.z[-1]), float(_wrapped(p.z[bounce]))) for p in (a, b)]
         if not values:
             values, angles = [ends[0][0]], [ends[0][1]]
         if abs(ends[1][1] - ends[0][1]) > np.pi:
-            yield values, angles, spectrum_of(a).stable  # `b` may lie at lam = 1, between stable and unstable
+            yield values, angles, before
             values, angles = [], []
             continue
         values.append(ends[1][0])
         angles.append(ends[1][1])
-        if spectrum_of(a).stable != stable:
+        if before != stable:
             yield values[:-1], angles[:-1], not stable
             values, angles = [ends[0][0], ends[1][0]], [ends[0][1], ends[1][1]]
     if values:
-        yield values, angles, spectrum_of(branch.points[-1]).stable
+        yield values, angles, attracts[-1]
 
 
 def _wrapped(theta: float) -> float:
     return float(np.mod(theta + np.pi, 2 * np.pi) - np.pi)
 
 
+NEUTRAL = 1e-9  # by which rounding moves a multiplier off the unit circle
 POSITIVE = 0.02  # an exponent per bounce above this counts as chaotic
 POINTS = 10_000  # shapes are multiples of this part of their range, hence exact
 

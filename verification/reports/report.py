@@ -248,11 +248,6 @@ def plan(
 
     heard = within(1.0)
 
-    def seconds(name: str, kind: str) -> float:
-        """The expected time of a step of this kind, from that of its previous level."""
-        found = parts.read(name)
-        return FIRST.get(kind, 1.0) if found is None else GROWTH * float(found["seconds"])
-
     yield Step("scene", "scene", 0.0, partial(_scene, asked, parts))
     yield Step("slap", "slap", 0.0, partial(dynamics.slap, asked, parts))
     yield Step("portrait-0", "portrait", 0.0, partial(dynamics.portrait, asked, parts, 0))
@@ -281,11 +276,17 @@ def plan(
         finer += [("portrait", dynamics.portrait, ())] if level == 1 else []
         for kind, work, which in finer:
             name = "-".join([kind, *map(str, which)])
-            expected = seconds(f"{name}-{level - 1}", kind)
+            expected = _expected(parts, name, level, GROWTH, FIRST.get(kind, 1.0))
             section = "plane" if kind == "regions" else kind
             yield Step(f"{name}-{level}", section, expected, partial(work, asked, parts, *which, level))
         if level > 1:
             yield from _families(asked, parts, level, within)
+
+
+def _expected(parts: Parts, name: str, level: int, growth: float, first: float) -> float:
+    """The expected seconds of a level, from those of the last level that was made; `first` if there is none."""
+    before = ((level - i, parts.read(f"{name}-{i}")) for i in reversed(range(level)))
+    return next((float(found["seconds"]) * growth**steps for steps, found in before if found), first)
 
 
 def _answered(parts: Parts, name: str) -> bool:
@@ -328,8 +329,7 @@ def _families(asked: Asked, parts: Parts, level: int, within: Callable[[float], 
     """The steps that find the families and prove their events; each level samples more parameter values."""
 
     def work(name: str, section: str, made: Callable[..., Made]) -> Step:
-        before = parts.read(f"{name}-{level - 1}")
-        expected = float(before["seconds"]) if before else 0.0
+        expected = _expected(parts, name, level, 1.0, 0.0)  # at least: it goes on from the level before
         return Step(f"{name}-{level}", section, expected, lambda: made(asked, parts, level, within(SHARE)))
 
     yield work("families", "families", lives.families)

@@ -34,12 +34,12 @@ golden: $(VENV)/test.stamp
 
 # The pages, those of the docs too, in a headless Chromium, which must be on the path or named by CHROMIUM.
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp docs
-	$(BIN)/python -m pytest -q tests/browser
+	$(BIN)/python -m pytest -q -n $(JOBS) tests/browser
 
 # The certificates of the report, by the second reader: Python alone, nothing of this package. A few minutes. Then
 # whether each number that report and pages call certified has one.
 check-all:
-	@$(PYTHON) -I -S certificates/check.py certificates/*.json
+	@ls certificates/*.json | xargs -n 1 -P $$(getconf _NPROCESSORS_ONLN) $(PYTHON) -I -S certificates/check.py
 	@$(PYTHON) -S certificates/printed.py --prove
 
 # The theorems in Coq. Nothing is installed: where Coq is missing, one sentence says what is needed.

@@ -29,6 +29,7 @@ from sympy import (
     Symbol,
     conjugate,
     cos,
+    diff,
     elliptic_e,
     exp,
     expand,
@@ -257,15 +258,20 @@ def group(table: Table) -> tuple[Symmetry, ...]:
 def order_of_rotation(component: Component) -> int:
     """The number of rotations that map a closed component to itself: the gcd of the differences of its frequencies.
 
-    `z(theta + d) = exp(i*w)*z(theta)` means `k*d = w` modulo `2*pi` for every frequency `k` of `z = x + i*y`.
+    `z(theta + d) = exp(i*w)*z(theta)` means `k*d = w` modulo `2*pi` for every frequency `k` of `z = x + i*y`. A radius
+    that is no finite sum has at least the period of the sines and cosines of which it is a function.
 
-    >>> from symbolic.tables import egg
-    >>> order_of_rotation(egg(5).components[0])
-    5
+    >>> from symbolic.tables import egg, polar
+    >>> order_of_rotation(egg(5).components[0]), order_of_rotation(polar("exp(cos(2*theta)/8)").components[0])
+    (5, 2)
     """
     waves = boundary_coefficients(component)
     if waves is None:
-        return 1
+        rho = component.radius or theta
+        within = rho.atoms(sin, cos)
+        times = [diff(each.args[0], theta) for each in within]
+        alone = theta in rho.xreplace({each: Dummy() for each in within}).free_symbols
+        return 1 if alone or not all(k.is_Integer for k in times) else reduce(gcd, map(int, times), 0) or 1
     first = next(iter(waves))
     return reduce(gcd, (k - first for k in waves), 0) or CIRCLE
 

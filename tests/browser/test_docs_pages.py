@@ -10,6 +10,7 @@ from axe_playwright_python.sync_playwright import Axe
 
 BUILT = Path(__file__).parents[2] / "docs" / "_build"
 GENERATED = 6  # of the pages of the reference, the shortest
+SCHEMES = {"light": {}, "dark": {"runOnly": {"type": "rule", "values": ["color-contrast"]}}}  # only colours change
 PHONE, DESK = {"width": 390, "height": 844}, {"width": 1400, "height": 900}
 
 
@@ -40,3 +41,14 @@ def test_pages_of_the_docs_are_accessible_and_fit_their_window(chromium, size):
     page.close()
 
     assert wrong == {}
+
+
+@pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
+def test_the_kept_reports_fit_their_window(chromium, size):
+    page, wide = chromium.new_page(viewport=size), {}
+    for path in sorted((BUILT.parent / "reports").glob("*.html")):
+        page.goto(path.as_uri())
+        wide[path.name] = page.evaluate("document.documentElement.scrollWidth")
+    page.close()
+
+    assert set(wide.values()) == {size["width"]}

@@ -21,7 +21,7 @@ from symbolic.expressions.signs import nonnegative, positive, vanishes
 from symbolic.expressions.text import Kernel, checked, constant, kernel, load
 from symbolic.motion import collision
 from symbolic.tables import geometry, named
-from symbolic.tables.curves import size
+from symbolic.tables.curves import LONG, size
 from symbolic.tables.definition import POINTS, exact
 from symbolic.tables.scene import Scene, given_table
 from symbolic.tables.table import Component, Table, exact_number, theta
@@ -61,8 +61,15 @@ def curvature(table: Tabled | Component) -> Any:
     >>> from symbolic.tables.table import theta
     >>> curvature("cardioid").subs(theta, 0), curvature("cuspless")["wall"]
     (-3/4, 0)
+    >>> curvature("cardioid")
+    -3*sqrt(2)/(4*sqrt(cos(theta) + 1))
     """
-    return _each(table, geometry.curvature)
+
+    def derived(component: Component) -> Expr:
+        found = geometry.curvature(component)
+        return found if size(found) > LONG else min(found, found.factor(deep=True), key=lambda form: len(str(form)))
+
+    return _each(table, derived)
 
 
 def arc_length(table: Tabled | Component) -> Any:

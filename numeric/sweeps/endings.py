@@ -7,6 +7,7 @@ neutral. Where areas shrink slowly, a long chaotic transient may end on a cycle;
 after areas have shrunk by the factor `exp(-LASTING)`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,8 +59,13 @@ def endings(
     lam: float,
     starts: int,
     seed: int,
+    heard: Callable[[], None] = lambda: None,
+    stages: int = len(STAGES),
 ) -> list[Endings]:
     """Where `starts` random starts end, for each value of the parameter; `lam` is the contraction if it does not vary.
+
+    `heard` is called before each run of the particles, and may end the work with an exception. With fewer `stages`,
+    some chaotic and slow starts stay unsettled.
 
     >>> from symbolic import Scene
     >>> from numeric.sweeps.sweep import text_of
@@ -72,7 +78,7 @@ def endings(
     for first in range(0, len(values), each):
         some = np.asarray(values[first : first + each], dtype=float)
         for _, map, begun in spread_over(scene, parameter, some, lam, starts, seed + first):
-            kind, period, marks, gap, points = _of(map, begun.theta, begun.phi, begun.component)
+            kind, period, marks, gap, points = _of(map, begun.theta, begun.phi, begun.component, heard, stages)
             at = np.arange(kind.size).reshape(-1, starts)
             own = some if parameter == "lam" else some[len(found) - first :][:1]
             for value, rows in zip(own, at, strict=True):
@@ -82,7 +88,7 @@ def endings(
 
 
 def _of(
-    map: PinballMap, theta: Array, phi: Array, component: Labels
+    map: PinballMap, theta: Array, phi: Array, component: Labels, heard: Callable[[], None], stages: int
 ) -> tuple[Labels, Labels, Array, Array, PhasePoints]:
     """Kind, period, marks and gap of each particle, and its last phase point.
 
@@ -93,7 +99,8 @@ def _of(
     kind, period = np.full(size, UNSETTLED), np.zeros(size, dtype=np.int64)
     marks, gap, growth, area = np.zeros((size, MARKS)), np.full(size, np.inf), np.zeros(size), np.zeros(size)
     going, limit, before = np.arange(size), np.inf, 0
-    for transient, bounces in STAGES:
+    for transient, bounces in STAGES[:stages]:
+        heard()
         here = _at(map, going)
         end = here.exponents(points.theta[going], points.phi[going], bounces, transient, points.component[going])
         new = end.component, end.theta, end.phi, end.nu_plus, end.nu_plus + end.nu_minus

@@ -12,7 +12,7 @@ were not used.
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
 
@@ -24,7 +24,7 @@ from numeric import PinballMap
 from numeric.dynamics.attractors import with_images
 from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Attractor, Kind, polished
-from numeric.sweeps.endings import CHAOTIC, CYCLE, NEUTRAL, STOPPED, UNSETTLED, Endings, endings, marks_of
+from numeric.sweeps.endings import CHAOTIC, CYCLE, NEUTRAL, STAGES, STOPPED, UNSETTLED, Endings, endings, marks_of
 from numeric.sweeps.sweep import at_value, map_of, text_of
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
@@ -43,6 +43,7 @@ from verification.proofs.periodic.cycle_in_box import UniqueCycle
 
 VALUES, SHAPES, STARTS = 200, 40, 200  # each shape is a table of its own
 LEAST, OFTEN, LONG = 0.01, 3, 64  # a cycle longer than LONG needs this share of starts, or OFTEN in all
+SOON = 3  # runs of the starts if cycles of one period are asked for, not how long chaos lasts
 STEPS = Steps(first=0.002, most=250)  # along a branch, each way
 LONGEST = 128  # period of a cycle that a doubling leads to
 NEAREST = 3e-4  # of the interval: a cycle that attracts over less is not followed beyond its doubling
@@ -209,13 +210,14 @@ class Continuation:
 
     def endings(self, values: Array, starts: int, seed: int) -> list[Endings]:
         """For each of some parameter values, the attractors on which random starts end."""
-        return endings(text_of(self.scene), self.parameter, values, float(self.scene.lam), starts, seed)
+        told = partial(self.tick, f"{len(values)} values of {self.parameter}")
+        stages = len(STAGES) if self.only is None else SOON
+        return endings(text_of(self.scene), self.parameter, values, float(self.scene.lam), starts, seed, told, stages)
 
     def sample(self, values: Array, starts: int | None = None) -> None:
         """Samples random starts at the given values, and adds the attractors on which they end."""
         if not len(values):
             return
-        self.tick(f"{len(values)} values of {self.parameter}")
         new = self.endings(values, starts or self.starts, self.seed + len(self.seen))
         rows = sorted(
             zip([*self.seen, *new], [*self.labels, *map(self.labelled, new)], strict=True), key=lambda row: row[0].value

@@ -7,9 +7,10 @@ files.
 import base64
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib.resources import files
+from itertools import groupby
 
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
@@ -45,6 +46,7 @@ STEPS = {  # in words
     "chaos": "chaotic attractors told apart",
     "work": "error against run time",
 }
+FEW = 4  # certificates that are not folded
 FRAME = '<div class="{}" tabindex="0" role="group" aria-label="{}">{}</div>'  # can be scrolled by keyboard
 
 
@@ -52,7 +54,7 @@ def page(report: Report, parts: Parts) -> str:
     """The whole page as HTML. Two runs differ in computing times, and in how many steps they completed."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"remark": remark, "said": said, "further": further}
-    environment.filters["block"] = partial(shown, parts=parts)
+    environment.filters["together"] = partial(together, parts=parts)
     template = environment.from_string((files("verification.reports") / "page.html").read_text(encoding="utf-8"))
     asked = report.asked
     return template.render(
@@ -116,6 +118,17 @@ def shown(block: Block, parts: Parts) -> Markup:
     return _certificate(block)
 
 
+def together(blocks: Sequence[Block], parts: Parts) -> Markup:
+    """The blocks of a section as HTML; several certificates in a row are folded into one line."""
+    found = Markup("")
+    for certificates, row in groupby(blocks, lambda block: isinstance(block, Certificate)):
+        made = [shown(block, parts) for block in row]
+        inside = Markup("").join(made)
+        folded = Markup("<details><summary>{} certificates</summary>{}</details>").format(len(made), inside)
+        found += folded if certificates and len(made) > FEW else inside
+    return found
+
+
 def _command(text: str) -> Markup:
     return Markup('<p class="command"><code>{}</code></p>').format(text) if text else Markup("")
 
@@ -142,7 +155,8 @@ def _figure(block: Picture, parts: Parts) -> Markup:
     path = parts.picture(block.name)
     if not path.exists():
         return Markup("<p>{}</p>").format(f"The picture {block.name} is not among the parts.")
-    image = Markup('<img src="{}" alt="{}">').format(address("image/svg+xml", path.read_bytes()), block.alt)
+    drawn = Markup('<img src="{}" alt="{}">').format(address("image/svg+xml", path.read_bytes()), block.alt)
+    image = Markup(FRAME).format("picture", f"{block.alt}, picture", drawn)
     button = Markup('<button type="button" class="enlarge">enlarge</button>')
     caption = Markup("<figcaption>{}</figcaption>").format(remark(block.caption))
     return Markup('<figure id="figure-{}">{}</figure>').format(

@@ -54,7 +54,7 @@ def scan(scene, starts, seed):
     phi, found = np.arcsin(rng.uniform(-1, 1, starts)), Counter()
     for before in (300, 1500, 4000 + min(100_000, int(100 / (1 - float(scene.lam)))), 60_000):
         if theta.size:
-            end = map.exponents(theta, phi, min(1000, before), before, part)
+            end = map.exponents(theta, phi, min(10_000, before), before, part)  # errors of 1 over the bounces
             going = end.code == 0
             theta, phi, part, nu = end.theta[going], end.phi[going], end.component[going], end.nu_plus[going]
         if not theta.size:

@@ -19,8 +19,9 @@ verify: $(VENV)/main.stamp
 	@status=0; $(BIN)/pinball verify --report report --work benchmarks/records/work_precision.json || status=$$?; \
 	test $$status -le 1 && test -f report/report.json
 
-# File by file: what a file computes for several tests is computed once.
-PYTEST := $(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile
+# Each process begins with its own part of the files, so that what a file computes for several tests is computed once;
+# one that is done takes over tests of another.
+PYTEST := $(BIN)/python -m pytest -q -n $(JOBS) --dist worksteal
 
 test: lint
 	$(PYTEST) -m "not slow"

@@ -166,19 +166,23 @@ def plotted(kind: str, *results: Any, axes: Any = None) -> Any:
     return import_module("verification.plots.results").shown(kind, results, axes)
 
 
-class Labelled:
-    """The common part of all results: comparison, a one-line text, and conversion to xarray and pandas."""
-
-    axes: ClassVar[tuple[str, ...]]
+class ComparedByValues:
+    """Equality of results that hold arrays: all their values are equal."""
 
     def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and all(map(equal, self, other))  # type: ignore[call-overload]
+        return type(other) is type(self) and equal(self, other)
 
     def __ne__(self, other: object) -> bool:
         return not self == other
 
     def __hash__(self) -> int:
         raise TypeError(f"{type(self).__name__} holds arrays, which have no hash")
+
+
+class Labelled(ComparedByValues):
+    """The common part of all results: comparison, a one-line text, and conversion to xarray and pandas."""
+
+    axes: ClassVar[tuple[str, ...]]
 
     def _columns(self) -> dict[str, Any]:
         """The columns of a table of the result, by name."""

@@ -38,7 +38,7 @@ from verification.cycles.switching import switched
 from verification.cycles.systems import whole
 from verification.named.accounts import Check, Range, Unfollowed
 from verification.named.events import proof_of
-from verification.named.questions import PeriodicOrbit, Tick, ring_over
+from verification.named.questions import PeriodicOrbit, Tick, ring_over, unheard
 from verification.proofs.periodic.cycle_in_box import UniqueCycle
 
 VALUES, SHAPES, STARTS = 200, 40, 200  # each shape is a table of its own
@@ -82,7 +82,7 @@ class Continuation:
     seed: int = 1
     least: float = LEAST
     only: int | None = None
-    tick: Tick = lambda said: None
+    tick: Tick = unheard
     families: list[CycleFamily] = field(default_factory=list)
     seen: list[Endings] = field(default_factory=list)
     labels: list[NDArray[np.int64]] = field(default_factory=list)

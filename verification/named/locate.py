@@ -49,7 +49,7 @@ GMPY2 = mpmath.libmp.BACKEND == "gmpy"
 WORDS = {True: "proved", False: "refuted", None: "unknown"}  # the three answers of a checklist
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Located:
     """A value in decimals with its radius, and the checklist of its proof."""
 
@@ -109,6 +109,12 @@ class Located:
         """`certified`, or which items of the checklist are not proved."""
         left = ", ".join(f"{item.replace('_', ' ')} {WORDS[value]}" for item, value in self.checks.items() if not value)
         return f"not certified: {left}" if left else "certified"
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and {**self.to_dict(), "seconds": 0} == {**other.to_dict(), "seconds": 0}
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.value))
 
     def __str__(self) -> str:
         return f"{self.title} = {self.value} +- {self.radius} ({self.said})"

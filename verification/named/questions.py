@@ -18,6 +18,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
+from numeric.pinball.states import ComparedByValues
 from symbolic.tables.definition import exact
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene, as_scene
@@ -39,6 +40,10 @@ if TYPE_CHECKING:
 
 SHOWN = 12  # rows of a table in a notebook
 Tick = Callable[[str], None]
+
+
+def unheard(said: str) -> None:
+    """Does nothing: the default of `tick`."""
 
 
 @dataclass(frozen=True)
@@ -180,7 +185,7 @@ def find_cycles(
         raise ValueError(f"find_cycles: {longest!r} is no period; accepted: integers from 2")
     from sympy import S
 
-    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or (lambda said: None), scene.law)
+    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or unheard, scene.law)
     made = (_orbit(scene, cycle) for cycle in found.catalogue.cycles if period in (None, cycle.period))
     return PeriodicOrbits(made, found)
 
@@ -190,8 +195,8 @@ def _orbit(scene: Scene, cycle: "Found") -> PeriodicOrbit:
     return PeriodicOrbit(scene, cycle.components, cycle.theta, cycle.phi, (complex(one), complex(two)), cycle.one_sided)
 
 
-@dataclass(frozen=True)
-class FollowedOrbit:
+@dataclass(frozen=True, eq=False)
+class FollowedOrbit(ComparedByValues):
     """A branch of cycles in one parameter, with its events; properties such as `.folds` and `.flips` select some."""
 
     orbit: PeriodicOrbit
@@ -243,8 +248,8 @@ class FollowedOrbit:
         return f"FollowedOrbit(period {self.orbit.period}, {self.parameter} from {ends}: {events})"
 
 
-@dataclass(frozen=True, repr=False)
-class BranchEvent:
+@dataclass(frozen=True, eq=False, repr=False)
+class BranchEvent(ComparedByValues):
     """An event on a branch, at a parameter value in float64; `certify` gives more digits and a proof."""
 
     orbit: PeriodicOrbit

@@ -50,4 +50,7 @@ def checked(document: Mapping[str, Any]) -> Certified:
 
 def check(path: Path | str) -> Certified:
     """The theorem that a certificate file states, proved anew; `proved` says whether every item holds."""
-    return checked(read_document(Path(path)))
+    try:
+        return checked(read_document(Path(path)))
+    except ValueError as why:
+        raise ValueError(str(why) if str(path) in str(why) else f"{path}: {why}") from None

@@ -23,7 +23,7 @@ from verification.cycles.recurrence import BifurcationKind
 from verification.named.attractors import joined
 from verification.named.events import digits_to_follow, proof_of
 from verification.named.families import SETS, SURE, Continuation, FamilyEvent
-from verification.named.questions import PeriodicOrbit, Tick, follow
+from verification.named.questions import PeriodicOrbit, Tick, follow, unheard
 from verification.plots.dynamics import plotted
 from verification.plots.sheet import styled
 from verification.reports.asked import DRAWN, Asked, Parts
@@ -71,7 +71,7 @@ def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
         found, late = parts.memory["families"], True
         if not found.seen:
             raise
-    found.tick = lambda said: None  # the check is not ended
+    found.tick = unheard  # the check is not ended
     numbers = _shares(found)
     parts.keep(f"families-{level}", numbers | lines(asked, found))
     checked = found.check()

@@ -266,7 +266,7 @@ def check_command(files: tuple[str, ...], output: Output) -> int:
         try:
             document, lines = _checked(given)
         except ValueError as why:
-            raise ValueError(f"{file}: {why}" if len(files) > 1 else str(why)) from None
+            raise ValueError(f"{file}: {why}") from None
         documents.append(document)
         for line in lines:
             output.console.print(line)

@@ -11,8 +11,6 @@ import socket
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from difflib import get_close_matches
-from fnmatch import fnmatchcase
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -304,7 +302,8 @@ def chosen(only: Sequence[str], section: str | None, about: "Paper") -> "list[Cl
             labels = ", ".join(label(name) for name in about.sections if name in known)
             raise ValueError(f"--section {section!r} has no claim; accepted: {labels}")
         claims = [claim for claim in claims if claim.section in there]
-    wanted = {name for glob in only or ("*",) for name in matching(glob, [claim.id for claim in claims])}
+    ids = [claim.id for claim in claims]
+    wanted = {name for glob in only or ("*",) for name in report.matching(glob, ids, "--only")}
     return [claim for claim in claims if claim.id in wanted]
 
 
@@ -325,22 +324,6 @@ def label(name: str) -> str:
     ('6.3', 'Abstract', 'Of the square')
     """
     return name.split(" ")[0] if report.section_order(name) > (0,) else name
-
-
-def matching(only: str, ids: Sequence[str]) -> list[str]:
-    """The ids that match the glob `only`; `ValueError` with the most similar ids if none does.
-
-    >>> matching("egg.*", ["egg.mu", "ellipse.mu"])
-    ['egg.mu']
-    """
-    found = [each for each in ids if fnmatchcase(each, only)]
-    if not found:
-        if "," in only:
-            again = " ".join(f"--only {each.strip()!r}" for each in only.split(",") if each.strip())
-            raise ValueError(f"--only {only!r} is no name of a claim; accepted: one name at a time, as in {again}")
-        near = ", ".join(get_close_matches(only.strip("*"), ids, 3, 0))
-        raise ValueError(f"--only {only!r} matches no claim; the nearest are: {near}")
-    return found
 
 
 def prepared(folder: str) -> Path:

@@ -7,7 +7,7 @@
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -31,7 +31,7 @@ from verification.maps.exact import Bounce, ExactMap
 from verification.maps.laws import symbolic_derivative
 from verification.measure.work.cycles import cycle_question, here_alone, textbook_cycle, whole
 from verification.measure.work.exponents import grown, read_off
-from verification.measure.work.question import Claimed, Method, Question, Say, measured, silent
+from verification.measure.work.question import Answer, Claimed, Method, Question, Say, measured, silent
 from verification.measure.work.row import HEAD, MethodResult, facts, plain, table
 from verification.measure.work.sought import DIGITS, Sought, last, scripted, to_digits
 from verification.named.locate import proof_near
@@ -69,6 +69,10 @@ class WorkPrecision:
         made: Figure = plotted("verification.measure.work.figure.drawn", *results, axes=axes)
         return made
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled without the functions of the question, which are made where it is asked."""
+        return type(self), (replace(self.question, reference=not_kept, methods=()), self.rows, self.machine)
+
     def __str__(self) -> str:
         return f"{self.question.title}: error {self.question.unit}\n{plain(self.rows)}"
 
@@ -78,6 +82,11 @@ class WorkPrecision:
 
     def _repr_html_(self) -> str:
         return f"<p>{escape(self.question.title)}</p>{html_table(HEAD, table(self.rows))}"
+
+
+def not_kept(digits: int) -> Answer:
+    """The reference of a question that was pickled: `ValueError`."""
+    raise ValueError("a question that was pickled has no reference; ask it again with work_precision")
 
 
 def work_precision(

@@ -13,6 +13,7 @@ from collections import Counter, deque
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from functools import cache, partial
 from hashlib import sha256
@@ -85,10 +86,13 @@ def pictures(found: Paper) -> list[PaperFigure]:
 def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path = OWN) -> Iterator[Result]:
     """Judges the claims whose id matches the glob `only`, in the catalogue's order; only their judges are imported.
 
+    `ValueError` if there is no such claim.
+
     With more than one job the claims are judged in that many processes. `claims` is the folder of another paper, or the
     name of a paper of the package; the judges in a folder are executed.
     """
-    asked = [claim for claim in catalogue(claims) if fnmatchcase(claim.id, only)]
+    known = {claim.id: claim for claim in catalogue(claims)}
+    asked = [known[name] for name in matching(only, [*known])]
     found: dict[str, Result] = {}
     order = deque(claim.id for claim in asked)
     with closing(judged(asked, digits, jobs)) as results:
@@ -96,6 +100,22 @@ def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path 
             found[result.id] = result
             while order and order[0] in found:
                 yield found[order.popleft()]
+
+
+def matching(only: str, ids: Sequence[str], label: str = "only") -> list[str]:
+    """The ids that match the glob `only`; `ValueError` with the most similar ids if none does, about `label`.
+
+    >>> matching("egg.*", ["egg.mu", "ellipse.mu"])
+    ['egg.mu']
+    """
+    found = [each for each in ids if fnmatchcase(each, only)]
+    if not found:
+        if "," in only:
+            again = " ".join(f"{label} {each.strip()!r}" for each in only.split(",") if each.strip())
+            raise ValueError(f"{label} {only!r} is no name of a claim; accepted: one name at a time, as in {again}")
+        near = ", ".join(get_close_matches(only.strip("*"), ids, 3, 0))
+        raise ValueError(f"{label} {only!r} matches no claim; the nearest are: {near}")
+    return found
 
 
 class DrawnPicture(NamedTuple):

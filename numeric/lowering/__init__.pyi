@@ -3,7 +3,7 @@
 from . import cache
 from .cache import key_of, sources
 from .files import PARTIAL, json_text, replacing, write_whole
-from .lower import converted, exact_table, lower_law
+from .lower import converted, exact_table, lower_law, proved_throughout
 from .program import (
     BINARY,
     ROOTS,
@@ -38,6 +38,7 @@ __all__ = [
     "kept",
     "key_of",
     "lower_law",
+    "proved_throughout",
     "replacing",
     "sources",
     "symmetries",

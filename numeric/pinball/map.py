@@ -30,7 +30,7 @@ from numeric.pinball.states import (
     shape_value,
 )
 from numeric.pinball.unit import ONE, unit_of
-from symbolic.tables.scene import GALLERY, Law, Scene, given_table
+from symbolic.tables.scene import GALLERY, Law, Scene, given_table, no_parameter
 
 if TYPE_CHECKING:
     from numeric.pinball.coordinates import ArcLength
@@ -414,8 +414,7 @@ class PinballMap:
         ranges = {entry.name: entry for entry in self.ir.shape}
         for key in given:
             if key not in ranges:
-                accepted = ", ".join(ranges) or "none"
-                raise ValueError(f"{name}: no shape parameter {key}; it has: {accepted}")
+                raise no_parameter(name, key, ranges)
         values: list[Fraction | float] = []
         for key, entry in ranges.items():
             if key not in given:

@@ -43,6 +43,12 @@ WORD = re.compile(r"[A-Za-z][A-Za-z0-9_ -]{0,59}", re.ASCII)
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
+KEYWORDS = (  # of functions that take the numbers of a shape as further keywords
+    "orbits", "bounces", "transient", "columns", "rows", "points", "values", "starts", "period", "up_to", "digits",
+    "searches", "seed", "lam", "law",
+)  # fmt: skip
+
+
 def like(name: str, known: Iterable[str]) -> str:
     """Text such as `; did you mean stadium?` for the most similar known name; empty where none is similar.
 
@@ -52,6 +58,12 @@ def like(name: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches  # 1 ms, for a mistake only
 
     return "".join(f"; did you mean {each}?" for each in get_close_matches(name, list(known), 1))
+
+
+def no_parameter(table: str, name: str, known: Iterable[str]) -> ValueError:
+    """The error for a keyword that is no shape parameter of a table; it names a similar keyword of our functions."""
+    accepted = ", ".join(known) or "none"
+    return ValueError(f"{table}: no shape parameter {name}; it has: {accepted}{like(name, KEYWORDS)}")
 
 
 def exact(label: str, given: Any) -> "Fraction | Expr":

@@ -39,6 +39,7 @@ from symbolic.tables.definition import (
 )
 from symbolic.tables.definition import GALLERY as GALLERY
 from symbolic.tables.definition import exact_text as exact_text
+from symbolic.tables.definition import no_parameter as no_parameter
 from symbolic.tables.law import Law as Law
 from symbolic.tables.law import parameters_of_law
 
@@ -99,7 +100,7 @@ class Scene:
         shape = {**dict(law.numbers), **shape}
         for parameter in shape:
             if parameter not in parameters:
-                raise ValueError(f"{name}: no shape parameter {parameter}; it has: {', '.join(parameters) or 'none'}")
+                raise no_parameter(name, parameter, parameters)
         for parameter in parameters:
             if parameter not in shape:
                 raise ValueError(
@@ -211,8 +212,7 @@ class Scene:
         Interval(0, 1/30)
         """
         if parameter not in self.shape:
-            accepted = ", ".join(self.shape) or "none"
-            raise ValueError(f"{self.name}: no shape parameter {parameter}; it has: {accepted}")
+            raise no_parameter(self.name, parameter, self.shape)
         ends = [exact(parameter, end) for end in (low, high)]
         values = {parameter: value_text(text) for parameter, text in self.document["shape"].items()}
         return _family(self._with({name: values[name] for name in self.shape} | {parameter: "{}..{}".format(*ends)}))

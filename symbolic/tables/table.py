@@ -13,6 +13,7 @@ from sympy import Expr, Float, Interval, Rational, S, Symbol, cos, pi, sin
 from sympy import sympify as exact  # converts Python numbers; never called on text
 
 from symbolic.expressions.signs import interval_text
+from symbolic.tables.definition import no_parameter
 
 
 class Letter(Symbol):  # type: ignore[misc]  # SymPy has no types
@@ -156,8 +157,7 @@ class Table:
         values: dict[Symbol, Expr] = {}
         for name, given in shape.items():
             if name not in known:
-                accepted = ", ".join(sorted(known)) or "none"
-                raise ValueError(f"{self.name}: no shape parameter {name}; it has: {accepted}")
+                raise no_parameter(self.name, name, sorted(known))
             value = exact_number(f"{self.name}: {name}", given)
             if value.has(theta):
                 raise ValueError(f"{self.name}: {name} = {value} changes along the boundary; a shape is one number")

@@ -14,7 +14,7 @@ from .curves import (
     invariant_circle,
     largest_shape,
 )
-from .events import EventCurve, Plane, curve_of, curves_along, proof_of
+from .events import EventCurve, Plane, curve_of, curves_along, digits_to_follow, proof_of
 from .families import SETS, SURE, Continuation, FamilyEvent
 from .locate import GMPY2, NAMES, WORDS, Located, lambda_star, proof_near
 from .questions import (
@@ -29,6 +29,7 @@ from .questions import (
     law_over,
     morse_graph,
     trapping_region,
+    unheard,
 )
 from .tangencies import LEAST, SAME, near, objection_of
 from .theorems import check, checked
@@ -71,6 +72,7 @@ __all__ = [
     "crises",
     "curve_of",
     "curves_along",
+    "digits_to_follow",
     "exponents",
     "find_cycles",
     "fold",
@@ -88,4 +90,5 @@ __all__ = [
     "stay",
     "tangencies",
     "trapping_region",
+    "unheard",
 ]

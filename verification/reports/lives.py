@@ -14,6 +14,7 @@ from numeric.dynamics.phase_points import PhasePoints
 from numeric.dynamics.recognition import Kind, wilson
 from numeric.dynamics.symmetries import moved, symmetries_of
 from numeric.sweeps.endings import CHAOTIC, NEUTRAL, STOPPED
+from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal
 from verification.cycles.branch import Branch, Event
@@ -45,6 +46,7 @@ from verification.reports.pictures import saved
 
 Document = dict[str, Any]
 Made = tuple[list[Block], list[Effort], Document]
+SLOW, FEWER = "general", 40  # the flight by which a bounce takes ten times as long, and the starts at a value then
 MOST = 250  # points of a branch, each way
 LOCATED = 9  # digits of an event
 CERTAIN = {BifurcationKind.BRANCH_POINT: 7}  # where branches cross the equations are singular
@@ -58,6 +60,8 @@ def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continu
     found: Continuation = parts.memory.get("families") or Continuation(
         asked.scene, asked.parameter, (asked.low, asked.high), seed=asked.seed
     )
+    if not found.seen and found.map_at(asked.own_value).family.name == SLOW:
+        found.starts = FEWER
     parts.memory["families"], found.tick = found, heard
     found.run((VALUES if asked.parameter == "lam" else SHAPES)[level])
     return found
@@ -386,7 +390,18 @@ def _between(ends: Sequence[float]) -> ShownNumber:
     return sampled(sum(ends) / 2, abs(ends[1] - ends[0]) / 2)
 
 
-def missing_blocks(asked: Asked, said: Document) -> list[Block]:
+def on_no_family(asked: Asked, said: Document, attractors: Sequence[Document]) -> list[str]:
+    """The attracting cycles in the section on basins that no family has, in words; few starts may reach them."""
+    found = []
+    for one in attractors if asked.parameter == "lam" else ():
+        at = float(exact("lam", one["lam"]))
+        ranges = [r for each in said["families"] if each["period"] == one["period"] for r in each["attracts"]]
+        if one["kind"] == "cycle" and not any(low <= at <= high for low, high in ranges):
+            found.append(f"period {one['period']} at lam = {one['lam']}")
+    return found
+
+
+def missing_blocks(asked: Asked, said: Document, attractors: Sequence[Document] = ()) -> list[Block]:
     """The blocks on what may be missing: the check, cycles that could not be followed, and too small basins."""
     check = said["check"]
     total = len(check["values"]) * check["starts"]
@@ -395,6 +410,9 @@ def missing_blocks(asked: Asked, said: Document) -> list[Block]:
         blocks.append(Paragraph(f"SHORTFALL. {check['words']}"))
     else:
         blocks.append(Paragraph(check["words"]))
+    if apart := on_no_family(asked, said, attractors):
+        words = f"SHORTFALL. Attractors in the section on basins that are on no family: {'; '.join(apart)}."
+        blocks.append(Paragraph(words))
     blocks.append(
         Paragraph(
             f"The check used {total} starts, at the values {', '.join(f'{x:.4g}' for x in check['values'])} of "

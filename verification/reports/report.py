@@ -377,6 +377,14 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
     touching = tangencies.told(asked, best) if "crises" in best else tangencies.NOTHING
     seen, proved = _best(parts, "families"), _best(parts, "proofs").get("proofs", {})
     blocks: dict[str, list[Block]] = {name: [] for name in TITLES}
+    located, attractors, exponents = (
+        _once([row for found in best.values() for row in found["data"].get(name, [])] + more)
+        for name, more in (
+            ("located", [*(lives.events_of(seen, proved) if seen else []), *touching.events]),
+            ("attractors", []),
+            ("exponents", []),
+        )
+    )
     curves = [curve for found in best.values() for curve in found["data"].get("curves", [])]
     marks = [(float(value), words, 1.0) for value, words in touching.lines]
     for event in seen.get("events", []):
@@ -385,7 +393,7 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
     if seen:
         blocks["events"] += lives.event_blocks(seen, proved, touching.blocks)
         blocks["families"] += lives.family_blocks(asked, seen)
-        blocks["missing"] += lives.missing_blocks(asked, seen)
+        blocks["missing"] += lives.missing_blocks(asked, seen, attractors)
     for name, found in best.items():
         if found["data"] == UNANSWERED:
             blocks[found["name"]] += Section.read(found).blocks
@@ -407,14 +415,6 @@ def composed(asked: Asked, parts: Parts, left: tuple[str, ...]) -> Report:
         sections = [each for each in sections if each.name != "cost"]
         sections.append(Section("cost", TITLES["cost"], (*blocks["cost"], costs(efforts)), efforts))
     seconds = sum(float(found["seconds"]) for found in made.values())
-    located, attractors, exponents = (
-        _once([row for found in best.values() for row in found["data"].get(name, [])] + more)
-        for name, more in (
-            ("located", [*(lives.events_of(seen, proved) if seen else []), *touching.events]),
-            ("attractors", []),
-            ("exponents", []),
-        )
-    )
     told = {name for name in TITLES if blocks[name]} | {"cost", *(() if asked.second else ("plane",))}
     keys = "period", "symmetry", "copies", "low", "high", "attracts"
     branches = tuple({key: one[key] for key in keys} for one in seen.get("families", []))

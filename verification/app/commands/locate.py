@@ -137,7 +137,7 @@ def of_scene(
             found = bifurcations(scene, name, tick=step, **asked)
         else:
             found = _tangencies(scene, parameter, asked | {"tick": step})
-    if certificate is not None:
+    if certificate is not None and found:
         if len(found) != 1:
             raise ValueError(
                 f"--certificate holds one value, and {len(found)} were found; accepted: a smaller interval"

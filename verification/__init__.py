@@ -19,6 +19,7 @@ Pages
     verify            is each claim of the paper true?
     report            everything about one's own scene on one page
     work_precision    error against run time of a question on one's own scene
+    judging           a module: what the judges of a paper of one's own import
 
 Arithmetics and tests
     ExactMap          the map in mpmath, to N digits

@@ -1,3 +1,4 @@
+from . import judging
 from .maps import laws, strategies
 from .maps.enclosed import EnclosedMap
 from .maps.exact import ExactMap
@@ -33,6 +34,7 @@ __all__ = [
     "check",
     "find_cycles",
     "follow",
+    "judging",
     "laws",
     "locate",
     "morse_graph",

@@ -134,7 +134,11 @@ def derivative_matrix(table: Tabled | None = None, *components: int, **values: E
     values = {name: exact_number(name, value) for name, value in values.items()}
     if table is None:
         return collision.derivative_matrix(**values)
-    parts, (here, there) = table_of(table).components, components or (0, 0)
+    parts = table_of(table).components
+    if len(components) not in (0, 2) or any(index not in range(len(parts)) for index in components):
+        last = len(parts) - 1
+        raise ValueError(f"derivative_matrix: components {components}; accepted: two indices from 0 to {last}, or none")
+    here, there = components or (0, 0)
     ends = [(parts[index], parameter) for index, parameter in ((here, theta0), (there, theta1))]
     points, tangents = (
         [

@@ -77,9 +77,9 @@ def bifurcations(
         raise ValueError("bifurcations: no parameter given; one parameter varies, as in lam=(0, 1)")
     varied = {name: ends for name, ends in interval.items() if isinstance(ends, tuple | list)} or interval
     if kind is not None and kind not in KINDS:
-        raise ValueError(f"locate: {kind} is not asked of a scene; accepted: {', '.join(KINDS)}")
+        raise ValueError(f"bifurcations: {kind} is no kind of event; accepted: {', '.join(KINDS)}")
     if len(varied) != 1:
-        raise ValueError(f"locate: {', '.join(varied) or 'no parameter'} given; one parameter varies")
+        raise ValueError(f"bifurcations: {', '.join(varied) or 'no parameter'} given; one parameter varies")
     ((parameter, ends),) = varied.items()
     scene = as_scene(table, **{name: own for name, own in interval.items() if name != parameter})
     ends_of(parameter, ends)

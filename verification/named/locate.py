@@ -159,7 +159,8 @@ def locate(name: str, digits: int = 30, law: Law | str = PAPERS_LAW, **shape: An
     search, parameters = NAMES[name]
     shape = dict(USUAL.get(name, {})) | shape
     if set(shape) != set(parameters):
-        raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(parameters)}")
+        other = "; a table of your own: bifurcations(table, 'saddle-node', period=3, ...)" * ("table" in shape)
+        raise ValueError(f"locate {name}: given {_listed(shape)}; it takes {_listed(parameters)}{other}")
     shape = {letter: S(exact(f"locate {name}: {letter}", value)) for letter, value in shape.items()}
     for letter in {"n", "period"} & {*shape}:
         if not shape[letter].is_Integer:

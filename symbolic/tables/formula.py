@@ -67,6 +67,9 @@ FUNCTIONS: Mapping[str, Callable[[Expr], Expr]] = {
 }
 
 
+GREEK = {"\u03b8": "theta", "\u03bb": "lam", "\u03c0": "pi", "\u03b7": "eta", "\u03c6": "phi", "\u03b1": "alpha"}
+
+
 def parse(text: str, names: Mapping[str, Symbol] = NAMES) -> Expr:
     """The exact expression of `text`; `names` maps the allowed letters to symbols. `ValueError` for any other text.
 
@@ -125,7 +128,9 @@ class _Reader:
         while place < len(text):
             match = TOKEN.match(text, place)
             if match is None:
-                raise _error(text[place], place, "is no part of a formula", self._accepted())
+                word = GREEK.get(text[place])
+                why = f"is no part of a formula; write {word}" if word else "is no part of a formula"
+                raise _error(text[place], place, why, self._accepted())
             if match.lastgroup:
                 found.append(_Token(match.lastgroup, match.group(), place))
             place = match.end()

@@ -421,4 +421,4 @@ def _text(option: str, path: str, encoding: str = "utf-8-sig") -> str:
             raise ValueError(f"{option} {path!r} is larger than {LARGEST >> 20} MB; accepted: smaller files")
         return content.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
     except (OSError, UnicodeDecodeError) as reason:
-        raise ValueError(f"{option} {path!r} cannot be read: {reason}") from None
+        raise ValueError(f"{option} {path!r} cannot be read: {getattr(reason, 'strerror', None) or reason}") from None

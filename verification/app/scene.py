@@ -195,7 +195,7 @@ def _from_file(
     try:
         found = Scene.load(file)
     except (OSError, UnicodeDecodeError) as reason:
-        raise ValueError(f"--scene {file!r} cannot be read: {reason}") from None
+        raise ValueError(f"--scene {file!r} cannot be read: {getattr(reason, 'strerror', None) or reason}") from None
     numbers = {name: parameter_text(f"--shape {name}", text) for name, text in values.items()}
     law = None if formula is None else _law(formula)
     return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)

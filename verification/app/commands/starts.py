@@ -94,7 +94,7 @@ def of_file(map: "PinballMap", path: Path) -> list[Start]:
         with path.open(encoding="utf-8-sig", newline="") as lines:
             rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
     except (OSError, UnicodeDecodeError, csv.Error) as reason:
-        raise ValueError(f"--starts {path} cannot be read: {reason}") from None
+        raise ValueError(f"--starts {path} cannot be read: {getattr(reason, 'strerror', None) or reason}") from None
     header = ",".join(word.strip() for word in rows[0]) if rows else ""
     if header not in FILES:
         raise ValueError(f"--starts {path}: the first line is {header[:60]!r}; accepted: {', or '.join(FILES)}")

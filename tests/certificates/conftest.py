@@ -2,12 +2,10 @@
 
 import importlib.util
 import sys
-from pathlib import Path
 from types import ModuleType
 
 import pytest
-
-FOLDER = Path(__file__).parents[2] / "certificates"
+from committed import FOLDER
 
 
 def loaded(name: str) -> ModuleType:

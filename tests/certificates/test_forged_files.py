@@ -4,28 +4,9 @@ import copy
 import json
 
 import pytest
-from committed import document
+from committed import document, told
 
 from verification.app.cli import main
-
-COUNTS = {
-    "cycle": "exactly one cycle has its {n} bounces in the box.",
-    "flip": "exactly one cycle with its {n} bounces and {free} in the box has the multiplier -1: a flip.",
-}
-
-
-def told(given: dict) -> dict:
-    """The document with the name and the statement that its other entries require: docs/certificate_format.md."""
-    scene, free, n = given["scene"], given["free"], len(given["components"])
-    title = scene.get("table") or (f"polar {scene['polar']}" if "polar" in scene else None)
-    title = title or (f"parametric {'; '.join(scene['parametric'])}" if "parametric" in scene else None)
-    title = title or f"boundary of {len(scene['component'])} pieces"
-    said = [("phi", scene.get("law")), *scene.get("shape", {}).items(), ("lam", scene.get("lam"))]
-    title += "".join(f", {key} = {text}" for key, text in said if text and ".." not in text)
-    kind = "a cycle" if given["kind"] == "cycle" else f"{given['kind']} of a cycle"
-    given["name"] = f"{kind} of period {n}{f' in {free}' if free else ''}: {title}"
-    given["statement"] = f"{title}: {COUNTS[given['kind']].format(n=n, free=free)}"
-    return given
 
 
 def scened(name: str, scene: dict, **entries: object) -> str:

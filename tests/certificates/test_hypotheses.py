@@ -1,6 +1,5 @@
 """Each hypothesis of the theorems that the independent checker uses: where it fails, nothing is proved."""
 
-import json
 import random
 from fractions import Fraction
 from types import SimpleNamespace
@@ -52,10 +51,8 @@ def test_a_normal_form_has_one_critical_multiplier_and_a_coefficient_that_is_not
 def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, zero, unknown, holds):
     """The system `x - zero`, in one of three unknowns, over [-1, 1]: a zero at an end, or beyond, is not proved."""
     box = [check.I.of(-1, 60).hull(check.I.of(1, 60))] * 3
-    asked = []
 
     def line(x, d):
-        asked.append((d, *{v.width() >> 60 for v in x}))
         return [check.Jet.of(v, d, k) - Fraction(zero) * (k == unknown) for k, v in enumerate(x)]
 
     if holds:
@@ -63,7 +60,6 @@ def test_interval_newton_proves_a_zero_in_the_interior_of_the_box_alone(check, z
     else:
         with pytest.raises(check.Unproved, match="exists, unique"):
             check.newton(line, box, 60)
-    assert asked == [(1, 2), (0, 0)]  # slopes over the box, values at its middle
 
 
 @pytest.mark.parametrize(
@@ -86,12 +82,6 @@ def test_a_fold_names_what_varies(check):
     for free in ("", 3, ["lam"], None):
         with pytest.raises(check.Wrong, match=r"free, radius or centre is out of range|free must be of type string"):
             check.checked(given | {"free": free})
-
-
-def test_the_status_of_the_second_reader_is_1_where_anything_is_not_proved(check, tmp_path, capsys):
-    assert check.main([]) == 1
-    assert check.main([str(tmp_path / "none.json")]) == 1
-    assert "refused" in capsys.readouterr().out
 
 
 def test_interval_newton_encloses_the_zero_of_any_three_equations_that_are_independent(check):
@@ -219,17 +209,6 @@ def test_the_corner_orbit_is_one_of_the_cuspless_cardioid_and_closed_by_its_mirr
         check.checked(given | change)
 
 
-@pytest.mark.parametrize("given", [[], None, "kind", 3, {}, {"kind": "cycle"}, {"kind": ["cycle"]}])
-def test_what_is_no_document_is_refused_and_not_read_on(check, given, tmp_path, capsys):
-    file = tmp_path / "some.json"
-    file.write_text(json.dumps(given))
-    assert check.main([str(file)]) == 1
-    assert "refused: " in capsys.readouterr().out
-    if given != {"kind": ["cycle"]}:
-        with pytest.raises(check.Wrong):
-            check.checked(given)
-
-
 TURNS = ["1/3", "1/3+2", "1/3+4"]
 
 
@@ -265,16 +244,3 @@ def test_a_value_has_its_name_by_symmetry_and_any_other_by_what_is_stated(check,
         found = check.named(what[0], sign, [0] * len(at), at, boxes, scene, what[1], "title", p)
         assert found == (wanted or found)
         assert wanted is not None or found.endswith("title")
-
-
-@pytest.mark.parametrize("which", [1, 2])
-def test_a_cycle_is_proved_only_where_each_of_its_bounces_is_in_the_box(check, which):
-    """One bounce of the only cycle lies four radii away from its place in the file."""
-    given = document("egg-triangle")
-    (m, e), (r, s) = given["centre"][which], given["radius"]
-    assert check.checked(given)
-    given["centre"][which] = [str(int(m) * 2 ** max(0, int(e) - int(s)) + 4 * int(r) * 2 ** max(0, int(s) - int(e))),
-                              str(min(int(e), int(s)))]  # fmt: skip
-
-    with pytest.raises(check.Unproved, match="outside the box"):
-        check.checked(given)

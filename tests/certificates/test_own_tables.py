@@ -6,11 +6,6 @@ from fractions import Fraction
 import pytest
 from committed import document, verdict
 
-OWN = (
-    *("law-in-all-words", "radius-in-words", "free-parameter", "marked-point", "own-mirror"),
-    *("spline", "scatterer", "moved-waves", "law-parameter"),
-)
-
 
 def replaced(given: dict, **scene: object) -> dict:
     return copy.deepcopy(given) | {"scene": given["scene"] | scene}
@@ -18,11 +13,6 @@ def replaced(given: dict, **scene: object) -> dict:
 
 def marked(theta: str, component: int = 0) -> dict:
     return {"undefined": [{"name": "m", "component": component, "theta": theta}]}
-
-
-@pytest.mark.parametrize("name", OWN)
-def test_what_the_package_proves_of_such_a_table_the_second_reader_proves(check, name):
-    assert verdict(check, document(name)).startswith("proved: ")
 
 
 @pytest.mark.parametrize(

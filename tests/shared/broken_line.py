@@ -1,4 +1,7 @@
-"""Maps `(x, y) -> (f(x) + y, b*x)` with a piecewise linear `f` and one chart per piece, such as Lozi maps."""
+"""Maps `(x, y) -> (f(x) + y, b*x)` with a piecewise linear `f` and one chart per piece, such as Lozi maps.
+
+And statements on their attractors, and three charts that may be joined round.
+"""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -7,7 +10,12 @@ import numpy as np
 
 from verification.arithmetic.arrays import BallArray
 from verification.proofs.global_dynamics.flights import LandingArcs, Slopes
+from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractors
 from verification.rigorous.boxes import Boxes, Chart, Images, Indices, centred, collected
+
+CHARTS = tuple(
+    Chart(name, ends, (-1.0, 1.0)) for name, ends in (("a", (-1.0, 0.0)), ("b", (3.0, 5.0)), ("c", (0.0, 1.0)))
+)
 
 
 @dataclass(frozen=True)
@@ -79,3 +87,20 @@ class BrokenLine:
 def lozi(a: float, b: float) -> BrokenLine:
     """Lozi's map `(x, y) -> (1 - a*abs(x) + y, b*x)`, for `abs(x) <= 2`."""
     return BrokenLine(((-2.0, 1 - 2 * a), (0.0, 1.0), (2.0, 1 - 2 * a)), b, 2.0 * abs(b))
+
+
+def at(chart, x, y) -> Boxes:
+    """Points as boxes of width 0."""
+    return Boxes(np.array(chart), (np.array(x),) * 2, (np.array(y),) * 2)
+
+
+def about_the_fixed_point(a: float, b: float) -> NoTwoAttractors:
+    """The statement for a Lozi map and the region grown from its right fixed point."""
+    x = 1 / (1 + a - b)
+    return NoTwoAttractors(lozi(a, b), 512, 512, at([1], [x], [b * x]), (1, x, b * x), 1, 0.1)
+
+
+class Unfolded(BrokenLine):
+    """A map that says of no join where it folds."""
+
+    joins = ()

@@ -2,18 +2,6 @@
 
 from fractions import Fraction
 
-import numpy as np
-
-
-def integers(*values):
-    """An array of indices."""
-    return np.array(values, dtype=np.int64)
-
-
-def floats(*values):
-    """An array of float64."""
-    return np.array(values, dtype=float)
-
 
 def number(check, x, p=100):
     """A number of the independent checker: an interval at most one unit wide in the last of `p` places."""

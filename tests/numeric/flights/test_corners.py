@@ -27,13 +27,35 @@ SCENES = [(name, size) for name in ["square", "sinai", "reuleaux", "diamond", "n
 SCENES += [(name, "1") for name in ["stadium", "semi_ellipse", "mushroom", "unequal", "away"]]
 
 
+def hundred():
+    """A convex polygon of a hundred sides, with rational corners."""
+    turn = 2 * np.pi * np.arange(101) / 100
+    at = [[Rational(round(f(part) * 10**6), 10**6) for f in (np.cos, np.sin)] for part in turn]
+    sides = [tables.arc(f"{i}", x + theta * (X - x), y + theta * (Y - y), 0, 1) for i, ((x, y), (X, Y)) in
+             enumerate(pairwise(at))]  # fmt: skip
+    return tables.Table("hundred", tuple(sides))
+
+
+OWN = {
+    "notched": lambda: NOTCHED,
+    "unequal": lambda: UNEQUAL,
+    "away": lambda: AWAY,
+    "100 sides": hundred,
+    "comet": comet,
+}
+
+
 @cache
-def mapped(name, size="1", lam=0.9, kernels=False):
-    table = {"notched": NOTCHED, "unequal": UNEQUAL, "away": AWAY}.get(name) or GALLERY[name]()
-    parts = [
-        tables.arc(part.name, *(SIZES[size] * x for x in part.point), part.start, part.end) for part in table.components
-    ]
-    return PinballMap(tables.piecewise(*parts, name=name) if size != "1" else table, lam=lam, kernels=kernels)
+def mapped(name, size="1", shift=(0, 0), lam=0.9, kernels=False):
+    """The map of a table that is scaled by a factor and shifted by a multiple of it."""
+    table = (OWN.get(name) or GALLERY[name])()
+    if (size, shift) != ("1", (0, 0)):
+        points = [
+            [SIZES[size] * (x + by) for x, by in zip(part.point, shift, strict=True)] for part in table.components
+        ]
+        parts = zip(table.components, points, strict=True)
+        table = tables.Table(name, tuple(tables.arc(part.name, *point, part.start, part.end) for part, point in parts))
+    return PinballMap(table, lam=lam, kernels=kernels)
 
 
 @pytest.mark.slow
@@ -69,26 +91,6 @@ def test_a_table_of_any_size_at_any_place_has_the_flights_of_a_like_one(name, si
     assert np.max(aside) < 8 * EPS * max(2, shift)
 
 
-def hundred():
-    """A convex polygon of a hundred sides, with rational corners."""
-    turn = 2 * np.pi * np.arange(101) / 100
-    at = [[Rational(round(f(part) * 10**6), 10**6) for f in (np.cos, np.sin)] for part in turn]
-    sides = [tables.arc(f"{i}", x + theta * (X - x), y + theta * (Y - y), 0, 1) for i, ((x, y), (X, Y)) in
-             enumerate(pairwise(at))]  # fmt: skip
-    return tables.Table("hundred", tuple(sides))
-
-
-def moved(name, size, shift):
-    """A table scaled by a factor and shifted by a multiple of it."""
-    known = {"notched": lambda: NOTCHED, "100 sides": hundred, "comet": comet}
-    parts = (known.get(name) or GALLERY[name])().components
-    arcs = [
-        tables.arc(part.name, *(SIZES[size] * (x + by) for x, by in zip(part.point, shift, strict=True)),
-                   part.start, part.end) for part in parts
-    ]  # fmt: skip
-    return PinballMap(tables.Table(name, tuple(arcs)), lam=0.9, kernels=False)
-
-
 AIMED = ["square", "triangle", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "notched"]
 PLACES = [("1e-6", (0, 0)), ("1", (3, -5)), ("1e6", (Rational(-1, 2), 7))]
 
@@ -101,7 +103,7 @@ TARGETS += [("100 sides", *PLACES[2]), ("comet", *PLACES[0])]  # dear ones, once
 @pytest.mark.parametrize(("name", "size", "shift"), TARGETS)
 def test_every_flight_that_is_aimed_at_a_corner_exactly_ends_there_wherever_the_table_is(name, size, shift):
     """From the rounded particle's place, in 64 bits; a flight that misses by five bounds neither stops nor errs."""
-    map, rng, count = moved(name, size, shift), np.random.default_rng(26), 200
+    map, rng, count = mapped(name, size, shift), np.random.default_rng(26), 200
     known = by_hand.pieces(map.family, map.shape)
     starts = phase_starts(map, count, seed=26)
     own = [np.asarray(row) for row in map.states.enter(starts.component, starts.theta, starts.phi, map.law)]
@@ -138,7 +140,7 @@ def test_flights_to_corners_and_tangents_are_stopped_as_often_as_not():
 
 @pytest.mark.parametrize("size", SIZES)
 def test_along_the_normals_of_a_reuleaux_triangle_all_particles_end_in_the_opposite_corner(size):
-    map = mapped("reuleaux", size, 0.0)
+    map = mapped("reuleaux", size, lam=0.0)
     starts = phase_starts(map, 250, seed=22)
     step = map.step(starts.theta, 0.0, starts.component)
 

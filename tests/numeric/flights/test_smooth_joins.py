@@ -7,10 +7,8 @@ from sympy import Rational, S, cos, pi, sin
 from numeric import PinballMap, phase_starts
 from numeric.pinball.coordinates import located
 from symbolic import tables
-from symbolic.tables.joins import contacts
 from symbolic.tables.table import Component, Table, theta
 from verification.app.cli import main
-from verification.app.outline import Data, read
 
 X, Y = cos(theta), sin(theta)
 EGG = tables.egg(3).at(alpha="0.08").components[0].point
@@ -90,7 +88,7 @@ def test_how_a_curve_is_cut_changes_no_flight(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [*CUT, "egg and disc", "spline"])
+@pytest.mark.parametrize("name", [*CUT, *WHOLE])
 @pytest.mark.parametrize("kernels", [False, True])
 def test_no_flight_passes_through_a_join_at_which_it_is_aimed(name, kernels):
     """At a join the two pieces round one point differently, and no flight may slip between the two roundings."""
@@ -130,7 +128,6 @@ def test_flights_from_a_join_are_those_from_beside_it(name, kernels):
 
 
 POINTS = "\n".join(f"{1.5 * np.cos(t):.18e},{np.sin(t):.18e}" for t in 2 * np.pi * np.arange(24) / 24)
-DRAWN = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><ellipse cx="4" cy="4" rx="3" ry="2"/></svg>'
 
 
 def test_the_short_axis_of_an_ellipse_through_points_attracts(tmp_path, capsys):
@@ -142,16 +139,3 @@ def test_the_short_axis_of_an_ellipse_through_points_attracts(tmp_path, capsys):
     assert "period 2" in said
     assert said.count("-0.346") == 2
     assert "stopped" not in said
-
-
-def test_the_short_axis_of_a_drawn_ellipse_attracts(tmp_path):
-    """The importer writes the drawn ellipse as cubics, which join at both ends of the short axis."""
-    path = tmp_path / "drawn.svg"
-    path.write_text(DRAWN)
-    table = read(Data(str(path))).table
-    assert all(contact.smooth for contact in contacts(table))
-    map = PinballMap(table, lam=0.5)
-    starts = phase_starts(map, 1000, seed=3)
-    last = map.orbit(starts.theta, starts.phi, 400, starts.component)
-    assert not np.any(last.code[-1])
-    assert np.max(np.hypot(last.x[-1] - 4, np.abs(last.y[-1] + 4) - 2)) < 1e-6

@@ -1,25 +1,16 @@
 """`pinball orbit`, `lyapunov`, `slap` and `bench` behave as the contract says."""
 
-import json
 import math
 
 import mpmath
 import pytest
-
-from verification.app.cli import main
-
-
-def run(capsys, *arguments):
-    status = main([*arguments, "--json", "-"])
-    captured = capsys.readouterr()
-    return status, json.loads(captured.out) if captured.out else None, captured.err
-
+from asking import answer
 
 EGG = ("egg", "--alpha", "0.08", "--lam", "0.9")
 
 
 def test_an_orbit_starts_at_its_start(capsys):
-    status, document, _ = run(capsys, "orbit", *EGG, "--start", "0.5,-1/5", "--bounces", "3")
+    status, document, _ = answer(capsys, "orbit", *EGG, "--start", "0.5,-1/5", "--bounces", "3")
     first = document["bounces"][0]
 
     assert status == 0
@@ -39,7 +30,7 @@ def test_an_orbit_starts_at_its_start(capsys):
 def test_float64_mpmath_and_arb_tell_the_same_story(capsys, scene):
     question = ("orbit", *scene, "--start", "0.5,-1/5", "--bounces", "4", "--digits", "25")
     plain, multi, balls = (
-        run(capsys, *question, "--arithmetic", name)[1]["bounces"] for name in ("float64", "mpmath", "arb")
+        answer(capsys, *question, "--arithmetic", name)[1]["bounces"] for name in ("float64", "mpmath", "arb")
     )
     for one, two, three in zip(plain, multi, balls, strict=True):
         for key in ("theta", "s", "x", "y", "phi"):
@@ -51,7 +42,7 @@ def test_float64_mpmath_and_arb_tell_the_same_story(capsys, scene):
 
 
 def test_an_irrational_shape_is_exact_to_every_digit(capsys):
-    _, document, _ = run(
+    _, document, _ = answer(
         capsys, "orbit", "ellipse", "--a", "sqrt(2)", "--lam", "1/3", "--start", "pi/3,1/7",
         "--bounces", "1", "--arithmetic", "arb", "--digits", "30",
     )  # fmt: skip
@@ -61,7 +52,7 @@ def test_an_irrational_shape_is_exact_to_every_digit(capsys):
 
 def test_a_formula_makes_a_table(capsys):
     question = ("orbit", "--polar", "1 + cos(5*theta)/40", "--lam", "1/2", "--start", "1,0.5", "--bounces", "2")
-    status, document, _ = run(capsys, *question)
+    status, document, _ = answer(capsys, *question)
 
     assert status == 0
     assert document["bounces"][1]["component"] == "polar"
@@ -69,8 +60,8 @@ def test_a_formula_makes_a_table(capsys):
 
 def test_auto_takes_float64_as_long_as_the_orbit_leaves_enough_of_it_and_says_why(capsys):
     question = ("orbit", "cardioid", "--lam", "0.9", "--start", "0.5,-1/5", "--arithmetic", "auto", "--digits", "10")
-    (_, short, _), (status, long, told) = (run(capsys, *question, "--bounces", n) for n in ("3", "100"))
-    _, asked, _ = run(capsys, *question[:-3], "arb", "--digits", "10", "--bounces", "100")
+    (_, short, _), (status, long, told) = (answer(capsys, *question, "--bounces", n) for n in ("3", "100"))
+    _, asked, _ = answer(capsys, *question[:-3], "arb", "--digits", "10", "--bounces", "100")
 
     assert (short["arithmetic"], long["arithmetic"], status) == ("float64", "arb", 0)
     assert long["bounces"] == asked["bounces"]
@@ -81,7 +72,7 @@ def test_auto_takes_float64_as_long_as_the_orbit_leaves_enough_of_it_and_says_wh
 def test_a_tolerance_is_a_number_of_digits(capsys):
     question = ("orbit", *EGG, "--start", "0.5,-1/5", "--bounces", "3", "--arithmetic", "auto")
     (_, by_error, _), (_, by_digits, _) = (
-        run(capsys, *question, *more) for more in (("--tolerance", "1e-40"), ("--digits", "40"))
+        answer(capsys, *question, *more) for more in (("--tolerance", "1e-40"), ("--digits", "40"))
     )
 
     assert by_error == by_digits
@@ -93,7 +84,9 @@ WAISTED = ("--polar", "1 + cos(2*theta)/2", "--lam", "9/10")  # the line that to
 
 def test_balls_prove_first_hits_where_the_table_is_not_convex(capsys):
     question = ("orbit", *WAISTED, "--start", "1,1/2", "--bounces", "6", "--digits", "20")
-    (status, proved, _), (_, plain, _) = (run(capsys, *question, "--arithmetic", name) for name in ("arb", "float64"))
+    (status, proved, _), (_, plain, _) = (
+        answer(capsys, *question, "--arithmetic", name) for name in ("arb", "float64")
+    )
 
     assert status == 0
     for one, two in zip(proved["bounces"], plain["bounces"], strict=True):
@@ -111,7 +104,7 @@ def test_what_cannot_be_proved_is_not_given(capsys):
     start = f"atan((sqrt(3)-1)/sqrt(2*sqrt(3))),{phi}"
     table = ("--polar", "1+cos(2*theta)/2", "--lam", "0.9")
     question = ("orbit", *table, "--start", start, "--bounces", "3", "--arithmetic", "arb", "--digits", "15")
-    status, document, told = run(capsys, *question)
+    status, document, told = answer(capsys, *question)
 
     assert status == 1
     assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "unproved"]
@@ -123,8 +116,9 @@ def test_what_cannot_be_proved_is_not_given(capsys):
 def test_a_flight_into_the_cusp_is_no_bounce(capsys, arithmetic):
     """From the point `theta` of the cardioid, the exit angle `theta/2` aims at the cusp."""
     question = ("orbit", "cardioid", "--lam", "0.9", "--start", "1,1/2", "--bounces", "2")
-    _, document, _ = run(capsys, *question, "--arithmetic", arithmetic)
+    status, document, _ = answer(capsys, *question, "--arithmetic", arithmetic)
 
+    assert status == 1
     assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "cusp"]
 
 
@@ -132,17 +126,10 @@ def test_a_flight_into_the_cusp_is_no_bounce(capsys, arithmetic):
 @pytest.mark.parametrize("arithmetic", ["float64", "mpmath", "arb"])
 def test_a_start_may_lie_whole_turns_away(capsys, arithmetic):
     question = ("orbit", *EGG, "--start", "7,0.3", "--bounces", "1", "--arithmetic", arithmetic)
-    _, document, _ = run(capsys, *question)
+    _, document, _ = answer(capsys, *question)
 
     assert float(document["bounces"][0]["theta"]) == pytest.approx(7 - 2 * math.pi)
     assert float(document["bounces"][1]["x"]) == pytest.approx(-0.8625824708767529)  # by either of the others
-
-
-def test_a_ball_that_stops_is_reported(capsys):
-    status, document, _ = run(capsys, "orbit", "cardioid", "--lam", "0.9", "--start", "0,0", "--bounces", "5")
-
-    assert status == 1
-    assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "cusp"]
 
 
 @pytest.mark.parametrize(
@@ -155,7 +142,7 @@ def test_a_ball_that_stops_is_reported(capsys):
     ],
 )
 def test_bad_input_is_one_sentence(capsys, arguments, words):
-    status, document, told = run(capsys, "orbit", *arguments)
+    status, document, told = answer(capsys, "orbit", *arguments)
 
     assert (status, document) == (2, None)
     assert words in told
@@ -163,7 +150,7 @@ def test_bad_input_is_one_sentence(capsys, arguments, words):
 
 
 def test_the_slap_map_of_the_circle_is_half_a_turn(capsys):
-    _, document, _ = run(capsys, "slap", "circle", "--points", "8", "--iterates", "2")
+    _, document, _ = answer(capsys, "slap", "circle", "--points", "8", "--iterates", "2")
     for point in document["points"]:
         once, twice = (image["theta"] for image in point["images"])
         assert abs(once - point["theta"]) == pytest.approx(3.141592653589793, abs=1e-15)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from stored import files
 from sympy import Rational, cos
 
 from numeric import PinballMap
@@ -32,10 +33,6 @@ def table(task=product, seed=1, axes=TIMES, **settings):
         Field("sign", ("x", "y"), "int8", "1", "what stands for a missing whole number, too"),
     )
     return Sweep("table", "Products", axes, fields, task, seed, "none", settings, 0, lambda: None)
-
-
-def bytes_of(path):
-    return {str(file.relative_to(path)): file.read_bytes() for file in path.rglob("*") if file.is_file()}
 
 
 def test_the_parts_tile_the_grid():
@@ -111,12 +108,12 @@ def test_a_part_that_equals_the_missing_value_is_not_done_twice(tmp_path):
 )
 def test_another_sweep_is_refused(tmp_path, other, said):
     run(table(), tmp_path / "store")
-    before = bytes_of(tmp_path / "store")
+    before = files(tmp_path / "store")
 
     with pytest.raises(ValueError, match=said):
         run(other, tmp_path / "store")
 
-    assert bytes_of(tmp_path / "store") == before
+    assert files(tmp_path / "store") == before
 
 
 def test_a_directory_of_something_else_is_refused(tmp_path):
@@ -125,7 +122,7 @@ def test_a_directory_of_something_else_is_refused(tmp_path):
     with pytest.raises(ValueError, match="not a sweep of ours"):
         run(table(), tmp_path)
 
-    assert bytes_of(tmp_path) == {"letter.txt": b"keep me"}
+    assert files(tmp_path) == {"letter.txt": b"keep me"}
 
 
 def test_a_second_driver_is_refused(tmp_path):

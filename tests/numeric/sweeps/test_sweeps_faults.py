@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from attacks.faults import interrupted, restarts
+from stored import files
 
 from numeric.sweeps.run import UnfinishedError, run
 from numeric.sweeps.store import opened
@@ -26,10 +27,6 @@ def table(task=squares):
     axes = (Axis("x", np.arange(8.0), "1", "a number", 2),)
     fields = tuple(Field(name, ("x",), "float64", "1", f"the {name}") for name in ("square", "noise"))
     return Sweep("squares", "Squares", axes, fields, task, 1, "none", {"n": 8}, 8, lambda: None)
-
-
-def files(store):
-    return {str(file.relative_to(store)): file.read_bytes() for file in store.rglob("*") if file.is_file()}
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from stored import files
 
 from numeric.sweeps.run import run
 from numeric.sweeps.space import parameter_space
@@ -41,10 +42,6 @@ def started(arguments, prepare=None):
 
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return subprocess.Popen(command, cwd=ROOT, env=environment, preexec_fn=prepared, **pipes)
-
-
-def files(store):
-    return {str(file.relative_to(store)): file.read_bytes() for file in store.rglob("*") if file.is_file()}
 
 
 def chunks(store):

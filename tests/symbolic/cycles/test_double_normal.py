@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import mpmath
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, S, Symbol, simplify
 
@@ -91,27 +91,6 @@ def test_both_multipliers_are_inside_the_unit_circle_exactly_for_P_in_the_window
     largest = max(abs(mu) for mu in eigenvalues(exact(P), exact(contraction)))
 
     assert (largest < 1 - NOTHING) == stable
-
-
-@settings(max_examples=60)
-@given(st.fractions(-1, 2, max_denominator=30), CONTRACTIONS)
-@example(Fraction(8, 9), Fraction(1, 2))  # the two multipliers meet
-@example(Fraction(0), Fraction(1, 2))
-def test_multipliers_are_complex_exactly_for_P_below_the_focus_bound(P, contraction):
-    spiral = 0 < P < 4 * contraction / (1 + contraction) ** 2
-    roots = eigenvalues(exact(P), exact(contraction))
-    assert (max(abs(mu.imag) for mu in roots) > mp.sqrt(NOTHING)) == spiral
-    if spiral:
-        assert all(abs(abs(mu) - exact(contraction)) < NOTHING for mu in roots)
-
-
-@settings(max_examples=40)
-@given(st.fractions(-3, 3, max_denominator=30))
-def test_an_elastic_double_normal_is_elliptic_exactly_for_P_between_zero_and_one(P):
-    assume(P not in (0, 1))
-    sizes = [abs(mu) for mu in eigenvalues(exact(P), S.One)]
-
-    assert (max(sizes) < 1 + NOTHING) == (0 < P < 1)
 
 
 def test_a_multiplier_is_minus_one_at_the_flip_contraction():

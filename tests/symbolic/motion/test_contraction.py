@@ -1,14 +1,10 @@
 """Contraction of areas: the factor of a bounce, its sum along orbits, and the limit of elastic collisions."""
 
-from sympy import Rational, cos, diff, limit, log, oo, pi, simplify, sin, symbols, tan
+from sympy import Rational, cos, limit, log, oo, pi, simplify, symbols, tan
 
 from symbolic.expressions.signs import vanishes
 from symbolic.motion.collision import area_factor, elastic_mean, joachimsthal_defect, telescoped, weak_dissipation
 from symbolic.tables.table import eta, lam
-
-
-def test_a_bounce_contracts_by_the_slope_of_sin_lam_eta_against_sin_eta():
-    assert vanishes(area_factor() - diff(sin(lam * eta), eta) / diff(sin(eta), eta))
 
 
 def test_contraction_is_not_pointwise_however_strong_it_is():

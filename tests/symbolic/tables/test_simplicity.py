@@ -104,7 +104,6 @@ ACCEPTED = {
     "100 discs": lambda: grid(10, 4, 1),
     "discs that nearly touch": lambda: with_discs(20, (5, 5, 1), (7 + TINY, 5, 1), (1 + TINY, 9, 1)),
     "a limacon that has nearly a loop": lambda: parametric(*limacon(1 - Rational(1, 10**13))),
-    "a polygon whose first corner comes again": lambda: polygon(*corners(1), (0, 0)),
     "a comb": lambda: polygon((0, 0), (60, 0), *((x, 1 + 99 * (x % 2)) for x in range(60, -1, -1))),
     "a cusp where arcs bend by different curvatures": lambda: piecewise(
         arc("outer", 2 + 2 * cos(theta), 2 * sin(theta), 0, pi),

@@ -35,6 +35,15 @@ def bow_tie() -> Table:
     return piecewise(*(arc(f"side {i}", x, y, -1, 1) for i, (x, y) in enumerate(sides)))
 
 
+POLE = r"has a pole, where .* = 0; a boundary must be finite"
+CROSSES = r"meets itself|encloses area 0"
+
+
+def crossing_family() -> Table:
+    shapes = [Shape(b, Interval(0, 5), "crosses")]
+    return parametric(cos(theta) + b * cos(2 * theta), sin(theta) + b * sin(2 * theta), shapes=shapes)
+
+
 BAD = {
     "a float in a formula": (lambda: polar(1 + 0.08 * cos(3 * theta)), "contains a rounded float"),
     "a float alone": (lambda: polar(1.5), "contains a rounded float"),
@@ -63,7 +72,19 @@ BAD = {
         lambda: parametric(a * cos(theta), -sin(theta), shapes=ellipse.shapes), "runs clockwise",
     ),
     "a clockwise wiggle": (lambda: parametric(cos(theta), -sin(theta) - sin(9 * theta) / 99), "clockwise"),
+    "sides that cross": (lambda: polygon((0, 0), (4, 2), (4, 0), (0, 3)), CROSSES),
+    "a high harmonic": (
+        lambda: parametric(cos(theta) + cos(12 * theta) / 2, sin(theta) + sin(12 * theta) / 2), CROSSES,
+    ),
+    "no finite sum, wound twice": (
+        lambda: parametric(exp(cos(theta)) * cos(2 * theta), exp(cos(theta)) * sin(2 * theta)), CROSSES,
+    ),
+    "a family at one of its shapes": (lambda: crossing_family().at(b=2), CROSSES),
     "a pole": (lambda: polar(1 / cos(theta)), "has a pole"),
+    "a pole in y alone": (lambda: parametric(cos(theta), 1 / (2 * sin(theta) - 1)), POLE),
+    "a pole in x alone": (lambda: parametric(1 / (3 * cos(theta) - 2), sin(theta)), POLE),
+    "a pole opposite to theta = 0": (lambda: parametric(cos(theta), sin(theta) / (1 + cos(theta)) ** 2), POLE),
+    "a pole of a tangent": (lambda: parametric(cos(theta), tan(theta)), POLE),
     "a complex radius": (lambda: polar(1 + I * cos(theta) / 9), "no finite real expression"),
     "no number": (lambda: polar(nan), "no finite real expression"),
     "an infinite radius": (lambda: polar(S.Infinity), "no finite real expression"),
@@ -147,39 +168,6 @@ def test_self_crossings_are_found_by_coordinates_alone(swing):
     else:
         with pytest.raises(ValueError, match="meets itself, or may"):
             parametric(*limacon(swing))
-
-
-CROSSED = {
-    "sides of unequal triangles": lambda: polygon((0, 0), (4, 2), (4, 0), (0, 3)),
-    "a high harmonic": lambda: parametric(cos(theta) + cos(12 * theta) / 2, sin(theta) + sin(12 * theta) / 2),
-    "no finite sum, wound twice": lambda: parametric(
-        exp(cos(theta)) * cos(2 * theta), exp(cos(theta)) * sin(2 * theta)
-    ),
-    "a family at one of its shapes": lambda: parametric(
-        cos(theta) + b * cos(2 * theta), sin(theta) + b * sin(2 * theta), shapes=[Shape(b, Interval(0, 5), "crosses")]
-    ).at(b=2),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("made", CROSSED.values(), ids=CROSSED.keys())
-def test_a_crossing_is_found_in_whatever_way_it_is_written(made):
-    with pytest.raises(ValueError, match=r"meets itself|encloses area 0"):
-        made()
-
-
-POLES = {
-    "in y alone": (cos(theta), 1 / (2 * sin(theta) - 1)),
-    "in x alone": (1 / (3 * cos(theta) - 2), sin(theta)),
-    "opposite to theta = 0": (cos(theta), sin(theta) / (1 + cos(theta)) ** 2),
-    "of a tangent": (cos(theta), tan(theta)),
-}
-
-
-@pytest.mark.parametrize("point", POLES.values(), ids=POLES.keys())
-def test_a_pole_is_found_in_either_coordinate_and_wherever_it_lies(point):
-    with pytest.raises(ValueError, match=r"has a pole, where .* = 0; a boundary must be finite"):
-        parametric(*point)
 
 
 ROOTED = [sqrt(1 + cos(theta) / 3) * wave(theta) for wave in (cos, sin)]  # no finite sum

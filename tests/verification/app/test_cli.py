@@ -11,13 +11,13 @@ from types import SimpleNamespace
 
 import click
 import pytest
+from asking import refusal
 from sympy import Rational, cos
 
 from symbolic import tables
 from symbolic.tables.definition import GALLERY
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import theta
-from verification.app import cli
 from verification.app.cli import COMMANDS, Output, json_option, main
 from verification.app.scene import scene_options, table_options
 
@@ -42,16 +42,6 @@ def scenes(monkeypatch):
         monkeypatch.setitem(COMMANDS, command.name, "for tests")
         monkeypatch.setitem(sys.modules, f"verification.app.commands.{command.name}", SimpleNamespace(command=command))
     return seen
-
-
-def refusal(capsys, *arguments: str) -> str:
-    """The one sentence with which `pinball` refuses these arguments."""
-    assert main(arguments) == cli.BAD_INPUT
-    printed = capsys.readouterr()
-    assert printed.out == ""
-    assert printed.err.startswith("pinball: ")
-    assert printed.err.count("\n") == 1
-    return printed.err[len("pinball: ") : -1]
 
 
 def test_verify_writes_the_report_and_json_has_standard_output_to_itself(capsys, tmp_path, monkeypatch):
@@ -264,15 +254,8 @@ def test_a_table_of_ones_own_is_read_and_proved_once_and_then_without_sympy(tabl
     kept = dict(os.environ, PINBALL_CACHE=str(tmp_path / "cache"))
 
     def run() -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-c", code],
-            capture_output=True,
-            text=True,
-            check=True,
-            env=kept,
-            cwd=tmp_path,
-            timeout=600,
-        )
+        options = {"capture_output": True, "text": True, "check": True, "timeout": 600}
+        return subprocess.run([sys.executable, "-c", code], env=kept, cwd=tmp_path, **options)
 
     first, second = run(), run()
     assert (first.stderr, second.stderr) == ("True\n", "False\n")

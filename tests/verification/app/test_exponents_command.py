@@ -1,22 +1,13 @@
 """`pinball lyapunov`: the contract's keys, error bars and their origin, and each way in which the command ends."""
 
-import json
-
 import pytest
-
-from verification.app.cli import main
+from asking import answer
 
 CARDIOID = ("lyapunov", "cardioid", "--lam", "0.5", "--bounces", "200", "--orbits", "20", "--seed", "1")
 
 
-def run(capsys, *arguments):
-    status = main([*arguments, "--json", "-"])
-    captured = capsys.readouterr()
-    return status, json.loads(captured.out) if captured.out else None, captured.err
-
-
 def test_the_document_says_what_was_found_and_how(capsys):
-    status, document, _ = run(capsys, *CARDIOID)
+    status, document, _ = answer(capsys, *CARDIOID)
     group = document["groups"][0]
 
     assert status == 0
@@ -31,8 +22,8 @@ def test_the_document_says_what_was_found_and_how(capsys):
 
 
 def test_the_same_seed_gives_the_same_document_and_another_law_other_starts(capsys):
-    first, again = (run(capsys, *CARDIOID)[1] for _ in range(2))
-    other = run(capsys, *CARDIOID, "--start-law", "phase")[1]
+    first, again = (answer(capsys, *CARDIOID)[1] for _ in range(2))
+    other = answer(capsys, *CARDIOID, "--start-law", "phase")[1]
 
     assert first == again
     assert other["nu_plus"] != first["nu_plus"]
@@ -42,7 +33,7 @@ def test_the_same_seed_gives_the_same_document_and_another_law_other_starts(caps
 def test_the_slap_map_has_one_exponent(capsys):
     scene = ("lyapunov", "ellipse", "--a", "2", "--lam", "0")
     question = (*scene, "--bounces", "100", "--orbits", "5", "--seed", "1", "--certified")
-    status, document, _ = run(capsys, *question)
+    status, document, _ = answer(capsys, *question)
     group = document["groups"][0]
 
     assert status == 0
@@ -55,7 +46,7 @@ def test_the_slap_map_has_one_exponent(capsys):
 @pytest.mark.slow
 def test_the_chaotic_slap_map_of_the_cardioid_has_a_proved_exponent_and_the_sampled_one_agrees(capsys):
     scene = ("lyapunov", "cardioid", "--lam", "0", "--certified")
-    status, document, text = run(capsys, *scene, "--bounces", "2000", "--orbits", "50", "--seed", "1")
+    status, document, text = answer(capsys, *scene, "--bounces", "2000", "--orbits", "50", "--seed", "1")
     (group,) = document["groups"]
     proved = group["certified"]
 
@@ -69,8 +60,8 @@ def test_the_chaotic_slap_map_of_the_cardioid_has_a_proved_exponent_and_the_samp
 
 def test_symmetric_attractors_are_one_result_and_different_ones_none(capsys):
     egg = ("lyapunov", "egg", "--alpha", "0.08", "--bounces", "300", "--orbits", "30", "--seed", "1")
-    images = run(capsys, *egg, "--lam", "0.7")[1]
-    different = run(capsys, *egg, "--lam", "0.45")[1]
+    images = answer(capsys, *egg, "--lam", "0.7")[1]
+    different = answer(capsys, *egg, "--lam", "0.45")[1]
 
     assert [group["family"] for group in images["groups"]] == [0, 0]
     assert images["nu_plus"] is not None
@@ -80,7 +71,7 @@ def test_symmetric_attractors_are_one_result_and_different_ones_none(capsys):
 
 def test_a_budget_that_is_spent_is_said(capsys):
     question = (*CARDIOID, "--until-error", "1e-9", "--budget", "5000")
-    status, document, told = run(capsys, *question)
+    status, document, told = answer(capsys, *question)
 
     assert status == 1
     assert document["reached"] is False
@@ -88,7 +79,7 @@ def test_a_budget_that_is_spent_is_said(capsys):
 
 
 def test_an_error_that_is_reached_is_done(capsys):
-    status, document, _ = run(capsys, *CARDIOID, "--until-error", "0.005")
+    status, document, _ = answer(capsys, *CARDIOID, "--until-error", "0.005")
 
     assert (status, document["reached"]) == (0, True)
     assert max(document["nu_plus_stderr"], document["nu_minus_stderr"]) <= 0.005
@@ -103,7 +94,7 @@ def test_an_error_that_is_reached_is_done(capsys):
     ],
 )
 def test_bad_input_is_one_sentence(capsys, wrong, words):
-    status, document, told = run(capsys, *CARDIOID, *wrong)
+    status, document, told = answer(capsys, *CARDIOID, *wrong)
 
     assert (status, document) == (2, None)
     assert words in told

@@ -30,7 +30,7 @@ from sympy import (
 
 from symbolic.expressions.text import kernel, load
 from verification.arithmetic.balls import ARRAYS, FLOAT64, as_ball, balls, decimal, enclose, multiprecision, working
-from verification.arithmetic.series import Jet, TaylorModel, along, in_series, jets, taylor
+from verification.arithmetic.series import Jet, TaylorModel, along, coefficients, in_series, jets, taylor
 from verification.proofs.manifolds.enclosed import complex_balls
 
 x = Symbol("x", positive=True)
@@ -113,15 +113,26 @@ def test_a_series_over_complex_balls_has_no_coefficient_where_a_cut_may_pass_thr
     words, one = in_series(complex_balls(100), acb_series), acb(arb(0, 1), arb(0, 1))
     beyond = acb(0, 2) if word == "atan" else acb(-1, 0)
 
-    def coefficients(at):
+    def expanded(at):
         (found,) = along([Jet(at, acb(1), acb(0))], lambda near: [getattr(words, word)(near[0])])
         return found.c
 
     for at in (beyond + one, beyond * 3 + acb(1, 1) / 4):
-        assert not any(c.is_finite() for c in coefficients(at))
-    first, *rest = coefficients(acb(arb(2), arb(1) / 4))
+        assert not any(c.is_finite() for c in expanded(at))
+    first, *rest = expanded(acb(arb(2), arb(1) / 4))
     assert first.overlaps(getattr(acb(arb(2), arb(1) / 4), word)())
     assert all(c.is_finite() for c in rest)
+
+
+def test_coefficients_end_where_a_series_is_known_no_farther():
+    with taylor(4):
+        quotient = arb_series([0, 6, 4, 2]) / arb_series([0, 2])
+        assert quotient.prec == 3
+        known, lost = coefficients(quotient, 3), coefficients(quotient, 5)
+    assert [float(x) for x in known] == [3, 2, 1]
+    assert [float(x) for x in lost[:3]] == [3, 2, 1]
+    assert not any(x.is_finite() for x in lost[3:])
+    assert len(lost) == 5
 
 
 def test_a_coefficient_that_a_division_lost_is_none_and_not_zero():

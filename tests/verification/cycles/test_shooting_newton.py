@@ -37,12 +37,6 @@ def test_corrections_shrink_quadratically():
         assert two.correction < max(1.9 * one.correction, -0.9 * one.digits)  # or to the rounding
 
 
-def test_two_precisions_agree_in_the_digits_of_the_coarser():
-    coarse, fine = (refined(flip(), [0.0, 3.14, 0.06], digits).z[-1] for digits in (40, 90))
-
-    assert abs(coarse - fine) < mpmath.mpf(10) ** -40
-
-
 def test_a_flip_found_by_shooting_is_the_closed_form():
     found = refined(flip(), [0.0, 3.14, 0.06], 50).z[-1]
     exact = alpha_tilde().subs(lam, Rational(1, 3)).evalf(60)

@@ -81,11 +81,6 @@ def ellipse():
     return EnclosedMap(PinballMap("ellipse", a=2, lam="1/2"), Fraction(1, 2), BITS)
 
 
-@pytest.fixture(scope="module")
-def cuspless():
-    return EnclosedMap(PinballMap("cuspless", lam="1/2"), Fraction(1, 2), BITS)
-
-
 @pytest.mark.parametrize(("theta", "phi"), [(0.0, 0.0), (1.0, 0.3), (2.5, -1.2), (-2.0, 0.9)])
 def test_a_start_flies_off_at_its_angle_from_the_inward_normal_towards_the_tangent(ellipse, theta, phi):
     """On an ellipse with half axes 2 and 1, with tangent and normal worked out by hand."""

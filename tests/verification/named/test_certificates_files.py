@@ -23,14 +23,11 @@ def fold() -> dict:
     return locate("saddle-node", 30, alpha=Rational(2, 25)).proof.document()
 
 
-def test_a_certificate_survives_json_bit_for_bit(fold):
-    again = json.loads(json.dumps(fold))
+def test_a_certificate_survives_json_bit_for_bit_and_is_verified_anew(fold):
+    again = checked(json.loads(json.dumps(fold)))
 
-    assert checked(again).document() == fold
-
-
-def test_a_certificate_is_verified_anew(fold):
-    assert checked(fold).proved
+    assert again.document() == fold
+    assert again.proved
 
 
 @pytest.mark.slow
@@ -47,21 +44,6 @@ def test_an_irrational_shape_is_kept_exactly():
 
     assert made["scene"]["shape"] == {"alpha": "sqrt(2)/30"}
     assert checked(made).proved
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "spoil",
-    [
-        lambda d: d["centre"].__setitem__(0, ["1", "-1"]),
-        lambda d: d.__setitem__("digits", 60),
-    ],
-)
-def test_a_spoiled_certificate_is_not_certified_whatever_it_says(fold, spoil):
-    given = copy.deepcopy(fold)
-    spoil(given)
-
-    assert not checked(given).proved
 
 
 EGG = {"table": "egg", "shape": {"alpha": "2/25"}}
@@ -178,16 +160,12 @@ def test_what_the_format_does_not_hold_is_refused_in_one_sentence():
 @pytest.mark.parametrize(
     ("entry", "value", "message"),
     [
-        ("schema", 5, "schema = 5 is unknown"),
         ("bits", 10**9, "out of range"),
         ("scene", EGG | {"table": "egg; import os"}, "no table is called"),
         ("scene", EGG | {"shape": {"alpha": "__import__('os').system('true')"}}, "."),
         ("scene", EGG | {"file": "/etc/passwd"}, "'file' is unknown"),
         ("scene", None, "."),
-        ("centre", [["1", "0"]], "1 entries for 4 unknowns"),
-        ("centre", [], "no unknowns"),
         ("centre", [["x", "0"]] * 4, "."),
-        ("radius", ["1", "999999999999"], "out of range"),
         ("kind", "crisis", "."),
         ("components", None, "."),
     ],

@@ -2,15 +2,14 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from committed import FOLDER
 from flint import arb
 
 from symbolic.tables.formula import LENGTH
 from verification.named.theorems import checked, theorem_class
 
-FOLDER = Path(__file__).parents[3] / "certificates"
 OTHERS = ("tangency", "trapping region", "boundary crisis")
 GIVEN = {path.stem: json.loads(path.read_text()) for path in sorted(FOLDER.glob("*.json"))}
 GIVEN = {name: given for name, given in GIVEN.items() if given["kind"] not in OTHERS}

@@ -81,18 +81,6 @@ def test_the_cascade_approaches_feigenbaums_ratio():
     assert abs(gaps[-2] / gaps[-1] - 4.6692) < 1e-3  # converges like 4.67**-n
 
 
-PRINTED = [(3, 0.372, False), (4, 0.389, True), (5, 0.393, True), (6, 0.3935, False)]
-
-
-@pytest.mark.parametrize(("n", "printed", "right"), PRINTED)
-def test_the_papers_cascade_is_judged_digit_by_digit(n, printed, right):
-    found = locate("doubling", 15, alpha=ALPHA, n=Integer(n))
-    decimals = len(str(printed)) - 2
-
-    assert found.certified
-    assert (round(float(found.value), decimals) == printed) is right
-
-
 @pytest.mark.parametrize(
     ("name", "shape", "message"),
     [

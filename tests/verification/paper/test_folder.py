@@ -6,9 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from asking import refusal
 
 from verification import verify
-from verification.app.cli import BAD_INPUT, main
+from verification.app.cli import main
 from verification.paper.claims.claim import Verdict
 from verification.paper.claims.folder import OWN, SHIPPED, begin, judge_of, paper
 from verification.paper.report import report
@@ -81,15 +82,6 @@ def changed(path: Path, old: str, new: str) -> None:
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-
-
-def refusal(capsys, *arguments: str) -> str:
-    assert main(arguments) == BAD_INPUT
-    printed = capsys.readouterr()
-    assert printed.out == ""
-    assert printed.err.count("\n") == 1
-    assert "Traceback" not in printed.err
-    return printed.err
 
 
 def verdicts(folder, **options):

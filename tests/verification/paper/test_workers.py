@@ -175,8 +175,3 @@ def test_a_report_that_is_none_is_refused_in_one_sentence(tmp_path, capsys):
 
     assert main(["verify", "--changed", "--report", str(tmp_path)]) == 2
     assert "report.json is no report (AttributeError); remove it" in capsys.readouterr().err
-
-
-def test_a_section_is_asked_for_by_its_number(capsys):
-    assert main(["verify", "--section", "17"]) == 2
-    assert "--section '17' has no claim; accepted: Abstract, 1" in capsys.readouterr().err

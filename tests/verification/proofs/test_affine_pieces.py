@@ -5,11 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from affine_pieces import SQUARE, affine
 from flint import arb
 
 from verification.proofs.corner.border_collision import (
     HAIR,
-    AffinePiece,
     FixedPointChange,
     clipped,
     expansion,
@@ -21,12 +21,6 @@ from verification.proofs.corner.border_collision import (
     trapped,
 )
 from verification.proofs.corner.corner import ARC, WALL
-
-SQUARE = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-
-
-def affine(a, b, c, d, p=0.0, q=0.0):
-    return AffinePiece(((arb(a), arb(b)), (arb(c), arb(d))), (arb(p), arb(q)))
 
 
 def turning(a, b, c):

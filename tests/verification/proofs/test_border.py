@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from affine_pieces import SQUARE, affine
 from flint import arb
 
 from numeric import PinballMap
@@ -12,9 +13,7 @@ from symbolic.tables.table import K0, K1, cos_eta1, cos_phi0, lam, t
 from verification.arithmetic.balls import FLOAT64, working
 from verification.named.locate import locate
 from verification.proofs.corner.border_collision import (
-    AffinePiece,
     FixedPointChange,
-    expansion,
     exponents,
     extent,
     fixed_point,
@@ -30,11 +29,6 @@ from verification.proofs.corner.return_map import exit_angle, kink, kink_falls, 
 
 THETA1, STAR = (float(x.mid()) for x in enclosed())
 CORNER = 2 * math.pi / 3
-SQUARE = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-
-
-def affine(a: float, b: float, c: float, d: float, p: float = 0.0, q: float = 0.0) -> AffinePiece:
-    return AffinePiece(((arb(a), arb(b)), (arb(c), arb(d))), (arb(p), arb(q)))
 
 
 def by_the_map(u: float, v: float, e: float) -> tuple[float, float]:
@@ -158,13 +152,6 @@ def test_a_polygon_is_trapped_only_when_its_image_is_inside():
     assert trapped({ARC: shrinking, WALL: shrinking}, SQUARE) is True
     assert trapped({ARC: shrinking, WALL: swelling}, SQUARE) is None
     assert trapped({ARC: affine(1, 0, 0, 1), WALL: shrinking}, SQUARE) is None  # the image touches the sides
-
-
-def test_a_cone_is_found_where_directions_are_kept_and_not_in_a_rotation():
-    stretching, rotation = affine(0.1, 0.2, 0.1, 3), affine(0, -2, 2, 0)
-
-    assert expansion({ARC: stretching, WALL: stretching}).least > 2.9
-    assert expansion({ARC: rotation, WALL: stretching}) is None
 
 
 def test_the_bounds_of_the_attractor_meet_and_the_map_attains_them():

@@ -4,18 +4,15 @@ import math
 
 import pytest
 from flint import arb
-from hypothesis import given
-from hypothesis import strategies as st
 from sympy import Rational
 
 from symbolic.tables import cuspless, egg
-from verification.arithmetic.balls import working
 from verification.cycles.cascade import attractor, cycle_at, doubled
 from verification.cycles.newton import floats
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.proofs.periodic import triangles
-from verification.proofs.periodic.bifurcation import Stability, over_interval, stability
+from verification.proofs.periodic.bifurcation import Stability, over_interval
 from verification.proofs.periodic.interval_newton import ZeroStatus, krawczyk
 
 EGG = egg(3).at(alpha=Rational(2, 25))
@@ -69,19 +66,6 @@ def test_what_is_not_so_is_not_proved():
 
     assert not found.proved
     assert 0.371 < found.reached < 0.3712356  # lambda_3
-
-
-@given(st.floats(-3, 3), st.floats(0, 1.5))
-def test_stability_agrees_with_the_multipliers(trace, determinant):
-    with working(64):
-        found = stability(arb(trace), arb(determinant))
-    root = complex(trace * trace - 4 * determinant) ** 0.5
-    sizes = sorted(abs((trace + s * root) / 2) for s in (1, -1))
-    if found is Stability.ATTRACTING:
-        assert sizes[1] < 1 + 1e-7
-    if found is Stability.SADDLE:
-        assert sizes[0] < 1 + 1e-7
-        assert sizes[1] > 1 - 1e-7
 
 
 def test_krawczyk_has_three_answers_too():

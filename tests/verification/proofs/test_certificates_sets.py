@@ -24,7 +24,6 @@ from verification.named.curves import DELTA, aitken, limit, ratio, wynn
 from verification.paper.egg.basins import points_of_period_4, without_triangles
 from verification.proofs.corner.half_return import ChaosAboveLambdaStar
 from verification.proofs.corner.return_map import ARC, BITS, CusplessMap, Departures, fourth_on_wall, minimum_at_kink
-from verification.proofs.periodic import bifurcation
 from verification.proofs.periodic.bifurcation import Stability, doubling_curve, over_interval
 from verification.proofs.periodic.completeness import Cover
 from verification.proofs.periodic.cycle_in_box import closed_form
@@ -209,12 +208,6 @@ def test_the_halves_of_a_box_cover_it(box):
     (c, wide), (shape, high) = box
     for x, y in product(np.linspace(c - wide, c + wide, 21), np.linspace(shape - high, shape + high, 21)):
         assert any(abs(x - m) <= r and abs(y - n) <= q for (m, r), (n, q) in slap.halves(box))
-
-
-def test_a_fourth_power_of_the_multiplier_that_may_be_1_leaves_the_islands_open():
-    held = {trace: bifurcation.Twist(arb(trace, 0.01), arb(1), arb(0)).islands for trace in (-2.0, -1.0, 0.0, 0.5, 2.0)}
-
-    assert held == {-2.0: None, -1.0: None, 0.0: None, 0.5: True, 2.0: None}
 
 
 def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():

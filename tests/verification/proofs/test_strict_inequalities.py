@@ -1,7 +1,6 @@
 """Strict inequalities are not proved where equality holds: each tested at equality and on either side."""
 
 import math
-from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,7 +16,6 @@ from verification.arithmetic.arrays import BallArray
 from verification.arithmetic.balls import working
 from verification.maps import first_hit
 from verification.maps.first_hit import BallBoundary, inside
-from verification.proofs.periodic.bifurcation import Stability, Twist, stability
 from verification.proofs.periodic.completeness import Cover, one_sided, parted, stays_below
 from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton, stepped
 from verification.rigorous.exclusion import Cuboids
@@ -42,35 +40,6 @@ def test_a_chord_to_a_wall_that_it_runs_along_is_not_free():
         ]
         boundary = BallBoundary(places, [(arb(-1), arb(1))] * 2)
         assert first_hit.free(boundary, (0, arb(0)), (1, arb(0))) is free
-
-
-@pytest.mark.parametrize(
-    ("trace", "determinant", "answer"),
-    [
-        ("0", "1/2", Stability.ATTRACTING),
-        ("0", "1", Stability.UNKNOWN),
-        ("3/2", "1/2", Stability.UNKNOWN),
-        ("-3/2", "1/2", Stability.UNKNOWN),
-        ("7/4", "1/2", Stability.SADDLE),
-        ("-7/4", "1/2", Stability.SADDLE),
-        ("0", "-1", Stability.UNKNOWN),
-        ("1/2", "-1", Stability.SADDLE),
-        ("0", "3/2", Stability.UNKNOWN),
-    ],
-)
-def test_a_cycle_attracts_with_both_multipliers_inside_the_circle(trace, determinant, answer):
-    """A saddle has one multiplier in (-1, 1) and the other beyond."""
-    balls = [arb(x.numerator) / x.denominator for x in (Fraction(trace), Fraction(determinant))]
-
-    assert stability(*balls) is answer
-
-
-def test_islands_need_an_elliptic_trace_and_a_twist():
-    held = lambda trace, twist: Twist(arb(trace), arb(twist), arb(0)).islands  # noqa: E731
-
-    assert [held(trace, 1) for trace in (-2, -1, 0, 2)] == [None] * 4
-    assert [held(trace, twist) for trace in (-1.5, -0.5, 1, 1.5) for twist in (1, -1)] == [True] * 8
-    assert held(1, 0) is None
 
 
 @pytest.mark.parametrize("middle", [-3.1, -1.0, 0.0, 3.0, 3.2, 9.4, -9.5])

@@ -5,10 +5,10 @@ import pkgutil
 from dataclasses import fields, replace
 from fractions import Fraction
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import pytest
+from committed import document
 
 import verification.proofs
 from symbolic.tables.scene import Scene
@@ -21,20 +21,12 @@ from verification.proofs.manifolds.known import TRIANGLE
 from verification.proofs.unstable_curves.certificate import AtMostOneAttractor
 from verification.rigorous.theorem import Theorem
 
-CERTIFICATES = Path(__file__).resolve().parents[3] / "certificates"
-
-
-def committed(name):
-    """The document of a certificate in the repository."""
-    return json.loads((CERTIFICATES / f"{name}.json").read_text())
-
-
 SADDLE = 0, 2.0382687, -0.0454335
 SCENE, RANGE = Scene("cuspless"), (Fraction(0), Fraction(1, 100))
 FILES = {"cycle": "cardioid", "fold": "saddle-node", "flip": "lambda-c", "corner": "lambda-star", "focus": "alpha-hat"}
-DOCUMENTS = {kind: committed(name) for kind, name in (FILES | {"tangency": "boundary-crisis"}).items()} | {
-    "trapping region": committed("triangle-region"),
-    "boundary crisis": committed("crisis-between"),
+DOCUMENTS = {kind: document(name) for kind, name in (FILES | {"tangency": "boundary-crisis"}).items()} | {
+    "trapping region": document("triangle-region"),
+    "boundary crisis": document("crisis-between"),
     "no two attractors": AtMostOneAttractor(
         SCENE, (Fraction(13, 100),) * 2, 64, 64, (SADDLE,), SADDLE, 4, 0.003
     ).to_dict(),

@@ -4,20 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from affine_pieces import affine
 from flint import arb
 
 from symbolic.cycles.thresholds import lambda_c
 from verification.arithmetic.balls import FLOAT64, real_ball, working
 from verification.proofs.corner import corner, corner_orbit
-from verification.proofs.corner.border_collision import AffinePiece
 from verification.proofs.corner.corner import ARC, WALL, BoundaryPoint, Corner, constant
 from verification.proofs.corner.corner_orbit import BITS, MOST, divided, doubled_branch, half, linearised, slope_at_zero
 
 ARC_END, WALL_END = (float(x.mid()) for x in corner.corner_parameters())
-
-
-def affine(a: float, b: float, c: float, d: float) -> AffinePiece:
-    return AffinePiece(((arb(a), arb(b)), (arb(c), arb(d))), (arb(0), arb(0)))
 
 
 OPEN, SAME = arb(0, 1), affine(1, 0, 0, 1)

@@ -6,13 +6,9 @@ import pytest
 from flint import arb
 
 from verification.arithmetic.balls import working
-from verification.proofs.corner import corner, return_map
+from verification.proofs.corner import corner
 from verification.proofs.corner.corner import ARC, WALL
 from verification.proofs.corner.return_map import CusplessMap, Departures
-
-
-def landed(component: int, theta: float | arb) -> return_map.Departures:
-    return return_map.Departures(component, theta if isinstance(theta, arb) else arb(theta), arb(1), arb(0))
 
 
 @pytest.mark.parametrize("component", [ARC, WALL])

@@ -1,16 +1,12 @@
 """Maps of two affine pieces: the extent of an attractor, the stretch of cones, and the sides of fixed points."""
 
 import pytest
+from affine_pieces import affine
 from flint import arb
 
 from verification.proofs.corner import border_collision as border
 from verification.proofs.corner.border_collision import AffinePiece, extent, trapped
 from verification.proofs.corner.corner import ARC, WALL
-
-
-def affine(a, b, c, d, p=0.0, q=0.0, at=(0.0, 0.0)):
-    return AffinePiece(((arb(a), arb(b)), (arb(c), arb(d))), (arb(p), arb(q)), (arb(at[0]), arb(at[1])))
-
 
 TENT = {ARC: affine(0.25, 0.125, 0, 1.5, 0, 1), WALL: affine(0.25, 0, 0, -1.5, 0, 1)}  # v -> 1 - 1.5*abs(v)
 TURNED = {ARC: affine(0.25, 0, 0, -1.5, 0, -1), WALL: affine(0.25, 0.125, 0, 1.5, 0, -1)}

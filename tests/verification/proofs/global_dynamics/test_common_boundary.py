@@ -106,12 +106,6 @@ def test_a_disc_is_taken_into_itself_where_there_is_room():
     assert min(sum(seen), len(seen) - sum(seen)) > 10
 
 
-def off(at, centre, part):
-    """The displacement of a point from the middle of the copy turned by `part` thirds, up to whole turns."""
-    theta = at[0] - centre[0] - tau * part / 3
-    return np.array([theta - tau * np.rint(theta / tau), at[1] - centre[1]])
-
-
 def series(*coefficients):
     return SimpleNamespace(c=[acb(x) for x in coefficients])
 

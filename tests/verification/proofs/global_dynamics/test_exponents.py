@@ -103,13 +103,6 @@ def test_the_least_mean_weight_is_that_of_the_lightest_walk():
         assert abs(least_mean(weights, graph, 6) - least) < 1e-12
 
 
-def walks(*edges):
-    """The Morse graph with these edges between eight boxes of two charts, the first three times as large."""
-    grid = Grid((Chart("a", (1, 4), (-1, 1)), Chart("b", (5, 7), (2, 3))), 2, 2)
-    edges = csr_matrix((np.ones(len(edges), dtype=bool), tuple(zip(*edges, strict=True))), shape=(9, 9))
-    return morse_graph(Transitions(grid, grid.whole(), np.ones(8, dtype=bool), edges))
-
-
 class Linear:
     """A map of the plane, cut into three boxes side by side, each with one constant matrix."""
 

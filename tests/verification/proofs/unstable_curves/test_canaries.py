@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from broken_line import BrokenLine, lozi
+from broken_line import BrokenLine, Unfolded, about_the_fixed_point, at
 
 from verification.proofs.unstable_curves.anchor import anchor
 from verification.proofs.unstable_curves.growth import growth
@@ -11,26 +11,15 @@ from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractor
 from verification.rigorous.boxes import Boxes
 from verification.rigorous.graph import Cells
 
-
-def at(chart, x, y):
-    """Points as boxes of width 0."""
-    return Boxes(np.array(chart), (np.array(x),) * 2, (np.array(y),) * 2)
-
-
 X = 1 / (1 + 1.6 - 0.05)  # the fixed point on the right
 
 
-def fresh():
-    """The statement for a Lozi map for which all hypotheses hold."""
-    return NoTwoAttractors(lozi(1.6, 0.05), 512, 512, at([1], [X], [0.05 * X]), (1, X, 0.05 * X), 1, 0.1)
-
-
-LOZI = fresh()
+LOZI = about_the_fixed_point(1.6, 0.05)
 
 
 def given(region):
     """The same statement with another region."""
-    found = fresh()
+    found = about_the_fixed_point(1.6, 0.05)
     found.__dict__["region"] = region
     return found
 
@@ -109,9 +98,6 @@ def test_cones_that_the_map_does_not_keep_are_refused():
 
 
 def test_a_map_that_says_of_no_join_where_it_folds_is_refused():
-    class Unfolded(BrokenLine):
-        joins = ()
-
     part = LOZI.map
     unfolded = replace(LOZI, map=Unfolded(part.knots, part.b, part.height))
     assert unfolded.checks["continuous"] is None

@@ -6,12 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from broken_line import CHARTS
 from scipy.sparse import csr_matrix
 
 from verification.proofs.unstable_curves.growth import growth
-from verification.rigorous.boxes import Chart
 
-CHARTS = Chart("a", (-1.0, 0.0), (-1.0, 1.0)), Chart("b", (3.0, 5.0), (-1.0, 1.0)), Chart("c", (0.0, 1.0), (-1.0, 1.0))
 ROUND = SimpleNamespace(charts=CHARTS, joins=((0, 1), (1, 2), (2, 0)))
 
 

@@ -5,25 +5,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from broken_line import BrokenLine, lozi
+from broken_line import CHARTS, BrokenLine, Unfolded, about_the_fixed_point, at
 
 from verification.proofs.unstable_curves.anchor import anchor
 from verification.proofs.unstable_curves.cover import cover
 from verification.proofs.unstable_curves.growth import growth
 from verification.proofs.unstable_curves.no_two_attractors import NoTwoAttractors, continuous
-from verification.rigorous.boxes import Boxes, Chart
-
-
-def at(chart, x, y):
-    """Points as boxes of width 0."""
-    return Boxes(np.array(chart), (np.array(x),) * 2, (np.array(y),) * 2)
-
-
-def about_the_fixed_point(a, b, columns=512):
-    """The statement for a Lozi map and the region grown from its right fixed point."""
-    x = 1 / (1 + a - b)
-    return NoTwoAttractors(lozi(a, b), columns, 512, at([1], [x], [b * x]), (1, x, b * x), 1, 0.1)
-
 
 LOZI = about_the_fixed_point(1.6, 0.05)
 TWO = BrokenLine(((-2.0, -1.1), (-1.5, -1.9), (-1.0, -1.1), (1.0, 1.1), (1.5, 1.9), (2.0, 1.1)), 0.02, 0.04)
@@ -131,15 +118,9 @@ def test_an_interval_newton_step_from_outside_of_the_rectangle_is_none():
 def test_a_fold_that_is_left_out_changes_the_sum():
     """Without its join the Lozi map would seem to stretch without a fold."""
 
-    class Unfolded(BrokenLine):
-        joins = ()
-
     part = LOZI.map
     unfolded = Unfolded(part.knots, part.b, part.height)
     assert growth(cover(unfolded, 512, 512, LOZI.start)).sums[0] < 1 < LOZI.growth.sums[0]
-
-
-CHARTS = tuple(Chart(name, ends, (-1.0, 1.0)) for name, ends in (("a", (-1.0, 0.0)), ("b", (3.0, 5.0)), ("c", (0, 1))))
 
 
 def table(joins=((0, 1), (1, 2)), charts=CHARTS, one_to_one=True):

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from broken_line import CHARTS
 
 from verification.proofs.unstable_curves.spans import PAD, SpanMap, Spans
-from verification.rigorous.boxes import Chart, collected
+from verification.rigorous.boxes import collected
 
-CHARTS = tuple(Chart(name, ends, (-1.0, 1.0)) for name, ends in (("a", (-1.0, 0.0)), ("b", (3.0, 5.0)), ("c", (0, 1))))
 CLOSE = 8 * PAD  # what a few paddings add
 
 

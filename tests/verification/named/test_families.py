@@ -62,7 +62,8 @@ def scan(scene, starts, seed):
         orbit = map.orbit(theta, phi, 64, part)
         place = np.stack([orbit.x, orbit.y, np.sin(orbit.phi)])
         gap = np.linalg.norm(place[:, 1:] - place[:, :1], axis=0)
-        back, n = (gap.min(axis=0) < 1e-9) & (nu < -1e-4), np.argmax(gap < 1e-6, axis=0) + 1
+        near = gap.min(axis=0)  # a slow spiral about a cycle that is to double comes nearer after two rounds
+        back, n = (near < 1e-9) & (nu < -1e-4), np.argmax(gap < np.maximum(1e-6, 1e4 * near), axis=0) + 1
         means = np.cumsum(np.concatenate([place, place**2]), axis=1)[:, n - 1, np.arange(n.size)] / n
         for period in np.unique(n[back]):
             left = means[:, back & (n == period)].T

@@ -35,7 +35,7 @@ golden: $(VENV)/test.stamp
 
 # The pages, those of the docs too, in a headless Chromium, which must be on the path or named by CHROMIUM.
 browser: $(VENV)/test.stamp $(VENV)/browser.stamp docs
-	$(BIN)/python -m pytest -q -n $(JOBS) tests/browser
+	$(BIN)/python -m pytest -q tests/browser
 
 # The certificates of the report, by the second reader: Python alone, nothing of this package. A few minutes. Then
 # whether each number that report and pages call certified has one.

@@ -296,7 +296,7 @@ def event_blocks(said: Document, proved: Mapping[str, Document], more: Sequence[
         "Every event next to which a family attracts, in order of the parameter; located in float64 and then proved in "
         "balls where its kind has a certificate."
     )
-    columns = "at", "what happens", "", "period", "on", "born there", "checklist"
+    columns = "at", "what happens", "criticality", "period", "on", "born there", "checklist"
     first: Block = (
         Listing(caption, columns, tuple(rows), said["command"]) if rows else Paragraph("No family has an event.")
     )

@@ -5,9 +5,11 @@ from these files; files with other settings are ignored.
 """
 
 import json
+import re
 import shlex
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from decimal import Decimal
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
@@ -25,6 +27,7 @@ from symbolic.tables.scene import Scene
 Arrays = Mapping[str, NDArray[Any]]
 FILE = "scene.toml"  # among the parts: the scene as a file that `--scene` reads
 DRAWN = "--plot FILE.svg"  # option of the command beneath a picture
+LONG = re.compile(r"-?\d+\.\d{6,}")  # a number with enough digits to be told from others
 CONTRACTIONS = ("1/10", "1/2", "9/10")
 
 
@@ -225,4 +228,8 @@ class Parts:
         except (ValueError, ArithmeticError):
             return False
         shown = {**document, "blocks": [block for block in document["blocks"] if block["kind"] != "certificate"]}
-        return proof.proved and proof.result["value"] in json.dumps(shown)
+        value = Decimal(proof.result["value"])  # which may have more digits than are shown
+        return proof.proved and any(
+            abs(Decimal(text) - value) <= Decimal(1).scaleb(-len(text.partition(".")[2]))
+            for text in LONG.findall(json.dumps(shown))
+        )

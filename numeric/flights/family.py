@@ -163,6 +163,7 @@ class Family(ABC):
 
     name = ""  # a label for files and tables; no code depends on it
     path = ""  # how flights are computed, in words
+    slow: ClassVar[bool] = False  # takes a bounce ten times as long as on other tables
     cusped: ClassVar[bool] = False  # a boundary point without a normal, at cos(theta/2) = 0
     pairs: ClassVar[tuple[int, ...]] = ()  # where the pairs of fields begin that have length one
     stops = True  # some landings are outcomes that stop the particle

@@ -43,6 +43,7 @@ class General(Family):
     """The flight on any table. Paper: section 2."""
 
     name, path = "general", "every zero of the flight function on every piece, first hit"
+    slow = True
     pairs = (2,)
     position = ("component", "theta")
     direction = ("vx", "vy")

@@ -33,7 +33,7 @@ SCANNED = 64  # pieces, up to which all their boxes are looked at: beyond, a tre
 class Spline(General):
     """The flight on tables whose pieces are cubic in the parameter. Paper: section 2."""
 
-    name = "spline"
+    name, slow = "spline", False
     width = 16
 
     def __init__(self, boundary: Boundary) -> None:

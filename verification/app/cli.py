@@ -144,14 +144,18 @@ def _writable(context: click.Context, option: click.Parameter, value: str | None
     return Output(value)
 
 
+def reason(error: Exception) -> object:
+    """Why a file cannot be read or written, in the system's words where it has some."""
+    return getattr(error, "strerror", None) or error
+
+
 def _refuse(value: str, accepted: str) -> Path:
     """The path, if a file can be written there; otherwise raises click's error."""
     path = Path(value)
     try:
         path.exists()
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise click.BadParameter(f"{value!r} cannot be written ({reason}); accepted: {accepted}") from None
+        raise click.BadParameter(f"{value!r} cannot be written ({reason(error)}); accepted: {accepted}") from None
     if path.is_dir():
         raise click.BadParameter(f"{value!r} is a directory; accepted: {accepted}")
     if not path.parent.is_dir():

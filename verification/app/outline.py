@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symbolic.tables.definition import exact
+from verification.app.cli import reason
 from verification.app.points import rings
 
 if TYPE_CHECKING:
@@ -420,5 +421,5 @@ def _text(option: str, path: str, encoding: str = "utf-8-sig") -> str:
         if len(content) > LARGEST:
             raise ValueError(f"{option} {path!r} is larger than {LARGEST >> 20} MB; accepted: smaller files")
         return content.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
-    except (OSError, UnicodeDecodeError) as reason:
-        raise ValueError(f"{option} {path!r} cannot be read: {getattr(reason, 'strerror', None) or reason}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ValueError(f"{option} {path!r} cannot be read: {reason(error)}") from None

@@ -21,7 +21,7 @@ from symbolic import tables
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text, range_ends, range_text
 from symbolic.tables.law import Law, parameters_of_law
 from symbolic.tables.scene import Scene
-from verification.app.cli import Whole, columns
+from verification.app.cli import Whole, columns, reason
 from verification.app.lines import on_terminal
 
 if TYPE_CHECKING:
@@ -194,8 +194,8 @@ def _from_file(
             raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
     try:
         found = Scene.load(file)
-    except (OSError, UnicodeDecodeError) as reason:
-        raise ValueError(f"--scene {file!r} cannot be read: {getattr(reason, 'strerror', None) or reason}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ValueError(f"--scene {file!r} cannot be read: {reason(error)}") from None
     numbers = {name: parameter_text(f"--shape {name}", text) for name, text in values.items()}
     law = None if formula is None else _law(formula)
     return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)

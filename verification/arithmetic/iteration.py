@@ -186,8 +186,8 @@ def heard(by: Hearer) -> Iterator[None]:
         _hearer.reset(before)
 
 
-def silent(share: float) -> None:
-    """A `tick` that does nothing, for proofs that do not report their progress."""
+def silent(said: object) -> None:
+    """A `tick` that does nothing, for work that does not report its progress."""
 
 
 def telling(about: str) -> Tick:

@@ -29,7 +29,6 @@ from .questions import (
     law_over,
     morse_graph,
     trapping_region,
-    unheard,
 )
 from .tangencies import LEAST, SAME, near, objection_of
 from .theorems import check, checked
@@ -90,5 +89,4 @@ __all__ = [
     "stay",
     "tangencies",
     "trapping_region",
-    "unheard",
 ]

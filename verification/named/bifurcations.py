@@ -6,19 +6,11 @@ from typing import Any, overload
 
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene, as_scene
+from verification.arithmetic.iteration import silent
 from verification.cycles.branch import Branch
 from verification.named.families import Continuation
 from verification.named.locate import Located
-from verification.named.questions import (
-    BranchEvent,
-    PeriodicOrbit,
-    Tick,
-    certify,
-    ends_of,
-    find_cycles,
-    follow,
-    unheard,
-)
+from verification.named.questions import BranchEvent, PeriodicOrbit, Tick, certify, ends_of, find_cycles, follow
 
 KINDS = {"saddle-node": "fold", "doubling": "period doubling", "symmetry-breaking": "pitchfork"}  # for any scene
 SEARCHES = 12  # values of the parameter at which cycles are looked for
@@ -84,7 +76,7 @@ def bifurcations(
     scene = as_scene(table, **{name: own for name, own in interval.items() if name != parameter})
     ends_of(parameter, ends)
     scene = scene if parameter == "lam" else scene.spanning(parameter, *ends)
-    found = Continuation(scene, parameter, tuple(ends), starts, seed, tick=tick or unheard)
+    found = Continuation(scene, parameter, tuple(ends), starts, seed, tick=tick or silent)
     if kind is None:
         return found.run(values)
     if period is None:

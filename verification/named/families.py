@@ -29,6 +29,7 @@ from numeric.sweeps.sweep import at_value, map_of, text_of
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal
+from verification.arithmetic.iteration import silent
 from verification.cycles.arc import LostError, Steps
 from verification.cycles.branch import Branch, Event, branch
 from verification.cycles.chords import Chords
@@ -38,7 +39,7 @@ from verification.cycles.switching import switched
 from verification.cycles.systems import whole
 from verification.named.accounts import Check, Range, Unfollowed
 from verification.named.events import proof_of
-from verification.named.questions import PeriodicOrbit, Tick, ring_over, unheard
+from verification.named.questions import PeriodicOrbit, Tick, ring_over
 from verification.proofs.periodic.cycle_in_box import UniqueCycle
 
 VALUES, SHAPES, STARTS = 200, 40, 200  # each shape is a table of its own
@@ -82,7 +83,7 @@ class Continuation:
     seed: int = 1
     least: float = LEAST
     only: int | None = None
-    tick: Tick = unheard
+    tick: Tick = silent
     families: list[CycleFamily] = field(default_factory=list)
     seen: list[Endings] = field(default_factory=list)
     labels: list[NDArray[np.int64]] = field(default_factory=list)

@@ -22,6 +22,7 @@ from numeric.pinball.states import ComparedByValues
 from symbolic.tables.definition import exact
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene, as_scene
+from verification.arithmetic.iteration import silent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,10 +41,6 @@ if TYPE_CHECKING:
 
 SHOWN = 12  # rows of a table in a notebook
 Tick = Callable[[str], None]
-
-
-def unheard(said: str) -> None:
-    """Does nothing: the default of `tick`."""
 
 
 @dataclass(frozen=True)
@@ -185,7 +182,7 @@ def find_cycles(
         raise ValueError(f"find_cycles: {longest!r} is no period; accepted: integers from 2")
     from sympy import S
 
-    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or unheard, scene.law)
+    found = all_cycles(scene.table, S(scene.lam), longest, seed, tick or silent, scene.law)
     made = (_orbit(scene, cycle) for cycle in found.catalogue.cycles if period in (None, cycle.period))
     return PeriodicOrbits(made, found)
 

@@ -9,7 +9,7 @@ import re
 import shlex
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from decimal import Decimal
+from fractions import Fraction
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
@@ -228,8 +228,7 @@ class Parts:
         except (ValueError, ArithmeticError):
             return False
         shown = {**document, "blocks": [block for block in document["blocks"] if block["kind"] != "certificate"]}
-        value = Decimal(proof.result["value"])  # which may have more digits than are shown
+        value = Fraction(proof.result["value"])  # which may have more digits than are shown
         return proof.proved and any(
-            abs(Decimal(text) - value) <= Decimal(1).scaleb(-len(text.partition(".")[2]))
-            for text in LONG.findall(json.dumps(shown))
+            round(value, len(text.partition(".")[2])) == Fraction(text) for text in LONG.findall(json.dumps(shown))
         )

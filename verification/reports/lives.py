@@ -17,6 +17,7 @@ from numeric.sweeps.endings import CHAOTIC, NEUTRAL, STOPPED
 from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal
+from verification.arithmetic.iteration import silent
 from verification.cycles.branch import Branch, Event
 from verification.cycles.cascade import FEIGENBAUM
 from verification.cycles.chords import Chords
@@ -24,7 +25,7 @@ from verification.cycles.recurrence import BifurcationKind
 from verification.named.attractors import joined
 from verification.named.events import digits_to_follow, proof_of
 from verification.named.families import SETS, SURE, Continuation, FamilyEvent
-from verification.named.questions import PeriodicOrbit, Tick, follow, unheard
+from verification.named.questions import PeriodicOrbit, Tick, follow
 from verification.plots.dynamics import plotted
 from verification.plots.sheet import styled
 from verification.reports.asked import DRAWN, Asked, Parts
@@ -46,7 +47,7 @@ from verification.reports.pictures import saved
 
 Document = dict[str, Any]
 Made = tuple[list[Block], list[Effort], Document]
-SLOW, FEWER = "general", 40  # the flight by which a bounce takes ten times as long, and the starts at a value then
+FEWER = 40  # starts at a value where the flight is slow
 MOST = 250  # points of a branch, each way
 LOCATED = 9  # digits of an event
 CERTAIN = {BifurcationKind.BRANCH_POINT: 7}  # where branches cross the equations are singular
@@ -60,7 +61,7 @@ def continuation(asked: Asked, parts: Parts, level: int, heard: Tick) -> Continu
     found: Continuation = parts.memory.get("families") or Continuation(
         asked.scene, asked.parameter, (asked.low, asked.high), seed=asked.seed
     )
-    if not found.seen and found.map_at(asked.own_value).family.name == SLOW:
+    if not found.seen and found.map_at(asked.own_value).family.slow:
         found.starts = FEWER
     parts.memory["families"], found.tick = found, heard
     found.run((VALUES if asked.parameter == "lam" else SHAPES)[level])
@@ -75,7 +76,7 @@ def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
         found, late = parts.memory["families"], True
         if not found.seen:
             raise
-    found.tick = unheard  # the check is not ended
+    found.tick = silent  # the check is not ended
     numbers = _shares(found)
     parts.keep(f"families-{level}", numbers | lines(asked, found))
     checked = found.check()

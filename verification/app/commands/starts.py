@@ -15,6 +15,7 @@ import numpy as np
 from numeric.pinball.sampling import boundary, flight_through
 from numeric.pinball.states import KEYS, STATUSES, Orbit, flights
 from symbolic.tables.definition import exact
+from verification.app.cli import reason
 from verification.app.scene import start_of
 
 if TYPE_CHECKING:
@@ -93,8 +94,8 @@ def of_file(map: "PinballMap", path: Path) -> list[Start]:
     try:
         with path.open(encoding="utf-8-sig", newline="") as lines:
             rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
-    except (OSError, UnicodeDecodeError, csv.Error) as reason:
-        raise ValueError(f"--starts {path} cannot be read: {getattr(reason, 'strerror', None) or reason}") from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"--starts {path} cannot be read: {reason(error)}") from None
     header = ",".join(word.strip() for word in rows[0]) if rows else ""
     if header not in FILES:
         raise ValueError(f"--starts {path}: the first line is {header[:60]!r}; accepted: {', or '.join(FILES)}")

@@ -27,6 +27,7 @@ from flint import arb, fmpq
 
 from numeric.sweeps.workers import own_command
 from verification.arithmetic.balls import as_ball, bits_of, decimal, working
+from verification.arithmetic.iteration import silent
 from verification.measure.work.row import MethodResult, timed
 
 COUNTS = ("particles", "points")  # the units of settings that say how many answers a call gives
@@ -155,10 +156,6 @@ SHORTEST = 1e-3  # seconds of a sample; a shorter call is repeated within it
 HOPELESS = 5.0  # seconds: a longer first call is not repeated
 PATIENCE = 0.4  # seconds for all runs of one setting; a longer call runs once
 Say = Callable[[str], None]
-
-
-def silent(_: str) -> None:
-    """Does nothing: the default for `say`."""
 
 
 def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say: Say = silent) -> list[MethodResult]:

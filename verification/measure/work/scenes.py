@@ -24,6 +24,7 @@ from numeric.pinball.states import html_table, many, plotted
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene, as_scene
 from verification.arithmetic.balls import bits_of, working
+from verification.arithmetic.iteration import silent
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.maps.enclosed import EnclosedMap, Refusal
@@ -31,7 +32,7 @@ from verification.maps.exact import Bounce, ExactMap
 from verification.maps.laws import symbolic_derivative
 from verification.measure.work.cycles import cycle_question, here_alone, textbook_cycle, whole
 from verification.measure.work.exponents import grown, read_off
-from verification.measure.work.question import Answer, Claimed, Method, Question, Say, measured, silent
+from verification.measure.work.question import Answer, Claimed, Method, Question, Say, measured
 from verification.measure.work.row import HEAD, MethodResult, facts, plain, table
 from verification.measure.work.sought import DIGITS, Sought, last, scripted, to_digits
 from verification.named.locate import proof_near

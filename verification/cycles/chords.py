@@ -191,8 +191,7 @@ class Chords:
         True
         """
         ring, shape = around(self.closure, x), [at[name] for name in self.shapes]
-        ahead = self._angles(1, ring[1:-1], ring[2:], shape, order)
-        back = self._angles(-1, ring[1:-1], ring[:-2], shape, order)
+        ahead, back = self._angles(ring, shape, order)
         return self._terms(ahead, back, at["lam"], order, self._all_reflected(back[0], ring[1:-1], at, order))
 
     def _all_reflected(self, eta: Array, here: Array, at: Parameters, order: int) -> Slopes:
@@ -329,7 +328,7 @@ class Chords:
     def angles(self, x: Array, at: Parameters) -> tuple[Array, Array]:
         """The exit angle and the angle of incidence at each bounce, in radians."""
         ring, shape = around(self.closure, x), [at[name] for name in self.shapes]
-        out, into = (self._angles(way, ring[1:-1], end, shape, 0) for way, end in ((1, ring[2:]), (-1, ring[:-2])))
+        out, into = self._angles(ring, shape, 0)
         return out[0], into[0]
 
     def obstacle(self, x: Array, at: Parameters) -> str:
@@ -391,17 +390,19 @@ class Chords:
         both = [[end for end, on in zip(known[i], runs_on[i], strict=True) if not on] for i in self.components]
         return [min(ends, key=lambda e: abs(e - value), default=None) for ends, value in zip(both, x, strict=True)]
 
-    def _angles(self, way: int, here: Array, there: Array, shape: list[float], order: int) -> list[Array]:
-        parts = self.components
-        pairs = [(part, parts[(i + way) % len(parts)]) for i, part in enumerate(parts)]
+    def _angles(self, ring: Array, shape: list[float], order: int) -> tuple[list[Array], list[Array]]:
+        """Angles of the chords from each bounce to the next one and to the one before, and their derivatives."""
+        parts, n = self.components, self.period
+        here, there = np.tile(ring[1:-1], 2), np.concatenate([ring[2:], ring[:-2]])
+        pairs = [(part, parts[(i + way) % n]) for way in (1, -1) for i, part in enumerate(parts)]
         angles = chord_angles(self.table, ARRAYS)
-        found = np.empty((len(_places(self.table, order)), len(parts)))
+        found = np.empty((len(_places(self.table, order)), 2 * n))
         with np.errstate(all="ignore"):
             for pair in set(pairs):
                 chosen = np.array([p == pair for p in pairs])
                 for row, value in zip(found, angles(*pair, order)(here[chosen], there[chosen], *shape), strict=True):
                     row[chosen] = value
-        return list(found)
+        return list(found[:, :n]), list(found[:, n:])
 
 
 @cache

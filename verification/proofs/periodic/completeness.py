@@ -391,23 +391,33 @@ class Cover:
 
     def _impossible(self, boxes: Cuboids, middle: Array, reach: Array) -> Mask:
         """A mask of the boxes where one of the rules or of their linear combinations is proved not 0."""
-        n, gone, smooth = boxes.middle.shape[1], np.zeros(boxes.size, dtype=bool), np.ones(boxes.size, dtype=bool)
-        centre = [BallArray(middle[:, k]) for k in range(n)]
-        theta = [BallArray(middle[:, k], reach[:, k]) for k in range(n)]
+        n, size = boxes.middle.shape[1], boxes.size
+        places = middle.T.ravel()  # of all bounces in one array, so that each function is called once
+        centre, theta = BallArray(places), BallArray(places, reach.T.ravel())
+
+        def shifted(x: BallArray, by: int) -> BallArray:
+            return BallArray(*(np.roll(np.broadcast_to(part, places.shape), -by * size) for part in (x.m, x.r)))
+
+        def at_bounces(x: BallArray) -> list[BallArray]:
+            whole = spread(x, places)
+            return [whole[k * size : (k + 1) * size] for k in range(n)]
+
+        out, into = self.angle(theta, shifted(theta, 1)), self.angle(theta, shifted(theta, -1))
+        sides = self.reflected(into[0], theta)
+        refuted = np.all([apart(out[0] - exits) for exits, _, _ in sides], axis=0)
+        gone: Mask = np.any(refuted.reshape(n, size), axis=0)
+        smooth: Mask = np.ones(size, dtype=bool)
+        if len(sides) > 1:
+            smooth = np.all(one_sided(parted(theta)[0]).reshape(n, size), axis=0)
+        _, sigma, drift = sides[0]
+        back = self.angle(centre, shifted(centre, -1))[0]
+        values = at_bounces(self.angle(centre, shifted(centre, 1))[0] - self.reflected(back, centre)[0][0])
+        slopes = (at_bounces(x) for x in (sigma * into[2], out[1] + sigma * into[1] - drift, out[2]))
         rules = []  # values at the midpoint, and derivatives by the first bounce and the gaps
-        for i in range(n):
-            after = (i + 1) % n
-            out, into = self.angle(theta[i], theta[after]), self.angle(theta[i], theta[i - 1])
-            sides = self.reflected(into[0], theta[i])
-            gone |= np.all([apart(out[0] - exits) for exits, _, _ in sides], axis=0)
-            if len(sides) > 1:
-                smooth &= one_sided(parted(theta[i])[0])
-            _, sigma, drift = sides[0]
-            back = self.angle(centre[i], centre[i - 1])[0]
-            slope = [BallArray(np.zeros(boxes.size))] * n
-            for j, s in (i, out[1] + sigma * into[1] - drift), ((i - 1) % n, sigma * into[2]), (after, out[2]):
-                slope[j] = slope[j] + s
-            value = self.angle(centre[i], centre[after])[0] - self.reflected(back, centre[i])[0][0]
+        for i, (value, *near) in enumerate(zip(values, *slopes, strict=True)):
+            slope = [BallArray(np.zeros(size))] * n
+            for j, s in zip((i - 1, i, i + 1), near, strict=True):
+                slope[j % n] = slope[j % n] + s
             rules.append([value, *(total(slope[k:]) for k in range(n))])
         for weights in inverses([rule[1:] for rule in rules]):
             rules.append(

@@ -112,11 +112,12 @@ def cost(sweep: Sweep, workers: int | None = None, stored: bool = True, clock: C
     found, once, places, total = list[float](), list[float](), list[int](), 0.0
     for at in (first, *order):
         small, large = _thinned(sweep, at, few), _thinned(sweep, at, more)
-        new, again = seconds(small), seconds(small)
+        made = [] if at == first else [seconds(small)]  # with its map, which the first part has
+        again = seconds(small)
         most = again if few == more else seconds(large)
         places.append(_places(sweep, sweep.part(at)))
         found.append(_line(few, more, places[-1], again, most))
-        once += [max(0.0, new - again)] if len(found) > 1 else []
+        once += [max(0.0, new - again) for new in made]
         total = sum(found) / sum(places) * whole + float(np.median(once or [0.0])) * _scenes(sweep)
         error = _error(found, places, parts)
         patience = min(max(PATIENCE[0], SHARE * total), PATIENCE[1])

@@ -20,7 +20,6 @@ from .graph import (
     ranges,
     refined,
     transitions,
-    walked,
 )
 from .norms import in_frame, shrinkage, times
 from .scene_entries import check_size, scene_of, scene_said, title_of
@@ -74,7 +73,6 @@ __all__ = [
     "times",
     "title_of",
     "transitions",
-    "walked",
     "whole",
     "whole_number",
 ]

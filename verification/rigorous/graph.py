@@ -216,7 +216,7 @@ class Transitions:
     @cached_property
     def components(self) -> Indices:
         """The strongly connected component of each vertex."""
-        found = connected_components(walked(self.edges), directed=True, connection="strong")
+        found = connected_components(self.edges, directed=True, connection="strong")
         return np.asarray(found[1], dtype=np.int64)
 
     @cached_property
@@ -241,8 +241,8 @@ class Transitions:
         labels = labels.astype(np.int32)
         source, target = np.repeat(labels, np.diff(self.edges.indptr)), labels[self.edges.indices]
         between = source != target
-        source, target = source[between], target[between]
-        return walked(sparse(source, target, size)), walked(sparse(target, source, size))
+        graph = sparse(source[between], target[between], size).astype(np.float64)  # as SciPy's search takes it
+        return graph, graph.T.tocsr()
 
     def connected(self, start: Mask) -> Mask:
         """Leaves on walks from `start` back to `start`; if no others, then orbits that leave `start` never return."""
@@ -354,20 +354,14 @@ def joined(grid: Grid, cells: Cells, leaf: Mask, edges: Arrows) -> Transitions:
 
 
 def sparse(source: NDArray[np.int32], target: NDArray[np.int32], size: int) -> csr_matrix:
-    """The adjacency matrix of a graph of `size` vertices in compressed rows; an edge may occur twice."""
-    order = np.argsort(source, kind="stable")
-    starts = np.concatenate([[0], np.cumsum(np.bincount(source, minlength=size))])
-    return csr_matrix((np.ones(target.size, dtype=bool), target[order], starts), shape=(size, size))
+    """The adjacency matrix of a graph of `size` vertices in compressed rows, with each edge once.
 
+    With repeated edges, SciPy's `connected_components` may not end.
 
-def walked(graph: csr_matrix) -> csr_matrix:
-    """The graph with each edge once, for SciPy's search: with repeated edges `connected_components` may not end.
-
-    >>> walked(sparse(np.array([0, 0, 1]), np.array([1, 1, 0]), 2)).nnz
+    >>> sparse(np.array([0, 0, 1]), np.array([1, 1, 0]), 2).nnz
     2
     """
-    graph.sum_duplicates()
-    return csr_matrix((np.ones(graph.indices.size), graph.indices, graph.indptr), shape=graph.shape)
+    return csr_matrix((np.ones(target.size, dtype=bool), (source, target)), shape=(size, size))
 
 
 def ranges(first: Indices, last: Indices) -> Indices:

@@ -96,7 +96,6 @@ def clusters(
     inner = graph.edges[:-1, :-1][chosen][:, chosen].tocoo()
     count = int(names.max()) + 1
     walks = csr_matrix((np.ones(inner.nnz, dtype=bool), (names[inner.row], names[inner.col])), shape=(count, count))
-    walks.sum_duplicates()
     boxes = _rectangles(graph, cells, names, count)
     pieces, source = boxes.parts(*CUT)
     wide = np.max(boxes.x[1] - boxes.x[0])

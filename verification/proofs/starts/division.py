@@ -31,7 +31,7 @@ from verification.proofs.global_dynamics.regions import expansion
 from verification.proofs.starts.core import NEARLY, AbsorbingTube, attracts, derivative
 from verification.proofs.starts.parallelograms import Parallelograms, push_forward
 from verification.rigorous.boxes import Boxes
-from verification.rigorous.graph import Grid, Mask, MorseGraph, morse_graph, refined, walked
+from verification.rigorous.graph import Grid, Mask, MorseGraph, morse_graph, refined
 from verification.rigorous.theorem import hypothesis
 
 LONG = 200  # the length of walks whose least mean bounds the exponent
@@ -183,7 +183,7 @@ class Division(RangeTheorem):
         """
         graph = self.graph.transitions
         some = np.flatnonzero(rest[:-1])
-        inner = walked(graph.edges[:-1, :-1][some][:, some].tocsr())
+        inner = graph.edges[:-1, :-1][some][:, some].tocsr()
         count, labels = connected_components(inner, directed=True, connection="strong")
         boxes = graph.grid.boxes(graph.cells).chosen(some)
         sides, own = self.annulus.sides(boxes, self.tube.chart), boxes.chart == self.tube.chart

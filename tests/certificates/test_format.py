@@ -65,6 +65,7 @@ def test_the_page_on_trust_names_the_file_of_every_headline_and_no_other():
     assert named - {"lam", "a"} == {path.stem for path in FILES} - examples
 
 
+@pytest.mark.slow
 def test_every_number_that_pages_and_reports_call_certified_has_a_certificate(printed, capsys, tmp_path):
     """A report of the paper is read where it exists; this one is made up, with a right and a wrong number."""
     made = tmp_path / "report.json"

@@ -12,6 +12,7 @@ from committed import document, moved, verdict
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.slow
 def test_a_doubling_inside_of_a_report_is_proved(check):
     blocks = [
         b for part in json.loads((ROOT / "docs/reports/limacon.json").read_text())["sections"] for b in part["blocks"]
@@ -25,6 +26,7 @@ def test_a_doubling_inside_of_a_report_is_proved(check):
 LIMACON = document("limacon-48")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "answer"),
     [

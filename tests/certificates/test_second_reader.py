@@ -214,6 +214,7 @@ def test_a_law_that_is_told_is_the_law(check, law, shape, answer):
     assert verdict(check, cycle(scene, [HALF_PI, f"-{HALF_PI}"], [0, 0])).startswith(answer)
 
 
+@pytest.mark.slow
 def test_a_chord_across_a_bay_is_not_free(check):
     """A flower of six petals: the equations hold from the far side of one petal to the next, across a bay."""
     with mpmath.workdps(60):

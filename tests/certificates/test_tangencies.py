@@ -26,6 +26,7 @@ def number(pair) -> float:
     return float(Fraction(int(pair[0])) * Fraction(2) ** int(pair[1]))
 
 
+@pytest.mark.slow
 def test_what_is_told_of_a_tangency_is_proved_by_the_second_reader(check, chain):
     given = document("boundary-crisis") | chain
     line = check.checked(given).splitlines()[0]
@@ -88,6 +89,7 @@ def test_a_tangency_under_another_law_is_proved_however_the_law_is_written(check
     assert re.fullmatch(r"proved: .* = 0\.664811968482\d*, within 1e-24", read(check, given | {"scene": scene}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "answer"),
     [

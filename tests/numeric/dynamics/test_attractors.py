@@ -45,6 +45,7 @@ def test_three_localised_attractors_of_the_egg_merge_into_one():
     assert kinds(after) == [("CHAOTIC", 0, "D3")] + [("CYCLE", 3, "C3")] * 2
 
 
+@pytest.mark.slow
 def test_period_3_runs_both_ways_round():
     cycles = [a for a in find(an_egg("0.7"), 300, 1, images=True) if a.period == 3]
 
@@ -82,6 +83,7 @@ def test_the_share_of_both_ways_round_is_the_same_within_its_interval():
     assert one.share.count + other.share.count == 4000
 
 
+@pytest.mark.slow
 def test_labels_do_not_depend_on_the_company_of_a_particle():
     component, theta, phi = interior_starts(an_egg("0.66"), 300, 3)[:3]
     label, found = classify(an_egg("0.66"), theta, phi, component)
@@ -185,6 +187,7 @@ def test_mirror_images_join_at_their_crisis_and_not_before(lam, symmetries):
     assert not any(a.doubt for a in found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", ["10**-10", "1", "10**10"])
 def test_attractors_do_not_depend_on_the_unit_of_length(size):
     table = tables.parametric(f"3*cos(theta)*{size}/2", f"sin(theta)*{size}")
@@ -193,6 +196,7 @@ def test_attractors_do_not_depend_on_the_unit_of_length(size):
     assert (found[0].nu_plus, found[0].nu_minus) == pytest.approx([np.log(0.5) / 2] * 2)
 
 
+@pytest.mark.slow
 def test_a_cycle_through_joins_is_found_where_they_are_smooth():
     quarters = [tables.arc(f"q{k}", "3*cos(theta)/2", "sin(theta)", f"{k}*pi/2", f"{k + 1}*pi/2") for k in range(4)]
     found = find(PinballMap(tables.piecewise(*quarters), lam="0.5"), 20, seed=1)

@@ -44,6 +44,7 @@ def test_a_ball_has_the_label_of_the_cycle_it_ends_on():
         assert gaps.max() < 1e-8
 
 
+@pytest.mark.slow
 def test_the_quick_labels_are_the_sure_ones():
     map, found = settled("0.66")
     particles = starts_at(map, *random_points(whole(map), 5000, np.random.default_rng(RNG)))
@@ -51,6 +52,7 @@ def test_the_quick_labels_are_the_sure_ones():
     assert labels(map, particles, found).tolist() == labels(map, particles, found, sure=True).tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("map", "columns", "kept"),
     [
@@ -71,6 +73,7 @@ def test_a_cell_is_followed_once_for_all_its_images_and_all_have_the_label_of_th
     assert np.mean(label == alone.label) > 0.998  # only at a boundary does rounding decide
 
 
+@pytest.mark.slow
 def test_a_mirror_exchanges_the_basins_of_the_two_ways_round():
     map, found = settled("0.66")
     cycles = [i for i, a in enumerate(found) if a.kind is Kind.CYCLE]

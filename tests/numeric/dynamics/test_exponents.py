@@ -71,6 +71,7 @@ def test_intervals_of_exponents_hold_a_long_runs_result(name, lam):
     assert np.mean([x.error for x in found]) == pytest.approx(np.std([x.mean for x in found]), rel=0.15)
 
 
+@pytest.mark.slow
 def test_the_slap_exponent_of_the_cardioid_is_the_mean_over_ulams_invariant_density():
     map, cells, points = PinballMap("cardioid", lam=0), 1500, 40
     s = -4 + 8 * (np.arange(cells * points) + 0.5) / (cells * points)
@@ -141,6 +142,7 @@ def test_where_vectors_grow_like_a_power_of_the_time_the_error_holds_the_exponen
         assert found["nu_plus"] <= found["nu_plus_stderr"]
 
 
+@pytest.mark.slow
 def test_two_attractors_are_never_averaged():
     map = PinballMap("cuspless", lam="0.09")
     found = surveyed(map, interior_starts(map, 60, seed=1), 500, 1000)

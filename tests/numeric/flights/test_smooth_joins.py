@@ -109,6 +109,7 @@ def test_no_flight_passes_through_a_join_at_which_it_is_aimed(name, kernels):
     assert np.max(flown - far[seen]) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WHOLE)
 @pytest.mark.parametrize("kernels", [False, True])
 def test_flights_from_a_join_are_those_from_beside_it(name, kernels):
@@ -130,6 +131,7 @@ def test_flights_from_a_join_are_those_from_beside_it(name, kernels):
 POINTS = "\n".join(f"{1.5 * np.cos(t):.18e},{np.sin(t):.18e}" for t in 2 * np.pi * np.arange(24) / 24)
 
 
+@pytest.mark.slow
 def test_the_short_axis_of_an_ellipse_through_points_attracts(tmp_path, capsys):
     """Both its ends are joins of the spline; both exponents are near `log(1/2)/2 = -0.34657`, as in the ellipse."""
     path = tmp_path / "points.csv"

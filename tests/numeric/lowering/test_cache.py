@@ -80,6 +80,7 @@ FULL = "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n
 FULL += "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", [WITHOUT_LLVM, FULL], ids=["no compiler", "full disk"])
 def test_without_a_compiler_and_on_a_full_disk_the_landing_is_the_same(fault, tmp_path):
     (usual, _), _ = run(tmp_path / "usual")

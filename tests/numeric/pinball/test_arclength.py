@@ -103,6 +103,7 @@ def test_arc_length_begins_where_a_table_says(origin, before):
         assert float(arc.s(low, component)) == pytest.approx(start + turn, abs=1e-14)
 
 
+@pytest.mark.slow
 def test_a_narrow_spike_has_its_length():
     """A spike 1/1000 wide and 1/4 high on a circle, against mpmath's quadrature between points around the spike."""
     context = mpmath.MPContext()

@@ -82,6 +82,7 @@ def test_a_tolerance_is_a_number_of_digits(capsys):
 WAISTED = ("--polar", "1 + cos(2*theta)/2", "--lam", "9/10")  # the line that touches both sides of a waist
 
 
+@pytest.mark.slow
 def test_balls_prove_first_hits_where_the_table_is_not_convex(capsys):
     question = ("orbit", *WAISTED, "--start", "1,1/2", "--bounces", "6", "--digits", "20")
     (status, proved, _), (_, plain, _) = (

@@ -151,6 +151,7 @@ def test_one_particle_by_itself_is_told_with_the_bits_that_it_has_among_others(t
 Orbit = ("component", "theta", "phi", "eta", "x", "y", "code")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "map",
     [

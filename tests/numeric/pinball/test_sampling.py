@@ -36,6 +36,7 @@ def directions(map, starts):
     return np.arctan2(y - starts.y, x - starts.x)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cardioid", "egg", "waisted"])
 def test_interior_points_are_uniform_in_the_area_and_their_directions_independent_and_uniform(name):
     map = PinballMap(WAISTED, lam=0.5) if name == "waisted" else PinballMap(name, lam=0.5, **SCENES[name])

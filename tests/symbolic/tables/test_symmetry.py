@@ -62,6 +62,7 @@ def test_the_egg_with_k_points_has_the_dihedral_group_of_the_k_gon(K):
     assert [sum(symmetry.sign == sign for symmetry in found) for sign in (1, -1)] == [K, K]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("K", [2, 3, 5])
 @pytest.mark.parametrize("shaped", [lambda x: exp(x / 30), lambda x: 1 / (9 + x), lambda x: sqrt(9 + x)])
 def test_a_radius_that_is_no_finite_sum_has_the_symmetries_of_the_wave_in_it(K, shaped):

@@ -33,6 +33,7 @@ def test_the_command_on_the_page_is_one_that_runs(table, live, capsys):
     assert "3 bounces" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", SEVERAL)
 def test_the_python_on_the_page_gives_the_orbit_that_is_drawn(table, live, tmp_path):
     live.table.value = table
@@ -83,6 +84,7 @@ def test_nobody_waits_while_the_formula_of_another_is_read():
     assert asyncio.run(turns()) > 1
 
 
+@pytest.mark.slow
 def test_what_is_typed_is_never_executed(live):
     live.table.value = "polar formula"
     live.formula.value = "__import__('os').getcwd()"

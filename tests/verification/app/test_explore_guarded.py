@@ -22,6 +22,7 @@ def served():
         yield found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "origin", ["http://evil.example", "http://127.0.0.1.evil.example", "null", "http://127.0.0.1:1"]
 )

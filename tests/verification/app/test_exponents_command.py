@@ -21,6 +21,7 @@ def test_the_document_says_what_was_found_and_how(capsys):
     assert {"trace", "batches", "batch_bounces", "trusted", "autocorrelation_time", "naive_stderr"} <= set(group)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_document_and_another_law_other_starts(capsys):
     first, again = (answer(capsys, *CARDIOID)[1] for _ in range(2))
     other = answer(capsys, *CARDIOID, "--start-law", "phase")[1]
@@ -58,6 +59,7 @@ def test_the_chaotic_slap_map_of_the_cardioid_has_a_proved_exponent_and_the_samp
     assert f"proved: {proved['nu_plus']}, -oo" in text
 
 
+@pytest.mark.slow
 def test_symmetric_attractors_are_one_result_and_different_ones_none(capsys):
     egg = ("lyapunov", "egg", "--alpha", "0.08", "--bounces", "300", "--orbits", "30", "--seed", "1")
     images = answer(capsys, *egg, "--lam", "0.7")[1]
@@ -78,6 +80,7 @@ def test_a_budget_that_is_spent_is_said(capsys):
     assert "was not reached within the budget" in told
 
 
+@pytest.mark.slow
 def test_an_error_that_is_reached_is_done(capsys):
     status, document, _ = answer(capsys, *CARDIOID, "--until-error", "0.005")
 

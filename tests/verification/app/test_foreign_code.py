@@ -29,6 +29,7 @@ assert list(in_processes(abs, [[-1]], 1, ["json"])) == [(-1, 1)]
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("child", CHILDREN)
 def test_files_of_the_current_folder_are_not_run(tmp_path, child):
     """The folder contains a file named after each module of the standard library."""
@@ -42,6 +43,7 @@ def test_files_of_the_current_folder_are_not_run(tmp_path, child):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_every_child_process_is_started_by_the_one_command():
     """Code that starts Python never names the executable; only the workers use multiprocessing."""
     starting = set()

@@ -43,6 +43,7 @@ def test_output_that_goes_nowhere_is_told_in_one_sentence(shell, status, said, m
     assert (done.returncode, done.stderr) == (status, said)
 
 
+@pytest.mark.slow
 def test_a_number_too_large_or_too_small_for_decimals_is_shown_with_a_power_of_ten():
     done = ran(["orbit", "ellipse", "--a", "10**12", "--lam", "1/2", "--start", "pi/4,10**-9", "--bounces", "1"])
 

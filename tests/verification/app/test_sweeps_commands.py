@@ -33,6 +33,7 @@ def test_a_bifurcation_diagram_as_json(capsys):
     assert np.allclose(phi[..., :4], phi[..., 4:], atol=1e-6)  # the paper: period 4 at alpha = 0.08 and small lam
 
 
+@pytest.mark.slow
 def test_basins_of_the_cuspless_table_are_those_of_period_2_and_of_chaos(capsys):
     # the paper, section 5.2: at lam = 0.09 a period-2 and a chaotic attractor coexist
     found = document(capsys, "basins", "cuspless", "--lam", "0.09", "--columns", "12", "--rows", "9")
@@ -43,6 +44,7 @@ def test_basins_of_the_cuspless_table_are_those_of_period_2_and_of_chaos(capsys)
     assert np.allclose(found["coords"]["sin_phi"], (np.arange(9) - 4) / 4.5)
 
 
+@pytest.mark.slow
 def test_basins_have_the_symmetry_of_the_table():
     # y -> -y maps (s, phi) to (-s, -phi), and swaps or keeps attractors
     found = run(basins(Scene("cuspless").text, 0.09, 40, 30, starts=200))

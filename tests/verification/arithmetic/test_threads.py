@@ -3,6 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import mpmath
+import pytest
 from flint import ctx
 from sympy import Rational
 
@@ -32,6 +33,7 @@ def test_each_thread_has_the_digits_that_it_asked_for():
     assert (ctx.prec, mpmath.mp.prec) == before
 
 
+@pytest.mark.slow
 def test_closed_forms_keep_their_digits_in_threads():
     """alpha-tilde at four contractions, 20 to 400 digits."""
     asked = [(Rational(1, k), digits) for k in (2, 3, 5, 7) for digits in (20, 400)]

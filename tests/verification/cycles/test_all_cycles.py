@@ -34,6 +34,7 @@ def found():
     return all_cycles(TABLE, LAM, 6)
 
 
+@pytest.mark.slow
 def test_the_index_sums_vanish_for_every_period_and_every_number_of_turns(found):
     for n in range(2, 7):
         sums = found.catalogue.index_sums(n)
@@ -68,6 +69,7 @@ def test_the_count_on_cells_agrees_with_the_search(found, n):
     assert [zeros.positive, zeros.negative] == own
 
 
+@pytest.mark.slow
 def test_squares_that_symmetry_makes_alike_are_told_apart():
     """A bug found by the index law: all squares had the same sums of cosines, 0, and two passed for one."""
     searched = all_cycles(egg(4).at(alpha="1/18"), Rational(7, 10), 4)
@@ -91,6 +93,7 @@ def test_the_slap_map_of_the_cuspless_cardioid_has_the_cycles_that_subdivision_e
     assert sum(c.period for c in searched.of(2)) == len(periodic_points(2).stretches)
 
 
+@pytest.mark.slow
 def test_completeness_is_proved_for_short_periods_and_left_open_without_budget(found):
     assert no_others(found.catalogue, LAM, 2).complete is True
     assert no_others(found.catalogue, LAM, 3, budget=50).complete is None
@@ -98,6 +101,7 @@ def test_completeness_is_proved_for_short_periods_and_left_open_without_budget(f
     assert no_others(short, Rational(0), 3).complete is True  # paper: section 6.2, no period 3 at lam = 0
 
 
+@pytest.mark.slow
 def test_a_catalogue_that_lacks_a_cycle_is_not_proved_complete():
     catalogue = all_cycles(ellipse.at(a="3/2"), Rational(1, 2), 2).catalogue
     assert no_others(catalogue, Rational(1, 2), 2).complete is True
@@ -138,6 +142,7 @@ def test_completeness_is_proved_for_other_laws_and_not_of_a_catalogue_that_lacks
         catalogue.cycles.append(cycle)
 
 
+@pytest.mark.slow
 def test_completeness_is_proved_across_the_jump_of_a_law_of_arc_length_and_not_without_a_cycle_beside_it():
     law, table = Law("-lam*eta + sin(s)/30"), ellipse.at(a="3/2")
     found = all_cycles(table, Rational(3, 10), 2, law=law).catalogue
@@ -195,6 +200,7 @@ def test_krawczyks_operator_moves_with_a_contraction_in_which_the_law_is_not_lin
         assert all(x.contains(arb(y)) for x, y in zip(image.zero, near, strict=True))
 
 
+@pytest.mark.slow
 def test_the_command_writes_every_cycle(tmp_path):
     file = tmp_path / "cycles.json"
     words = ["egg", "--alpha", "0.08", "--lam", "0.2", "--period", "4", "--count", "2", "--prove", "2"]

@@ -58,6 +58,7 @@ def test_the_branch_of_triangles_passes_its_fold_where_the_closed_form_says(alph
     assert np.allclose(np.cos(3 * at_the_vertices.z[:3]), 1)  # the paper's conjecture: the two kinds annihilate
 
 
+@pytest.mark.slow
 def test_the_events_of_the_cascade_are_the_located_ones():
     one = branch(Chords(TABLE, (0,) * 4), FOUR, "lam", 0.2, (0.0, 0.6))
     (pitchfork,) = one.events

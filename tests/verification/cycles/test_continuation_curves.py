@@ -80,6 +80,7 @@ def test_the_resonances_pile_up_as_in_area_preserving_maps(curves):
     assert gaps[-2] / gaps[-1] == pytest.approx(AREA_PRESERVING, abs=0.01)
 
 
+@pytest.mark.slow
 def test_the_accumulation_is_that_of_the_certified_cascade(curves):
     found = accumulation_curve(curves, np.array([0.08]))
 

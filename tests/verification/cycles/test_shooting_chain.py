@@ -128,6 +128,7 @@ def test_a_problem_that_is_not_square_is_refused():
         Chain([], [], [])
 
 
+@pytest.mark.slow
 @given(chains(), st.sampled_from([acb(3, 4) / 5, acb(-5, 12) / 13]), st.data())
 def test_a_chain_whose_vectors_come_back_turned_is_solved_too(real, unit, data):
     n = len(real.diagonal)

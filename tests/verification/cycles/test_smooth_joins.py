@@ -79,6 +79,7 @@ def halves(first, second, cuts=()):
     return boundary_of_arcs([(f"{a}*cos(theta)", "sin(theta)") for a in axes], ends, "1/2")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [halves("3/2", 2), halves(2, "3/2"), halves("3/2", 2, ("1/5",))])
 def test_a_cycle_on_two_joins_is_proved_and_attracts_whatever_the_cut(scene):
     """By the focal lengths the return contracts on all four sides; the image and the cut change nothing."""
@@ -166,6 +167,7 @@ def egg_in_arcs(ends, alpha, lam):
     return by_radius([f"(1 + {alpha}*cos(3*theta))"] * (len(ends) - 1), ends, lam)
 
 
+@pytest.mark.slow
 def test_a_branch_passes_a_join_on_its_way_to_its_fold_which_is_proved_there():
     """A bounce of the triangle moves from 0.79 at lam = 1/2 to 0.55 at the fold (paper, section 6.4)."""
     scene = egg_in_arcs(["7/10", "5/2", "4", "2*pi + 7/10"], "2/25", "1/2")
@@ -181,6 +183,7 @@ def test_a_branch_passes_a_join_on_its_way_to_its_fold_which_is_proved_there():
     assert abs(Rational(found.value) - exact) <= Rational(found.radius) + Rational(1, 10**39)
 
 
+@pytest.mark.slow
 def test_a_doubling_of_a_cycle_on_two_joins_is_proved():
     """The egg's diameter from 0 to pi, both joins of one analytic curve (paper, section 6.3)."""
     scene = egg_in_arcs(["0", "pi", "2*pi"], "7/100", "1/10")

@@ -123,6 +123,7 @@ def test_hard_flights_end_as_the_search_for_every_zero_says(name):
         assert gap(map, exact.context, found.theta, at) < exact.context.mpf(10) ** -DIGITS
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(particle=strategies.particles(laws=strategies.reflections()))
 def test_the_exact_step_is_the_one_of_the_kernel_in_all_its_digits(particle):

@@ -94,6 +94,7 @@ def test_a_curve_that_bends_inwards_is_simple_where_it_turns_once_and_not_where_
     assert convex(Table("limacon", (limacon,))) is None
 
 
+@pytest.mark.slow
 def test_a_short_loop_is_in_no_convex_table():
     """The loop bends inwards everywhere, is 0.001 long, and is no Fourier sum."""
     size = (Rational(999, 1000) + cos(theta)) * (1 + exp(cos(theta)) / 10**4)

@@ -54,6 +54,7 @@ def more(own):
     return lambda *given, **named: (found := own(*given, **named))._replace(nu_plus=found.nu_plus + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "method", "fault"),
     [

@@ -31,6 +31,7 @@ def test_bench_has_rows_for_every_arithmetic_and_kernel(document):
     assert {"processor", "python", "numpy", "python-flint", "mpmath"} <= set(document["machine"])
 
 
+@pytest.mark.slow
 def test_an_error_that_no_float_holds_is_a_decimal_string(document):
     errors = {row["kernel"]: row["error"] for row in document["rows"] if row["arithmetic"] == "arb"}
 

@@ -140,6 +140,7 @@ def test_a_scan_of_other_scenes_finds_none_and_no_change_without_an_event(name, 
     assert unaccounted(found.document(5), scene, at, 400) == []
 
 
+@pytest.mark.slow
 def test_starts_at_other_values_end_on_branches_that_are_known(limacon):
     found = limacon.check(values=3, starts=200)
 

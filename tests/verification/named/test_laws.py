@@ -122,6 +122,7 @@ INTEGRATED = [  # scenes whose arc length is no closed formula
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", INTEGRATED[1:], ids=lambda scene: scene.name)
 def test_where_arc_length_is_an_integral_cycles_are_those_of_the_map_and_proved(scene):
     """Against flights in 40 digits, with arc length as mpmath's integral, instead of the chord rule."""
@@ -142,6 +143,7 @@ def test_where_arc_length_is_an_integral_cycles_are_those_of_the_map_and_proved(
     assert abs(landed.phi - start.phi) < 1e-24
 
 
+@pytest.mark.slow
 def test_a_fold_under_a_law_of_arc_length_that_is_an_integral_is_proved_and_below_it_cycles_are_fewer():
     scene = Scene("egg", alpha="2/25", lam="1/2", law="-lam*eta + sin(s)/30")
     branch = follow(find_cycles(scene, period=3).stable[0], lam=("0.37", "0.6"))

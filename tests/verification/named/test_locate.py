@@ -55,6 +55,7 @@ def test_every_name_is_a_bifurcation_with_a_known_value_or_a_contact_of_manifold
     assert set(NAMES) == set(KNOWN) | contacts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "near"), [("merging-crisis", 0.44343), ("boundary-crisis", 0.6622)])
 def test_a_crisis_is_an_estimate_and_says_so(name, near):
     """It is near the paper's plots, 0.4435 and 0.66, and near a bisection with 20 times the bounces."""

@@ -36,6 +36,7 @@ def row(map, starts, seed):
     return joined(find(map, starts, seed, images=True), starts, float(map.lam.flat[0]))
 
 
+@pytest.mark.slow
 def test_the_cycles_of_period_3_are_born_at_the_fold_in_closed_form(grown):
     ((one, family, born),) = of(grown, BifurcationKind.FOLD)
     proof = grown.proof(one.event, 12)

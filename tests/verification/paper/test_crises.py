@@ -173,6 +173,7 @@ def test_a_cycle_that_closes_with_a_turn_has_no_certificate_and_the_tangency_is_
     assert found.proof.proved
 
 
+@pytest.mark.slow
 def test_the_boundary_crisis_is_judged_by_tangency_and_by_balls():
     (claim,) = (claim for claim in catalogue() if claim.id == "egg.boundary_crisis")
     result = judge(claim)

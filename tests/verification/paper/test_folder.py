@@ -162,6 +162,7 @@ def test_the_report_does_not_depend_on_the_number_of_processes(folder, tmp_path)
     assert files[0] == files[1]
 
 
+@pytest.mark.slow
 def test_a_claim_whose_process_dies_is_open_and_says_so(folder):
     changed(
         folder / "judges.py", "return identity(claim, q / 2", "os.kill(os.getpid(), 9)\n    return identity(claim, q"

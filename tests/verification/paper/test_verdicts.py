@@ -299,6 +299,7 @@ def test_a_verdict_changes_with_the_facts(row):
     assert (verdict(name), driven(name, module, word, made(real), *forget)) == (before, after)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "printed", "after"),
     [
@@ -317,6 +318,7 @@ def test_a_verdict_changes_with_the_sentence(name, printed, after):
     assert judge_of(claim)(claim).verdict is after
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "after"),
     [("map.other_K", OPEN), ("egg.chaotic_interval", OPEN), ("egg.basins_intermingled", SUPPORTED)],

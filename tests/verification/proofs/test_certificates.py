@@ -52,6 +52,7 @@ SHARES = st.floats(0.01, 0.99)
 CRITICAL = [BifurcationKind.FOLD, BifurcationKind.FLIP]
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.sampled_from(sorted(SCENES)), st.sampled_from(CRITICAL), SHARES, st.lists(SHARES, min_size=3))
 @example("egg", BifurcationKind.FLIP, 0.5, [0.5, 0.5, 0.5])

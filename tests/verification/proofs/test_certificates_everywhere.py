@@ -52,6 +52,7 @@ def test_the_unstable_cycle_born_at_lambda_c_lives_down_to_the_corners():
     assert over_interval(cuspless, (1, 0, 1, 0), start, (lam, 0.07122), Stability.SADDLE).proved
 
 
+@pytest.mark.slow
 def test_its_partner_on_the_arc_is_a_saddle_from_the_corners_on():
     corner = [2.0943943, 0.2545256, -2.0943943, -0.2545256]  # lam = 0.07122, from `border.saddles`
     problem = Problem(cuspless, (0,) * 4, lam=Rational(7122, 10**5))

@@ -210,6 +210,7 @@ def test_the_halves_of_a_box_cover_it(box):
         assert any(abs(x - m) <= r and abs(y - n) <= q for (m, r), (n, q) in slap.halves(box))
 
 
+@pytest.mark.slow
 def test_no_box_that_holds_a_cycle_is_settled_and_boxes_beside_it_are():
     """The egg's triangle from its largest gap on, in boxes of all sizes with exact binary ends."""
     table, chance = egg(3).at(alpha=ALPHA), random.Random(1)

@@ -104,6 +104,7 @@ def measured(orbits, bounces, seed):
     return each.mean(), each.std(ddof=1) / np.sqrt(orbits)
 
 
+@pytest.mark.slow
 def test_the_exponent_is_proved_and_a_long_run_agrees():
     mean, error = measured(2_000, 5_000, seed=3)
 
@@ -113,6 +114,7 @@ def test_the_exponent_is_proved_and_a_long_run_agrees():
     assert abs(mean - float(proof().value)) < 4 * error < 1e-3
 
 
+@pytest.mark.slow
 def test_more_digits_give_a_ball_within():
     with working(BITS):
         finer = judged(candidate(chaotic_exponent.DIGITS), chaotic_exponent.DIGITS, cells())
@@ -122,6 +124,7 @@ def test_more_digits_give_a_ball_within():
         assert finer.value.rad() < 1e-13
 
 
+@pytest.mark.slow
 @settings(max_examples=4, deadline=None)
 @given(st.integers(0, 24), st.integers(0, 5), st.floats(-3e-3, 3e-3))
 def test_a_bad_candidate_costs_precision_and_never_truth(piece, power, off):
@@ -191,6 +194,7 @@ def test_the_bounds_of_the_inverse_hold(numbers):
 coefficients = st.lists(st.floats(-1, 1), min_size=1, max_size=12)
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(coefficients)
 @example([0.0] * 11 + [1.0])

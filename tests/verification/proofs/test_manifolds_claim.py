@@ -35,6 +35,7 @@ def test_a_certificate_of_a_tangency_is_checked_without_the_search(tmp_path, cap
     assert set(found["checks"].values()) == set(found["strange_attractors"].values()) == {True}
 
 
+@pytest.mark.slow
 def test_what_a_file_says_of_itself_is_not_believed():
     given = CLAIM.document()
     given["contact"]["value"] = "0.66214427335822441952"

@@ -18,6 +18,7 @@ LATER = Contact(INNER, INNER, 11, 1, -0.3524733847360261, -0.16775805971867158, 
 INDEPENDENT = "0.428419189868092478756523429733"
 
 
+@pytest.mark.slow
 def test_from_a_later_contact_of_the_henon_map_the_published_first_is_found():
     """[AraiMischaikow2006]: the first homoclinic tangency is between 1.392419807915 and 1.392419807931."""
     found = earlier(LATER, Henon(Rational(3, 10)), 1.39, 11)
@@ -36,6 +37,7 @@ def test_from_the_later_contact_of_the_widening_the_first_is_found_whatever_its_
     assert found.first.contact.bounces == 16
 
 
+@pytest.mark.slow
 def test_before_the_first_contact_of_the_widening_none_is_found():
     low, _ = SEARCHED["interior-crisis-1"]
     found = earlier(CONTACTS["interior-crisis-1"], table(SHAPE), float(low), 36)

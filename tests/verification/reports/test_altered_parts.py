@@ -99,6 +99,7 @@ def test_what_is_no_table_has_no_page(tmp_path, capsys):
     assert not (tmp_path / "page").exists()
 
 
+@pytest.mark.slow
 def test_an_interrupted_report_says_where_it_is_and_goes_on(tmp_path):
     out = tmp_path / "report"
     words = ["report", "circle", "--period", "2", "--out", str(out)]

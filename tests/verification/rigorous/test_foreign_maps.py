@@ -113,6 +113,7 @@ def starts(name, seed):
     return [np.random.default_rng(seed).uniform(low, high, 400) for low, high in (chart.x, chart.y)]
 
 
+@pytest.mark.slow
 @given(st.sampled_from([*MAPS]), st.integers(0, 10**6))
 def test_orbits_walk_along_edges_and_end_in_morse_sets_and_in_the_block_of_their_basin(name, seed):
     graph, start = graph_of(name), starts(name, seed)

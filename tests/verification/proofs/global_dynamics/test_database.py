@@ -20,6 +20,7 @@ LAM = Fraction(1, 2), Fraction(33, 64)
 BOXES = 60
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "parameter", "shape"),
     [
@@ -130,6 +131,7 @@ def test_what_is_no_grid_of_boxes_is_refused_in_a_sentence(lams, shape, words, c
     assert words in " ".join(capsys.readouterr().err.split())
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_picture_and_a_page_that_holds_every_box(tmp_path):
     page, picture, told = tmp_path / "graphs.html", tmp_path / "graphs.png", tmp_path / "graphs.json"
     size = ["--columns", "24", "--rows", "16", "--coarsest", "4"]

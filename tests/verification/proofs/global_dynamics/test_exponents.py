@@ -21,6 +21,7 @@ def regions(scene, columns=512, rows=128, lam=None):
     return map, graph, [graph.trapping(index) for index in graph.attracting]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lam", ["0.09", "0.12", "0.2"])
 def test_every_orbit_near_the_cuspless_attractor_has_a_positive_exponent(lam):
     map, graph, (block,) = regions(Scene("cuspless", lam=lam))

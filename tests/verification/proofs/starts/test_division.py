@@ -19,6 +19,7 @@ FOUND = division()
 RING, CHART = FOUND.annulus, FOUND.tube.chart
 
 
+@pytest.mark.slow
 def test_almost_every_orbit_at_0_09_goes_to_one_of_two():
     """Random starts agree: each comes to the cycle or into the region, and both occur."""
     assert set(FOUND.checks.values()) == {True}

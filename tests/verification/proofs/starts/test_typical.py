@@ -159,6 +159,7 @@ def test_the_doubling_map_with_a_fibre_has_the_exponent_log_2():
     assert found.low <= np.log(2) <= found.high < found.low + 3e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("columns", "width"), [(50, 0.05), (100, 0.025)])
 def test_a_blaschke_product_has_the_exponent_of_jensens_formula(columns, width):
     found, exact = (
@@ -169,6 +170,7 @@ def test_a_blaschke_product_has_the_exponent_of_jensens_formula(columns, width):
     assert found.low <= exact <= found.high < found.low + width
 
 
+@pytest.mark.slow
 def test_the_exponent_of_a_skew_tent_map_is_its_entropy():
     balance = Balance(tents(), 8)
     high, low = balance.proved(0), balance.proved(1)
@@ -177,6 +179,7 @@ def test_the_exponent_of_a_skew_tent_map_is_its_entropy():
     assert high + low < 0.01 < np.log(0.6 / 0.4) / 10  # cycles leave a range of log(3/2)
 
 
+@pytest.mark.slow
 def test_bounds_hold_for_both_of_two_attractors_in_one_region():
     both = TypicalExponent(Onto(), *whole(Onto()), 60, 16, 4)
     assert both.proved
@@ -381,6 +384,7 @@ def test_a_cycles_basin_and_columns_that_are_too_wide_are_refused(lam, columns, 
     assert (found.low, found.high) == (-np.inf, np.inf)
 
 
+@pytest.mark.slow
 def test_labels_of_whose_middle_no_landing_is_known_are_broken():
     found = pairs(Blind(0.0), *whole(Blind(0.0)), 100, 400)
     assert np.all(found.cast.broken)

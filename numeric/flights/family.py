@@ -93,6 +93,11 @@ class Boundary:
         """Is there one component only, which runs round the table by a whole turn of its parameter?"""
         return len(self.ends) == 1 and abs(self.ends[0][1] - self.ends[0][0] - 2 * np.pi) < 1e-12
 
+    @property
+    def runs_on(self) -> bool:
+        """Is there one component only, whose formula runs on along the boundary beyond its ends? Not over a corner."""
+        return len(self.ends) == 1 and self.ir.joins[0][1] != "CORNER"
+
     @cached_property
     def convex(self) -> bool:
         """Is the curvature of a closed curve nowhere of the dispersing sign on a fine grid, up to rounding?"""

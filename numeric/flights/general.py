@@ -52,7 +52,7 @@ class General(Family):
     def __init__(self, boundary: Boundary) -> None:
         super().__init__(boundary)
         self.parts = boundary.ir.parts
-        self.closed = len(self.parts) == 1
+        self.closed = boundary.runs_on
         self.ends = boundary.ends
         self.closing = boundary.ends[0]
         self.pieces, self.standing = pieces(boundary)  # constants of the kernels
@@ -350,7 +350,7 @@ def _cubic_pieces(boundary: Boundary) -> list[Stretch]:
         for _ in range(4):  # by less than a whole turn
             found.append(one)
             one = _quarter(tangent, way, one, other)
-    edges = np.array([*found, high + OVERLAP * (count == 1)]).T.tolist()
+    edges = np.array([*found, high + OVERLAP * boundary.runs_on]).T.tolist()
     return [(j, a, b) for j, row in enumerate(edges) for a, b in itertools.pairwise(row) if a < b]
 
 
@@ -405,7 +405,7 @@ def _cuts(boundary: Boundary, index: int) -> tuple[list[float], list[Pair[float]
         places, *rows = zip(*wanted, strict=True)
         for place, cut in zip(places, _passed(boundary, index, *map(np.array, rows)), strict=True):
             cuts[place] = float(cut)
-    cuts.append(float(edges[-1]) + OVERLAP * (len(boundary.ends) == 1 or not boundary.corners[index][1]))
+    cuts.append(float(edges[-1]) + OVERLAP * (boundary.runs_on or not boundary.corners[index][1]))
     return cuts, standing
 
 

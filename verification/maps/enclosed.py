@@ -23,7 +23,7 @@ from symbolic.tables.law import Law
 from verification.arithmetic.balls import as_ball, bits_of, enclose, joined, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.maps.exact import Bounce, ExactMap, closed_length, float_map
-from verification.maps.first_hit import BITS, BallBoundary, Frame, free
+from verification.maps.first_hit import BITS, BallBoundary, Frame, closes_smoothly, free
 from verification.maps.flight import Curves, Landings, Obstacles, precisions
 from verification.maps.lengths import ExactArcLength
 from verification.maps.numbers import Balls
@@ -78,11 +78,12 @@ class EnclosedMap:
             self.quarter = arb.pi() / 2
             self.frames, self.curves = (Curves(self.parts, self.ops, self.shape, count, bits) for count in (4, 6))
         self.lengths: dict[tuple[int, int], ExactArcLength] = {}
+        self.closed = closes_smoothly(map.table) and not map.reflection.placed  # its formulas run on beyond both ends
         self.joins: tuple[list[tuple[JoinKind, JoinKind]], tuple[int, ...]] = (
             [(JoinKind.SMOOTH, JoinKind.SMOOTH)],
             (0,),
         )
-        if len(self.parts) > 1:
+        if not self.closed:
             after, agree = following(map.table), contacts(map.table)
             self.joins = [(agree[after.index(i)], agree[i]) for i in range(len(after))], after
         self.landings, self.obstacles, self.precisions = Landings(map), Obstacles(map), precisions(bits)
@@ -169,7 +170,7 @@ class EnclosedMap:
         """
         agree, after = self.joins
         (low, high), found = self.ends[component], []
-        if len(self.parts) == 1 or low < theta < high:
+        if self.closed or low < theta < high:
             return [(component, theta, arb(1))]
         inner = theta
         for side, end, gap in ((1, high, theta - high), (0, low, low - theta)):
@@ -188,7 +189,7 @@ class EnclosedMap:
 
     def _on_boundary(self, component: int, theta: arb) -> bool:
         """Does a parameter lie within its component, or on the next one beyond a smooth join?"""
-        if len(self.parts) == 1:
+        if self.closed:
             return True
         agree, _ = self.joins
         low, high = self.ends[component]
@@ -200,7 +201,7 @@ class EnclosedMap:
     def _inside(self, component: int, theta: arb) -> bool:
         """Does a parameter lie strictly within its component, or on the next one beyond a smooth join?"""
         low, high = self.ends[component]
-        return bool(low < theta < high) or (len(self.parts) > 1 and self._on_boundary(component, theta))
+        return bool(low < theta < high) or (not self.closed and self._on_boundary(component, theta))
 
     def _short(self, component: int, theta: arb, side: int) -> bool:
         """Does a parameter that is beyond an end of its component stay within the neighbouring component?"""
@@ -257,7 +258,7 @@ class EnclosedMap:
             yield self._guess(component, self._sharpened(here, component, arb(at)))
         exact = self.exact
         begin = exact.middle(here.theta)
-        if len(self.parts) > 1:  # a bounce on a join may lie on either side of it
+        if not self.closed:  # a bounce on a join may lie on either side of it
             begin = min(max(begin, exact.ends[here.component][0]), exact.ends[here.component][1])
         start = exact.start(begin, exact.middle(here.phi), here.component)
         bounce = exact.bounce(start)

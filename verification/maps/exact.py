@@ -199,7 +199,8 @@ class ExactMap:
         if self.coarse is not None:
             component, theta, code = self.coarse._landing(here)
             sharp = None if code else self._sharpened(here, component, mp.mpf(theta))
-            if sharp is not None:
+            low, high = self.ends[component]
+            if sharp is not None and low <= sharp <= high:
                 return component, sharp, code
         state = [mp.mpf(here.component), mp.mpf(here.theta)], [mp.mpf(x) for x in here.v]
         landing = self.general.fly(self.ops, self.shape, "pinball", *state)

@@ -11,7 +11,7 @@ from sympy import Rational
 from numeric import PinballMap
 from symbolic import Scene, tables
 from verification.arithmetic.balls import working
-from verification.maps.enclosed import EnclosedMap, perimeter
+from verification.maps.enclosed import EnclosedMap, Refusal, perimeter
 from verification.maps.exact import ExactMap
 from verification.maps.orbits import in_balls, in_multiprecision
 
@@ -147,3 +147,22 @@ def test_a_map_is_made_of_a_table_a_name_a_scene_or_a_map():
         assert abs(exact.middle(held.phi) - landed.phi) < 1e-30
     with pytest.raises(ValueError, match="give one of them"):
         EnclosedMap(scene, bits=100, digits=30)
+
+
+@pytest.mark.parametrize("digits", [3, 10, 13, 14, 15, 17, 30])
+def test_beyond_a_corner_at_the_ends_of_its_parameter_a_curve_of_one_formula_is_not_followed(digits):
+    """A start beside theta = 0 lands beside the corner at pi, on its own side, or is said to be in doubt there."""
+    scene, away = Scene(tables.polar("1 + cos(theta/2)/12"), lam="1/2"), Fraction(1, 10**digits)
+    map, step = EnclosedMap(scene, digits=60), PinballMap(scene).step(float(away), 0.0)
+    landed = map.bounce(map.start(away, 0))
+
+    assert step.code or (-np.pi <= step.theta < -3.14 and step.phi > 0.02)
+    assert landed is Refusal.WIDE or landed.code or (-arb.pi() < landed.theta and landed.phi > 0.02)
+
+
+def test_at_a_jump_of_the_law_on_a_closed_curve_both_sides_are_held_or_nothing_is_proved():
+    map = EnclosedMap(Scene("circle", lam="1/2", law="-lam*eta + theta/10"), digits=30)
+    landed, beside = map.bounce(map.start(0, 0)), map.bounce(map.start(Fraction(1, 10**14), 0))
+
+    assert landed is Refusal.WIDE or (landed.phi.contains(arb.pi() / 10) and landed.phi.contains(-arb.pi() / 10))
+    assert beside.phi < -0.3

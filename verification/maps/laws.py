@@ -35,7 +35,7 @@ from symbolic.tables.table import theta as theta_letter
 from verification.arithmetic.balls import bits_of, working
 from verification.maps.enclosed import EnclosedMap, Refusal, number
 from verification.maps.exact import Bounce, ExactMap
-from verification.maps.strategies import Particle, particles, reflections
+from verification.maps.strategies import Particle, listed, particles, reflections
 
 __all__ = ["area_sum_rule", "determinant", "every", "first_hit", "jacobian", "symmetry", "time_reversal_at_lam_1"]
 
@@ -61,7 +61,7 @@ def _test(check: Check, tables: Any, options: dict[str, Any], **drawn: Any) -> T
     options = {"deadline": None, "max_examples": 30, "suppress_health_check": [HealthCheck.too_slow], **options}
 
     @settings(**options)
-    @given(particle=particles(tables, **{"laws": reflections(), **drawn}))
+    @given(particle=particles(listed(tables), **{"laws": reflections(), **drawn}))
     def test(particle: Particle) -> None:
         check(particle)
 

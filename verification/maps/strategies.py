@@ -20,7 +20,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from numeric import PinballMap
-from symbolic.tables.definition import POINTS, UNIFORM, table_boundary
+from symbolic.tables.definition import GALLERY, POINTS, UNIFORM, named_boundary, table_boundary
 from symbolic.tables.scene import Scene, given_table
 
 STEEPEST = 1.57  # radians; |phi| stays below
@@ -102,6 +102,15 @@ def scenes(draw: st.DrawFn, scene: Scene) -> Scene:
     return scene.at(**numbers) if numbers else scene
 
 
+def listed(tables: Any) -> list[Any]:
+    """The given table or tables as a list, empty for None; `ValueError` at once for a name that no table has."""
+    given = list(tables) if isinstance(tables, list | tuple) else [tables] if tables is not None else []
+    for each in given:
+        if isinstance(each, str) and each not in GALLERY:
+            named_boundary(each, POINTS)
+    return given
+
+
 @st.composite
 def maps(
     draw: st.DrawFn,
@@ -114,8 +123,7 @@ def maps(
     Free shape parameters are drawn from their ranges. With `laws` the reflection law is drawn too, unless a scene has
     one of its own; without `laws` it is the paper's.
     """
-    chosen = list(tables) if isinstance(tables, list | tuple) else [tables] if tables is not None else []
-    chosen = [each if isinstance(each, str | Scene) else _with_ranges(each) for each in chosen]
+    chosen = [each if isinstance(each, str | Scene) else _with_ranges(each) for each in listed(tables)]
     table = draw(st.sampled_from(chosen or ["circle", "ellipse", "egg", "cardioid", "cuspless"]))
     lam = draw(contractions() if lams is None else lams)
     law = UNIFORM if laws is None else draw(laws)

@@ -76,6 +76,7 @@ def test_attractors_are_found_from_whatever_says_a_table(said):
     (found,) = attractors(table, **numbers, orbits=20, seed=1)
 
     assert (found.period, found.share.count) == (2, 20)
+    assert repr(found).startswith("Attractor(period 2, 83.9% to 100.0% of the starts, nu_plus = -0.")
 
 
 GRIDS = {

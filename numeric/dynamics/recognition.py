@@ -40,8 +40,11 @@ class Share:
     low: float
     high: float
 
+    def __str__(self) -> str:
+        return f"{self.low:.1%} to {self.high:.1%}"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Attractor:
     """An attractor: its points (in order on a cycle, a cloud on any other), and what was measured of it.
 
@@ -67,6 +70,20 @@ class Attractor:
     family: int = -1
     symmetry: str = ""
     doubt: str = ""
+
+    @property
+    def name(self) -> str:
+        """The kind in words, such as `period 2`."""
+        return f"period {self.period}" if self.period else self.kind.name.lower()
+
+    @property
+    def exponent(self) -> str:
+        """`nu_plus` in words, with its standard error."""
+        return f"{self.nu_plus:.6g} +- {self.errors[0]:.1g}"
+
+    def __repr__(self) -> str:
+        share = f", {self.share} of the starts" if self.share else ""
+        return f"Attractor({self.name}{share}, nu_plus = {self.exponent}{self.symmetry and f', {self.symmetry}'})"
 
 
 def wilson(count: int, of: int, z: float = 1.96) -> Share:

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from numeric.backends import elementary
 from numeric.flights.family import FORMULA, SLAP
 from numeric.kernels.machine import TANGENT, KernelSpec, starting
-from numeric.pinball.states import counted
+from numeric.pinball.states import counted, many
 
 if TYPE_CHECKING:
     from numeric.pinball.map import PinballMap
@@ -46,6 +46,9 @@ class Starts(NamedTuple):
     x: Array
     y: Array
 
+    def __repr__(self) -> str:
+        return f"Starts({many(self.theta.size, 'particle')})"
+
     def only(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "Starts":
         """The particles at these indices, or where a mask is true."""
         return Starts(*(row[which] for row in self))  # type: ignore[arg-type]  # rows keep their kinds
@@ -57,6 +60,9 @@ class PhaseGrid(NamedTuple):
     s: Array
     sin_phi: Array
     starts: Starts
+
+    def __repr__(self) -> str:
+        return f"PhaseGrid({self.s.size} x {self.sin_phi.size} cells)"
 
 
 def phase_starts(map: "PinballMap", count: int, seed: int) -> Starts:

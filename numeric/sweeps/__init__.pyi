@@ -11,7 +11,6 @@ from .questions import (
     attractors,
     bifurcation_diagram,
     exponents,
-    name_of,
     parameter_space,
 )
 from .run import Results, UnfinishedError, connected, in_memory, on_cluster, on_processes, on_threads
@@ -77,7 +76,6 @@ __all__ = [
     "map_of",
     "marks_of",
     "measured",
-    "name_of",
     "on_cluster",
     "on_processes",
     "on_threads",

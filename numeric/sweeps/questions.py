@@ -65,8 +65,7 @@ class Attractors(Sequence[Attractor]):
     def _rows(self) -> list[tuple[str, ...]]:
         found: list[tuple[str, ...]] = []
         for one in self.found:
-            share = f"{one.share.low:.1%} to {one.share.high:.1%}" if one.share else ""
-            found.append((name_of(one), share, f"{one.nu_plus:.6g} +- {one.errors[0]:.1g}", one.symmetry))
+            found.append((one.name, str(one.share or ""), one.exponent, one.symmetry))
         return found
 
     def __repr__(self) -> str:
@@ -75,11 +74,6 @@ class Attractors(Sequence[Attractor]):
 
     def _repr_html_(self) -> str:
         return html_table(("attractor", "share of the starts", "nu_plus", "symmetry"), self._rows())
-
-
-def name_of(attractor: Attractor) -> str:
-    """The kind of an attractor in words, such as `period 2`."""
-    return f"period {attractor.period}" if attractor.period else attractor.kind.name.lower()
 
 
 @dataclass(frozen=True, eq=False)

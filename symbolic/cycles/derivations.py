@@ -166,7 +166,7 @@ def _short(expression: Expr) -> Expr:
     return simplify(expression) if size(expression) <= SMALL else expression
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SlapMap:
     """The map at `lam = 0`, where each flight leaves along the normal: `residual = 0` says where it lands.
 
@@ -177,6 +177,10 @@ class SlapMap:
     table: Table
     residual: Expr
     derivative: Expr
+
+    def __repr__(self) -> str:
+        letters = sorted(map(str, self.residual.free_symbols | self.derivative.free_symbols))
+        return f"SlapMap({self.table.name}: residual and derivative in {', '.join(letters)})"
 
     def _repr_latex_(self) -> str:
         from symbolic.tables.formula import latex

@@ -13,7 +13,6 @@ from numeric.dynamics.attractors import Attractor, Kind, find
 from numeric.dynamics.recognition import wilson
 from numeric.sweeps.endings import CHAOTIC, CYCLE, NEUTRAL, Endings, endings
 from numeric.sweeps.fields import basins, bifurcation
-from numeric.sweeps.questions import name_of
 from numeric.sweeps.run import run
 from numeric.sweeps.space import parameter_space
 from numeric.sweeps.sweep import at_value, map_of, text_of
@@ -400,7 +399,7 @@ def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], 
     half = PinballMap(scene).arclength.perimeter / 2
     order = sorted(range(len(attractors)), key=lambda i: (attractors[i].family, i))
     colours = [order.index(i) for i in range(len(attractors))]
-    names = [f"{name_of(one)}, {np.mean(label == i):.0%}" for i, one in enumerate(attractors)]
+    names = [f"{one.name}, {np.mean(label == i):.0%}" for i, one in enumerate(attractors)]
     pictures.basins(parts, name, label, colours, names, half, rf"$\lambda = {text}$")
     caption = (
         f"Basins at lambda = {text}: the attractor that each of {columns} x {rows} starts reaches, a colour for "

@@ -118,3 +118,4 @@ def test_a_grid_covers_the_boundary_in_arc_length(name):
     assert np.max(np.abs(turns - np.round(turns))) < 1e-12
     assert np.allclose(np.sin(starts.phi).reshape(6, 40), grid.sin_phi[:, None], rtol=0, atol=1e-15)
     assert np.allclose(np.diff(grid.s), map.arclength.perimeter / 40, rtol=0, atol=1e-12)
+    assert repr((grid, starts)) == "(PhaseGrid(40 x 6 cells), Starts(240 particles))"

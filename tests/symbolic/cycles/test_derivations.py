@@ -156,6 +156,7 @@ def test_the_slap_map_of_the_circle_goes_to_the_other_side():
 
     assert simplify(slap.residual.subs(theta1, theta0 + pi)) == 0
     assert simplify(slap.derivative.subs(theta1, theta0 + pi)) == 1
+    assert repr(slap) == "SlapMap(circle: residual and derivative in theta0, theta1)"
 
 
 def test_lengths_and_areas_are_the_closed_forms():

@@ -63,6 +63,7 @@ def test_an_orbit_goes_where_people_take_it(said):
     table, numbers = SAID[said]
     orbit = PinballMap(table, **numbers).orbit(theta=0.3, phi=0.2, bounces=100)
 
+    assert {orbit.map} == {PinballMap(HERE)} != {PinballMap(HERE, kernels=False)}
     assert orbit == PinballMap(PEA, b=0.1, lam=0.5).orbit(0.3, 0.2, 100)
     assert orbit != PinballMap(PEA, b=0.1, lam=0.4).orbit(0.3, 0.2, 100)
     assert orbit.to_xarray().sizes["bounce"] == len(orbit.to_pandas()) == 101

@@ -138,6 +138,12 @@ class PinballMap:
         except ValueError:
             return f"PinballMap({self.ir.table!r}, lam={'...' if self.lam.size > 1 else float(self.lam.flat[0])})"
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, PinballMap) and self._identity() == other._identity()
+
+    def __hash__(self) -> int:
+        return hash(self._identity())
+
     @property
     def path(self) -> str:
         """The method by which flights are computed on this table, in words."""
@@ -257,11 +263,8 @@ class PinballMap:
         other law, its slope replaces `lam`, and its derivative along the boundary times `ds1` is added.
         """
         ordinary = self.unit == ONE
-        if (
-            ordinary
-            and self.reflection.uniform
-            and (single := self._single(MATRIX).told(theta, phi, component)) is not None
-        ):
+        single = self._single(MATRIX).told(theta, phi, component) if ordinary and self.reflection.uniform else None
+        if single is not None:
             return np.array(single).reshape(2, 2)
         where, theta, phi = self._start(theta, phi, component)
         law, states, count = self._law(phi), self.states, theta.size
@@ -296,15 +299,15 @@ class PinballMap:
         component: ArrayLike = 0,
         threads: int | None = None,
     ) -> Exponents:
-        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` bounces that do not
-        count.
+        """Both Lyapunov exponents of every particle over `bounces` bounces, after `transient` ones that do not count.
 
         `nu_plus` is the growth of one vector, which starts in a fixed generic direction and turns to the direction of
         growth in the last 256 bounces of the transient; `nu_minus` comes from the determinant. At `lam = 0` the map is
         one-dimensional and `nu_minus` is minus infinity. `nu_plus_error` and `nu_minus_error` are the standard errors.
         """
         bounces, transient = counted("bounces", bounces), counted("transient", transient, least=0)
-        growth = Growth(self, theta, phi, component)
+        at = theta, phi, component
+        growth = Growth(self, *at)
         growth.settle(transient, threads)
         growth.advance(bounces, threads)
         made = np.maximum(growth.bounces, 1)
@@ -312,24 +315,17 @@ class PinballMap:
             plus = growth.stretch / made
             minus = growth.volume / made + growth.contraction - plus
         upper, lower = np.maximum(plus, minus), np.minimum(plus, minus)
-        shape = np.broadcast_shapes(*(np.shape(given) for given in (theta, phi, component)))
+        shape = np.broadcast_shapes(*map(np.shape, at))
         found = upper, lower, growth.bounces, growth.component, growth.theta, growth.phi, growth.code
         exponents = Exponents(*(np.asarray(field).reshape(shape) for field in found))
-        exponents.again = partial(self._exponent_errors, theta, phi, bounces, transient, component, threads)
+        exponents.again = partial(self._exponent_errors, at, bounces, transient, threads)
         return exponents
 
     def _exponent_errors(
-        self,
-        theta: ArrayLike,
-        phi: ArrayLike,
-        bounces: int,
-        transient: int,
-        component: ArrayLike,
-        threads: int | None,
-        blocks: int,
+        self, at: Sequence[ArrayLike], bounces: int, transient: int, threads: int | None, blocks: int
     ) -> tuple[Array, Array]:
         """Standard errors of both exponents, from the growth rates over `blocks` blocks of the run."""
-        growth, count = Growth(self, theta, phi, component), min(blocks, bounces)
+        growth, count = Growth(self, *at), min(blocks, bounces)
         growth.settle(transient, threads)
         sizes = np.diff(np.arange(count + 1) * bounces // count)
         reached = np.zeros((2, count + 1, growth.theta.size))
@@ -340,7 +336,7 @@ class PinballMap:
             plus, volume = np.diff(reached, axis=1) / sizes[:, None]
             rates = np.array([plus, volume - plus])
             error = np.std(rates, axis=1, ddof=1) / np.sqrt(count) if count > 1 else np.full(rates[:, 0].shape, np.nan)
-        shape = np.broadcast_shapes(*(np.shape(given) for given in (theta, phi, component)))
+        shape = np.broadcast_shapes(*map(np.shape, at))
         return error[0].reshape(shape), error[1].reshape(shape)
 
     def slap(self, theta: ArrayLike, iterates: int = 1, component: ArrayLike = 0) -> Slap:
@@ -394,6 +390,13 @@ class PinballMap:
 
     # ---- within
 
+    def _identity(self) -> tuple[Any, ...]:
+        """What equal maps have in common: scene and choice of kernels. A map without a scene equals no other."""
+        try:
+            return self.scene, self.engine.kernels
+        except ValueError:
+            return (id(self),)
+
     def _with(self, lam: Contraction, reflection: Law) -> "PinballMap":
         """The map of the same table, without new computations, with another contraction and law."""
         other = object.__new__(PinballMap)
@@ -410,8 +413,7 @@ class PinballMap:
         return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
 
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:
-        name = self.ir.table
-        ranges = {entry.name: entry for entry in self.ir.shape}
+        name, ranges = self.ir.table, {entry.name: entry for entry in self.ir.shape}
         for key in given:
             if key not in ranges:
                 raise no_parameter(name, key, ranges)
@@ -443,10 +445,8 @@ class PinballMap:
                     f"{self.ir.parts[index].name} moves by less than rounding; start elsewhere"
                 )
         if self.lam.size > 1 and self.lam.shape != theta.shape:
-            raise ValueError(
-                f"lam has shape {self.lam.shape} and the particles {theta.shape}; "
-                "give one lam for each particle, or one"
-            )
+            shapes = f"lam has shape {self.lam.shape} and the particles {theta.shape}"
+            raise ValueError(f"{shapes}; give one lam for each particle, or one")
         for index, (low, high) in enumerate(self.states.ends):
             if low <= theta.min() and theta.max() <= high:
                 continue

@@ -142,12 +142,14 @@ def test_a_parameter_of_a_law_is_swept():
 
 def test_the_plane_of_a_parameter_of_a_scene_and_the_contraction(capsys):
     arguments = ["sweep", "parameter-space", "egg", "--shape", "alpha=0.02:0.1:2"]
-    assert main([*arguments, "--lams", "0.2:0.22:2", "--starts", "5"]) == 0
+    assert main([*arguments, "--lams", "0.2:0.21:11", "--starts", "5"]) == 0
 
-    assert capsys.readouterr().out.splitlines()[:3] == [
-        "alpha down, lam from 0.2 to 0.22 across; # chaos, . none",
-        "0.02     ..",
-        "0.1      ##",
+    assert capsys.readouterr().out.splitlines()[:5] == [
+        "alpha down, lam from 0.2 to 0.21 across, printed above each |; # chaos, . none",
+        "lam        0.2       0.21",
+        "alpha      |         |",
+        "0.02       ...........",
+        "0.1        ###########",
     ]
 
 

@@ -240,6 +240,7 @@ def bifurcation_lines(found: "xr.Dataset") -> list[str]:
 
 
 TEXT_WIDTH = 100  # letters of the picture shown to people
+RULED = 10  # letters from one contraction that is printed above the picture to the next
 SWEEP_ROWS = 24  # contractions shown to people
 
 
@@ -328,10 +329,12 @@ def parameter_space(
 def picture(found: "xr.Dataset") -> list[str]:
     """The parameter space as lines of text: `#` if some orbit is chaotic, `.` if none is. Paper: section 6.5."""
     step = max(1, -(-found.lam.size // TEXT_WIDTH))
-    shape, ends = str(found.chaotic.dims[0]), (float(found.lam[0]), float(found.lam[-1]))
-    shown = [f"{shape} down, lam from {ends[0]:g} to {ends[1]:g} across; # chaos, . none"]
-    for alpha, counts in zip(found[shape].values, found.chaotic.values[:, ::step], strict=True):
-        shown.append(f"{alpha:<9.5g}" + "".join("#" if count else "." for count in counts))
+    shape, lams = str(found.chaotic.dims[0]), found.lam.values[::step]
+    shown = [f"{shape} down, lam from {lams[0]:g} to {lams[-1]:g} across, printed above each |; # chaos, . none"]
+    shown.append(f"{'lam':<11}" + " ".join(f"{lam:<{RULED - 1}.4g}" for lam in lams[::RULED]).rstrip())
+    shown.append(f"{shape:<11}" + (f"{'|':<{RULED}}" * lams[::RULED].size).rstrip())
+    for value, counts in zip(found[shape].values, found.chaotic.values[:, ::step], strict=True):
+        shown.append(f"{value:<11.6g}" + "".join("#" if count else "." for count in counts))
     return shown
 
 

@@ -59,12 +59,12 @@ class Output:
 
     @cached_property
     def console(self) -> "Console":
-        """The console for people: standard output, or standard error when `--json -` writes to standard output."""
+        """The console for people: standard output; it prints nothing if `--json -` writes there."""
         from rich.console import Console
 
-        on_error, width = self.path == "-", columns()
-        people = Console(stderr=on_error, highlight=False, markup=False, soft_wrap=True, width=width)
-        return console(on_error, width) if people.is_terminal else people
+        quiet, width = self.path == "-", columns()
+        people = Console(quiet=quiet, highlight=False, markup=False, soft_wrap=True, width=width)
+        return console(width) if people.is_terminal and not quiet else people
 
     @property
     def wanted(self) -> bool:
@@ -198,7 +198,7 @@ json_option = click.option(
     "output",
     metavar="FILE",
     callback=_writable,
-    help="Write the result as JSON; - is standard output, and then nothing else is printed there.",
+    help="Write the result as JSON; - is standard output, and then no text for people is printed.",
 )
 
 

@@ -13,7 +13,7 @@ FAR = 1e9  # from here on a number is shown with a power of ten
 PLACES = range(6, 1, -1)  # decimals of float64, as many as fit
 
 
-def console(stderr: bool = False, width: int | None = None) -> "Console":
+def console(width: int) -> "Console":
     """A console for people: a terminal breaks lines at words, a file has each sentence on one line."""
     from rich.console import Console
 
@@ -23,7 +23,7 @@ def console(stderr: bool = False, width: int | None = None) -> "Console":
                 objects = tuple(wrapped(each, self.width) if isinstance(each, str) else each for each in objects)
             super().print(*objects, **options)
 
-    return Lines(stderr=stderr, highlight=False, markup=False, soft_wrap=True, width=width)
+    return Lines(highlight=False, markup=False, soft_wrap=True, width=width)
 
 
 def on_terminal(text: str, stream: TextIO, width: int) -> str:

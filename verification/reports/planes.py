@@ -87,7 +87,7 @@ def curve_blocks(asked: Asked, found: Sequence[Document]) -> list[Block]:
         ]
         rows += [(what, *(solved(x, PLACED) for x in np.round(point, 9) + 0.0)) for what, *point in curve["special"]]
         rows += [
-            ("proved there", solved(float(text), PLACED), ShownNumber(value, radius, Known.PROVED))
+            ("proved there", ShownNumber(text), ShownNumber(value, radius, Known.PROVED))
             for text, value, radius in curve["proved"]
         ]
         caption = (

@@ -220,7 +220,7 @@ def plane(tmp_path_factory):
 @pytest.mark.slow
 def test_the_curve_of_a_doubling_in_two_parameters_runs_along_its_closed_form(plane):
     """The flower's axes double where their stability number says; the curve was followed from one such point."""
-    *_, curves = plane
+    asked, *_, curves = plane
     first = curves[0]
     (chord,) = double_normals(Scene.of({"polar": "1 + b*cos(5*theta)", "shape": {"b": "1/40"}}).table)
 
@@ -231,6 +231,8 @@ def test_the_curve_of_a_doubling_in_two_parameters_runs_along_its_closed_form(pl
     closed = float(flip_contraction(stability_number(chord)))
     (a, b) = next((one, two) for one, two in pairwise(table) if (one[0] - 1 / 40) * (two[0] - 1 / 40) <= 0)
     assert min(a[1], b[1]) <= closed <= max(a[1], b[1])
+    rows = [row for block in planes.curve_blocks(asked, [first])[:1] for row in block.rows if row[0] == "proved there"]
+    assert [(row[1].value, row[1].known.name) for row in rows] == [(b, "EXACT") for b, *_ in first["proved"]] != []
 
 
 @pytest.mark.slow

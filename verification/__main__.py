@@ -1,5 +1,6 @@
 """`python -m verification` is `pinball`."""
 
+import gc
 import sys
 
 
@@ -12,6 +13,8 @@ def main() -> int:
     except KeyboardInterrupt:
         sys.stderr.write("pinball: interrupted\n")
         return 130
+    finally:
+        gc.freeze()  # at its end Python would search all objects of SymPy for cycles, which takes seconds
 
 
 if __name__ == "__main__":

@@ -73,7 +73,7 @@ POWER = Rational(2, 3)
 
 
 def bounce() -> Matrix:
-    """The derivative matrix in `(|K|*ds, dphi)`, with `cos(phi0) = |K0|*D0` and `cos(eta1) = |K1|*d1`.
+    """The derivative matrix of a bounce in `(|K|*ds, dphi)`, where `cos(phi0) = |K0|*D0` and `cos(eta1) = |K1|*d1`.
 
     >>> bounce()[0, :]
     Matrix([[(-D0 + t)/d1, -t/d1]])
@@ -144,7 +144,9 @@ def largest_sum() -> Expr:
 
 
 def area_bound(power: Rational = POWER) -> SignFinding:
-    """Is `D0/(t - D0) <= x**power` on every flight, with `x = c0/c1`? For `x = z**q` this is a polynomial inequality.
+    """Is `D0/(t - D0) <= x**power` on every flight, with `x = c0/c1`?
+
+    For `x = z**q`, with the denominator `q` of `power`, this is a polynomial inequality.
 
     >>> area_bound().outcome.name
     'PROVED'

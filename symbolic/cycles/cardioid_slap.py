@@ -1,7 +1,9 @@
 """The slap map `T0` of the cardioid, in two parametrisations that prove its expansion. Paper: section 4.2.
 
-As a function of the landing point `q`, the second iterate `T0**2` is algebraic and expands. In half angles `T0` itself
-expands.
+A landing at the polar angle `Theta` has the coordinate `q = sin(Theta/2)/sqrt(1 + 7*cos(Theta/2)**2)`; landings of
+particles from the upper half have `q` in `UPPER`. As a function of `q`, the second iterate `T0**2` is algebraic and
+expands; `y` is the coordinate of the point in between, where its last flight begins, so that `y**2 = LAUNCH_Q2(q)`. In
+half angles `T0` itself expands: `b = Theta/2`, and `RATE` is one over the slope.
 """
 
 from functools import cache
@@ -82,7 +84,7 @@ def forward_once() -> SignFinding:
 
 
 def slow_region() -> tuple[Expr, Expr]:
-    """The launching arc lengths `0 < s < s'` between which `T0' < 1`, one region on each half.
+    """Both ends `0 < s < s'` of the arc on which `T0' < 1` at the launch; its mirror image is another such arc.
 
     >>> [value.n(6) for value in slow_region()]
     [0.0692582, 1.20379]
@@ -94,13 +96,13 @@ def slow_region() -> tuple[Expr, Expr]:
 
 
 def _expanding_by(bound: Expr) -> Expr:
-    """A polynomial in `q` and `y` that vanishes where `|(T0**2)'| = bound`."""
+    """A polynomial in `q` and `y` (see the module) that vanishes where `|(T0**2)'| = bound`."""
     (top, bottom), (top_y, bottom_y) = slope_squared(q).as_numer_denom(), slope_squared(y).as_numer_denom()
     return top * top_y - bound**2 * bottom * bottom_y
 
 
 def _critical() -> Expr:
-    """A polynomial in `q` and `y` that vanishes where the derivative of `(T0**2)'` along a branch does."""
+    """A polynomial in `q` and `y` (see the module) that vanishes where `(T0**2)'' = 0` on a branch of `T0**2`."""
     log_slope = cancel(slope_squared().diff(q) / slope_squared())
     chained = log_slope + log_slope.subs(q, y) * LAUNCH_Q2.diff(q) / (2 * y)
     return together(chained).as_numer_denom()[0]
@@ -116,8 +118,8 @@ def expansion_polynomial(bound: Expr) -> Expr:
 
 
 def expands_by(bound: Expr) -> SignFinding:
-    """Is `|(T0**2)'| > bound` everywhere? As it is infinite at the ends of each branch, it suffices that it is never
-    equal.
+    """Is `|(T0**2)'| > bound` everywhere? As `|(T0**2)'|` is infinite at the ends of each branch, it suffices that it
+    never equals `bound`.
 
     >>> expands_by(Rational(3, 2)).outcome.name
     'PROVED'
@@ -171,8 +173,8 @@ def infimum_attained() -> SignFinding:
     """Is `expansion_infimum` the least value of `|(T0**2)'|` on the table? This is decided exactly, by counting roots.
 
     On the branch that changes halves, `y < 0`, `|(T0**2)'|` is infinite at both ends and has one critical point, its
-    minimum. There it takes the value `ABOVE` twice, so the minimum is smaller. On the other branch it is infinite at
-    both ends too and never takes this value, so it is larger than `ABOVE` everywhere.
+    minimum. On this branch it takes the value `ABOVE` twice, so the minimum is smaller. On the other branch it is
+    infinite at both ends too and never takes this value, so it is larger than `ABOVE` everywhere.
 
     >>> infimum_attained().outcome.name
     'PROVED'
@@ -190,8 +192,9 @@ def infimum_attained() -> SignFinding:
 def fixed_points() -> list[tuple[Expr, Expr]]:
     """Bounds on the last landing point `q` of each fixed point of `T0**2`, for one of each mirror pair.
 
-    An orbit goes from `x > 0` to `y` and back. For `y < 0` the second flight is mirrored and lands at `q = -x`, else at
-    `q = x`. So `LAUNCH_Q2(y) = q**2`, where `q` has the sign of `y`. There is one pair, the vertical orbit.
+    An orbit goes from the coordinate `x > 0` to `y` and back. For `y < 0` the second flight is mirrored and lands at
+    `q = -x`, else at `q = x`. So `LAUNCH_Q2(y) = q**2`, where `q` has the sign of `y`. There is one pair, the vertical
+    orbit.
 
     >>> fixed_points()
     [(-1/5, -1/5)]

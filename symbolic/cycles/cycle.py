@@ -184,7 +184,7 @@ def flight_matrix(cycle: Cycle, i: int, contraction: Expr = lam) -> Matrix:
 
 
 def given_cycle(label: str, cycle: Cycle) -> Cycle:
-    """`cycle`, which must be a cycle of this module; otherwise `ValueError`, which begins with `label`."""
+    """`cycle`, if it is a `Cycle`; otherwise raises `ValueError`, with a text that begins with `label`."""
     if not isinstance(cycle, Cycle):
         raise ValueError(
             f"{label}: {repr(cycle)[:80]} is no exact cycle; accepted: a Cycle, such as one of double_normals(table)"

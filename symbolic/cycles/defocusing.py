@@ -262,8 +262,8 @@ def square_defects() -> list[Expr]:
 def signs() -> SignFinding:
     """Are the inequalities of the proof true?
 
-    They say that no term of the sums of `square_parts` is negative, and that the first bound of the gain is below 3/2;
-    there `delta/2` is `(1 - lam)*pi/8 <= pi/8`, and `tan(pi/8) < 1`.
+    They say that no term of the sums of `square_parts` is negative, and that the bound `g` of the module is below 3/2,
+    since `(1 - lam)*pi/8 <= pi/8` and `tan(pi/8) < 1`.
 
     >>> signs().outcome.name
     'PROVED'

@@ -120,9 +120,9 @@ def derivative_matrix(table: Tabled | None = None, *components: int, **values: E
     """`d(s1, phi1)/d(s0, phi0)` of one flight and one reflection. Paper: eq. (derivative_of_map).
 
     Without a table: in the paper's letters `K0, K1, t, cos_phi0, cos_eta1, lam`, each of which may be given a value.
-    With a table: along the chord from `theta0` to `theta1`; `components` are their two indices, by default the first.
-    `lam` stands for the slope of the reflection law at the landing, with the opposite sign. Values are exact numbers,
-    such as `lam="1/2"`, or expressions; a float is refused.
+    With a table: along the chord from `theta0` to `theta1`; `components` are the indices of the components on which
+    these lie, by default 0 for both. `lam` stands for the slope of the reflection law at the landing, with the opposite
+    sign. Values are exact numbers, such as `lam="1/2"`, or expressions; a float is refused.
 
     >>> derivative_matrix().det().simplify()
     cos_phi0*lam/cos_eta1

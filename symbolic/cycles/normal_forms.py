@@ -115,10 +115,11 @@ def composed(maps: Sequence[Map]) -> Map:
 
 
 def twist_of_odd(map: Map) -> Any:
-    """The twist of an area-preserving map with `F(-v) = -F(v)` and `A = D`, up to a positive factor and the sign of B.
+    """The twist of an odd area-preserving map with linear part `M = [[A, B], [C, D]]`, `A = D`, up to a factor.
 
     `F = M(v + J grad S)` to third order, and `M` turns along the ellipses `-C*x^2 + B*p^2`; the mean of the quartic `S`
-    along them is the twist. As there are no even terms, a multiplier that is a third root of unity is allowed.
+    along them is the twist. The sign of the factor depends only on the sign of `B`. As there are no even terms, a
+    multiplier that is a third root of unity is allowed.
     """
     (x, p), S = map, dict[tuple[int, int], Any]()
     A, B, C, D = x[1, 0], x[0, 1], p[1, 0], p[0, 1]
@@ -130,7 +131,7 @@ def twist_of_odd(map: Map) -> Any:
 
 @cache
 def egg_diameter() -> tuple[Expr, Expr, Expr]:
-    """`B`, the trace and the twist (as `twist_of_odd`) of the elastic period-2 orbit of the three-pointed egg, exact.
+    """`B` (as in `twist_of_odd`), the trace and the twist of the elastic diameter of the three-pointed egg, exact.
 
     >>> egg_diameter()[1].subs(alpha, 0)
     2

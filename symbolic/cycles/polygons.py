@@ -215,7 +215,7 @@ COSINE = Symbol("C", real=True)
 
 
 def in_cosine(expression: Expr, K: int = 3) -> Expr:
-    """A sum of cosines of multiples of `K*theta`, as a polynomial in `COSINE`.
+    """A sum of cosines of multiples of `K*theta`, as a polynomial in `C = cos(K*theta)`.
 
     >>> in_cosine(cos(6 * theta))
     2*C**2 - 1
@@ -242,13 +242,19 @@ def squared_speed_polynomial(K: int = 3) -> Expr:
 
 
 def curvature_slope_polynomial(K: int = 3) -> Expr:
-    """A polynomial with the sign of `d(-kappa)/dC`: `-kappa = N/Q**(3/2)` grows with `C` where `2*Q*N' > 3*Q'*N`."""
+    """A polynomial with the sign of `d(-kappa)/dC`: `-kappa = N/Q**(3/2)` grows with `C` where `2*Q*N' > 3*Q'*N`.
+
+    `N` is the `turning_polynomial`, `Q` the `squared_speed_polynomial`.
+    """
     N, Q = turning_polynomial(K), squared_speed_polynomial(K)
     return expand(2 * Q * N.diff(COSINE) - 3 * Q.diff(COSINE) * N)
 
 
 def _centre_of_curvature() -> tuple[Expr, Expr, Expr]:
-    """`(N, |e|**2*N**2, Re(e**3)*N**3)` of the centre of curvature `e = exp(i*theta)*(u + i*w*sin(3*theta))/N`."""
+    """Polynomials in `C` of the egg with `K = 3`: `(N, |e|**2*N**2, Re(e**3)*N**3)`, for the centre of curvature `e`.
+
+    `N` is the `turning_polynomial`; `e = exp(i*theta)*(u + i*w*sin(3*theta))/N`, with polynomials `u` and `w`.
+    """
     C, N, Q = COSINE, turning_polynomial(), squared_speed_polynomial()
     u, w, sine = (1 + alpha * C) * (N - Q), -3 * alpha * Q, 1 - C**2
     return N, u**2 + w**2 * sine, C * (u**3 - 3 * u * w**2 * sine) - sine * (3 * u**2 * w - w**3 * sine)
@@ -258,8 +264,8 @@ def centre_beyond_boundary() -> Expr:
     """`N*(|e| - rho)`, which has the sign of `-T0'`, for the centre of curvature `e` and the radius `rho` in its
     direction.
 
-    The factor `N`, which has the sign of `-kappa`, keeps the value finite where the curvature vanishes. The value is
-    not defined where `e` is the centre of the table (see `centre_far_inside`).
+    The factor `N` (`turning_polynomial`), which has the sign of `-kappa`, keeps the value finite where the curvature
+    vanishes. The value is not defined where `e` is the centre of the table (see `centre_far_inside`).
 
     >>> from sympy import Rational
     >>> flat = centre_beyond_boundary().subs(COSINE, -1)

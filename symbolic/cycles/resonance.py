@@ -1,9 +1,9 @@
 """The normal form of the elastic egg's triangle at the flat points, exact in alpha: stability beyond linear terms.
 
 Followed by a rotation back through a third of a turn, one flight of the triangle is an area-preserving map of the plane
-to itself, with the multipliers `mu = A + T` and `A - T`, where `T**2 = A**2 - 1`. Its normal form is computed over the
-rational functions of alpha, extended by `T`, without approximation. As area is preserved, half of every coefficient
-must vanish, which is a check. Paper: section 6.4 ("elliptic for any alpha").
+to itself, with the multipliers `mu = A + T` and `A - T`, where `A` is half the trace and `T**2 = A**2 - 1`. Its normal
+form is computed over the rational functions of alpha, extended by `T`, without approximation. As area is preserved,
+half of every coefficient must vanish, which is a check. Paper: section 6.4 ("elliptic for any alpha").
 """
 
 from dataclasses import dataclass
@@ -59,7 +59,7 @@ class QuadraticNumber:
 
 @dataclass(frozen=True)
 class Resonances:
-    """One flight of the triangle: its matrix `B`, the trace, and the coefficients of its normal form.
+    """One flight of the triangle: entry `B` (upper right) and trace of its matrix, and coefficients of its normal form.
 
     Up to third order the map is `z -> mu*z*(1 + twist*T/B*|z|**2)`, with `third*conj(z)**2` in addition where
     `mu**3 = 1` and with `fourth*conj(z)**3` where `mu**4 = 1`. `drift` is the part of the cubic coefficient that area
@@ -125,10 +125,11 @@ def resonances(numbers: Any, a: Any) -> Resonances:
 
 
 def chord_between_flats(numbers: Any, a: Any) -> Series:
-    """The length, over `sqrt(3)`, of the chord between points `sqrt(3)*x` radians from two neighbouring flat points.
+    """Terms of degree 2 to 4 of the length, over `sqrt(3)`, of a chord between points near two flat points.
 
-    Seen from the middle of the chord, the flat points lie at 60 degrees on either side, and `sin = sqrt(3)*along` and
-    `cos = across`, with `along` and `across` rational series.
+    The ends lie `sqrt(3)*x` and `sqrt(3)*y` radians from neighbouring flat points, with `x` and `y` the variables of
+    the series. Polar angles are counted from the bisector of the flat points, which lie at 60 degrees on either side.
+    Their sine is `sqrt(3)*along` and their cosine `across`, with `along` and `across` rational series.
     """
     radius = [(numbers(1) if k == 0 else numbers(0)) - a * c for k, c in enumerate(_cosines(numbers, 3))]
     cos_d, sin_d = _cosines(numbers, 1), _sines(numbers)

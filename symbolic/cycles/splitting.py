@@ -198,9 +198,9 @@ def width_defects() -> list[Expr]:
 
 
 def share_defects() -> list[Expr]:
-    """Distances from the wall minus the module's formulas: of a point of the arc, and of its circle; both are 0.
+    """Two distances from the wall minus their formulas in `c`; both are 0.
 
-    The first is `X = x + 1/4`.
+    The first distance is that of a point of the arc, `X = x + 1/4`; the second is that of its circle, `clear`.
 
     >>> share_defects()
     [0, 0]
@@ -247,10 +247,11 @@ def spread_defect() -> Expr:
 def diameters(contraction: Expr = lam) -> tuple[Expr, Expr]:
     """Bounds for the projective diameter of the cone's image: along a chord of the arc, and by way of the wall.
 
-    The exponential of the diameter is the product of `far/near` and `(1 - d/far)/(1 - d/near)` (see `spread_defect`).
-    `far/near` is at most `1 + 2*lam/(1 + lam)` for the arc, since `t - D0 >= D0/2`, and at most
-    `1 + 4*lam/(3*(1 + lam)*clearance)` by the wall, since `D0 <= 4/3`. Moreover `1 - d/far` is at most 1, `d/near` is
-    at most `1/gain` for the arc, and `1 - d/near >= clearance/DIAMETER` by the wall.
+    Let `near` and `far` be the module's `f + t1` at `y = 1` and at `y = 1 + lam`, and `d = d1`. The exponential of the
+    diameter is the product of `far/near` and `(1 - d/far)/(1 - d/near)` (see `spread_defect`). `far/near` is at most
+    `1 + 2*lam/(1 + lam)` for the arc, since `t - D0 >= D0/2`, and at most `1 + 4*lam/(3*(1 + lam)*clearance)` by the
+    wall, since `D0 <= 4/3`. Moreover `1 - d/far` is at most 1, `d/near` is at most `1/gain` for the arc, and
+    `1 - d/near >= clearance/DIAMETER` by the wall.
 
     >>> [bound.n(3) for bound in diameters(Rational(1, 2))]
     [4.45, 5.18]

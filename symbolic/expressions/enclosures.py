@@ -48,7 +48,7 @@ class UnboundedError(Exception):
 
 
 def sign_on(expression: Expr, x: Symbol, low: Rational, high: Rational, work: int = WORK) -> SignFinding:
-    """Is `expression` > 0 for all `x` with `low <= x <= high`? It takes at most `work` operations; `at` refutes it.
+    """Is `expression` > 0 for all `x` with `low <= x <= high`? At most `work` operations are used.
 
     >>> x = Symbol("x")
     >>> sign_on(2 + cos(cos(x)) / (3 + sin(x)), x, S(-4), S(4)).outcome.name

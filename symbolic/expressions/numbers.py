@@ -25,7 +25,7 @@ R = TypeVar("R", bound=Number)
 
 
 class Real(Number, Protocol):
-    """A number with an order. A comparison gives a mask of its number system, which Python's types cannot express."""
+    """A number with an order. A comparison returns a mask of its number system, a type that cannot be stated here."""
 
     def __abs__(self) -> Self: ...
     def __lt__(self, other: Self, /) -> Any: ...

@@ -117,7 +117,7 @@ def support(h: Harmonics, k: int, E: Complex) -> Complex:
 
 
 def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Complex]:
-    """`C_k` and `S_k` in the frame of the flight, where `E = 1`, without the parts that do not change its chord.
+    """`C_k` and `S_k` in the frame of the flight, where `E = 1`; components that do not affect the chord are set to 0.
 
     `exp(i*k*m)*conj(M_k)` is the sum of multiples of `E**(k + 1)` and `E**(k - 1)`. Here `|E| = 1` is used, so that the
     products `E*conj(E)` are exactly one, and the circular part of a table adds no rounding to the chord polynomial.
@@ -131,7 +131,7 @@ def seen_ahead(k: int, C: Complex, S: Complex, E: Complex) -> tuple[Complex, Com
 
 
 def oscillates(expression: Expr) -> bool:
-    """Does an expression contain a wave of more than `HIGH` periods in a turn? Then `about_focus` need not be tried.
+    """Does an expression contain a wave of more than `HIGH` periods in a turn? Then `about_focus` returns None.
 
     >>> oscillates(1 + cos(65 * theta)), oscillates(cos(theta) ** 3)
     (True, False)
@@ -153,8 +153,9 @@ class Focal(NamedTuple):
 def about_focus(rho: Expr) -> Focal | None:
     """The ellipse with a focus in the origin and the radius `rho(theta)`; None for other curves, and for a circle.
 
-    With `left = p*p - size*size` the half axes are `p/left` and `1/sqrt(left)`, and the centre is at `-size/left` along
-    the long axis. The result is None, too, if the direction of this axis depends on a parameter.
+    With `1/rho = p + size*cos(theta - w)` and `left = p*p - size*size` the half axes are `p/left` and `1/sqrt(left)`,
+    and the centre is at `-size/left` along the long axis. The result is None, too, if the direction of this axis
+    depends on a parameter.
 
     >>> about_focus(1 / (5 + 3 * cos(theta))).harmonics
     {0: ((-3/16, 0), (0, 0)), 1: ((5/16, 0), (0, 1/4))}
@@ -185,12 +186,12 @@ def about_focus(rho: Expr) -> Focal | None:
 
 
 def about_far_focus(component: Component, box: Box) -> Component:
-    """The component, where an arc of a conic about a focus in the origin is rewritten to keep its digits at a far tip.
+    """The component; an arc of a conic with a focus in the origin is rewritten so as to lose no digits at a far tip.
 
-    At a far tip `1/rho = p + size*cos(theta - w)` is a small difference. In terms of the cosine `c` of half of
-    `theta - w` it is `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse. The new form uses cosine
-    and sine of `theta/2` only. The component is returned unchanged where `size` has no proved sign on the box or is not
-    above `p/2`.
+    There `1/rho = p + size*cos(theta - w)` is a small difference. In terms of the cosine `c` of half of `theta - w` it
+    is `(p - size) + 2*size*c*c`, a sum of two positive numbers on an ellipse. The new form uses cosine and sine of
+    `theta/2` only. The component is returned unchanged where `size` has no proved sign on the box or is not above
+    `p/2`.
 
     >>> rho = 1 / (5 + 4 * cos(theta))
     >>> about_far_focus(Component("arc", (rho * cos(theta), rho * sin(theta)), S.Zero, pi), {}).point[1]

@@ -220,7 +220,8 @@ class Formulas:
 class Piece:
     """A part of a component between two neighbouring ends or marked points, for parameters within the bounds `letters`.
 
-    `stops` has the numbers of derivatives that vanish at the start and at the end; at a cusp the curve turns back.
+    `stops` has the numbers of derivatives that vanish at the start and at the end; `cusp` is true if the curve turns
+    back at the end.
     """
 
     formulas: Formulas
@@ -349,9 +350,9 @@ def separated(a: Arc, b: Arc) -> bool:
 
 
 def turn(a: Arc, b: Arc) -> list[Vector] | None:
-    """The directions that the curve turns through between two neighbouring arcs; None if they may meet again.
+    """The directions that the curve passes if it turns back between neighbouring arcs; None if the arcs may meet again.
 
-    The list is empty unless there is a cusp in between, at which it has one direction.
+    The list has one direction if a cusp lies between the arcs, otherwise it is empty.
     """
     if a.piece.cusp and a.last and b.first:
         return _turn_back(a, b)

@@ -61,7 +61,7 @@ def like(name: str, known: Iterable[str]) -> str:
 
 
 def no_parameter(table: str, name: str, known: Iterable[str]) -> ValueError:
-    """The error for a keyword that is no shape parameter of a table; it names a similar keyword of our functions."""
+    """The error for a keyword that is no shape parameter of a table; it suggests a similar keyword of the package."""
     accepted = ", ".join(known) or "none"
     return ValueError(f"{table}: no shape parameter {name}; it has: {accepted}{like(name, KEYWORDS)}")
 

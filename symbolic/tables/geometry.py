@@ -389,7 +389,7 @@ def boundary_coefficients(component: Component) -> dict[int, Expr] | None:
 
 
 def in_half_tangent(expression: Expr) -> tuple[Expr, Symbol, Expr] | None:
-    """A polynomial `p` in `T = tan(x/2)` with the sign of a trigonometric polynomial; `T`; and the latter's value at
+    """A polynomial in `T = tan(x/2)` with the sign of a trigonometric polynomial; `T`; and the value of `expression` at
     `x = pi`.
 
     Here `x = g*theta`, where `g` is the common divisor of the frequencies. None if the expression is not a

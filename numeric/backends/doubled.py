@@ -7,8 +7,8 @@ cheap: the first terms of a Taylor series about the nearest multiple of `log(2)`
 the further terms, less than `2**-11` of the whole, are a double. An inverse function takes one step of Newton's method
 from the nearest double: a logarithm by an exponential, an arc tangent by sine and cosine, roots by powers. The error of
 an exponential or a hyperbolic function is at most `UNIT` times the modulus of the value. For a logarithm, an arc
-tangent, a sine or a cosine the bound is larger by `2**-104` times the modulus of the argument, which is a double's up
-to `2**30`. tests/numeric/backends/test_doubled.py compares all of them with 50 digits.
+tangent, a sine or a cosine the bound is larger by `2**-104` times the modulus of the argument; angles may be as large
+as `2**30`. tests/numeric/backends/test_doubled.py compares all of them with 50 digits.
 """
 
 import math
@@ -268,7 +268,7 @@ class Doubles(Generic[N, M]):
         return _ordered(self.ops, near, (x * c - s).high / (c + x * s).high)
 
     def root(self, x: Double[N, M], n: int) -> Double[N, M]:
-        """The positive `n`-th root of a positive number from `2**-900` on: Newton's step on `y**n = x`."""
+        """The positive `n`-th root of a number of at least `2**-900`: Newton's step on `y**n = x`."""
         near = self.of(self.ops.root(x.high, n))
         power = near
         for _ in range(n - 2):

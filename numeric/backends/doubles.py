@@ -69,7 +69,7 @@ class DoubleBackend(Backend[N, M], Protocol[N, M]):
         wanted: M | None = None,
         accepts: Callable[[N], M] | None = None,
     ) -> N:
-        """The only zero of `function` in `[low, high]`; see `Backend.zero`."""
+        """The only zero of `function` in `[low, high]`; the arguments are those of `functions.bracketed_zero`."""
         return bracketed_zero(self, function, x, low, high, scale, newton, wanted, accepts)
 
     def polynomial_zero(
@@ -83,5 +83,5 @@ class DoubleBackend(Backend[N, M], Protocol[N, M]):
         wanted: M | None = None,
         accepts: Callable[[N], M] | None = None,
     ) -> N:
-        """The only zero of a polynomial in `[low, high]`; see `Backend.zero`."""
+        """The only zero of a polynomial in `[low, high]`; the arguments are those of `functions.polynomial_zero`."""
         return polynomial_zero(self, p, x, low, high, scale, steps, wanted, accepts)

@@ -83,7 +83,7 @@ LARGEST = 708.0  # exp(LARGEST) is a double
 
 
 def exp_less_one(ops: Backend[N, M], x: N) -> Pair[N]:
-    """`(2**k, p)` with `exp(x) = 2**k*(1 + p)` and `|p| < 0.42`; relatively exact in `p` near 0, for `|x| <= 708`."""
+    """`(2**k, p)` with `exp(x) = 2**k*(1 + p)` and `|p| < 0.42`, for `|x| <= 708`; `p` is accurate even near 0."""
     k = ops.rounded(x * ops.number(1 / LOG_2))
     r = ops.fma(-k, ops.number(LOG_2), x)
     r = ops.fma(-k, ops.number(LOG_2_LOW), r)
@@ -182,14 +182,14 @@ def cross(z: Pair[N], w: Pair[N]) -> N:
 
 
 def exact_cross(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> N:
-    """`cross` to two units in the last place even where it almost vanishes, by Kahan [JeannerodLouvetMuller2013]."""
+    """`cross(z, w)` to two units in the last place, even if it is almost 0, by Kahan [JeannerodLouvetMuller2013]."""
     product = z[1] * w[0]
     lost = ops.fma(-z[1], w[0], product)
     return ops.fma(z[0], w[1], -product) + lost
 
 
 def exact_dot(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> N:
-    """`dot` to two units in the last place, by `exact_cross`."""
+    """`dot(z, w)` to two units in the last place, even if it almost vanishes."""
     return exact_cross(ops, (z[0], -z[1]), (w[1], w[0]))
 
 
@@ -200,7 +200,7 @@ def product_and_error(ops: Backend[N, M], x: N, y: N) -> Pair[N]:
 
 
 def cross_and_error(ops: Backend[N, M], z: Pair[N], w: Pair[N]) -> Pair[N]:
-    """`cross`, rounded, and its rounding error; their sum has twice the digits."""
+    """`cross(z, w)`, rounded, and its rounding error; their sum has twice the digits."""
     (x, x_error), (y, y_error) = product_and_error(ops, z[0], w[1]), product_and_error(ops, z[1], w[0])
     total = x - y
     back = total - x
@@ -230,8 +230,8 @@ class Series(NamedTuple):
     """How an arc length is computed from a list of numbers: in closed form, or as a finite Fourier sum.
 
     The list begins with the `offsets` of the components. A sum of sines is `sin(step*theta)` times a polynomial in
-    `cos(step*theta)`; powers take half the operations of Clenshaw's rule. `powers` is true if the list has the
-    coefficients of the powers, which is the case where these are small enough for it.
+    `cos(step*theta)`. If the polynomial's coefficients are small, the list has them and `powers` is true; this takes
+    half the operations of Clenshaw's rule, which serves otherwise.
     """
 
     offsets: int = 0

@@ -134,7 +134,7 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         return f"%{stem}{self.count}"
 
     def emit(self, text: str, key: str | None = None) -> str:
-        """Writes `name = text`, unless a value with the same key is known in this scope; returns the name."""
+        """Writes `name = text`, unless an open scope has a value with this key, by default `text`; returns its name."""
         key = key if key is not None else text
         for known in reversed(self.known):
             if key in known:
@@ -172,14 +172,14 @@ class LLVMBackend(DoubleBackend[LLVMVector, LLVMMask]):
         self.block = name
 
     def open(self) -> None:
-        """Is this number already a known constant when the kernel is written?"""
+        """Opens a scope, inside which `emit` may use the values of all scopes around it."""
         self.opened += 1
         self.scope = self.opened
         self.scopes.append(self.scope)
         self.known.append({})
 
     def close(self) -> None:
-        """Are two values already known to be equal when the kernel is written?"""
+        """Closes the scope opened last; what was emitted in it is not used again."""
         self.scopes.pop()
         self.known.pop()
         self.scope = self.scopes[-1]

@@ -45,7 +45,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
 
     @property
     def pi_low(self) -> N:
-        """The difference between the number pi and the value of `pi`."""
+        """The number pi minus the value of `pi`."""
         ...
 
     def number(self, x: float, /) -> N:
@@ -136,7 +136,12 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         accepts: Callable[[N], M] | None = None,
         /,
     ) -> N:
-        """The only zero of `function` in `[low, high]`; arguments as in `numeric.backends.functions.bracketed_zero`."""
+        """The only zero in `[low, high]` of a function that is negative at `low` and positive at `high`.
+
+        `function` returns value and slope, `x` is a first guess, and `scale` the size below which the absolute error
+        counts. After `newton` steps of Newton's method convergence is tested. `accepts` is a cheap test that a number
+        is above `low`. Numbers outside the mask `wanted` need not converge.
+        """
         ...
 
     def polynomial_zero(
@@ -151,7 +156,7 @@ class Backend(NumberSystem[N], FormulaWords[N], Protocol[N, M]):
         accepts: Callable[[N], M] | None = None,
         /,
     ) -> N:
-        """The only zero in `[low, high]` of the polynomial with the coefficients `p`, constant first; see `zero`."""
+        """The zero of the polynomial `p`, constant first; arguments as in `zero`, `steps` of Halley, then of Newton."""
         ...
 
     def repeat(

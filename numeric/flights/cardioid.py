@@ -85,7 +85,7 @@ class Cardioid(Family):
         """The cubic in `S` whose zero is the landing, constant first, mirrored if `k < 0`; then `sin(theta0/2)`, `k`
         and `-v`.
 
-        The value `sin(theta0/2)` is mirrored in the same way.
+        `S`, `k` and `v` are those of the module. The value `sin(theta0/2)` is mirrored too if `k < 0`.
         """
         p, q = sigma
         k = plane.exact_cross(ops, (q, p), (exit[1], exit[0]))
@@ -103,10 +103,11 @@ class Cardioid(Family):
     ) -> tuple[N, Callable[[], N], Callable[[N], M]]:
         """A first guess of the zero below `Q`, a lower bound of this zero, and a test that a number is above the bound.
 
-        The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless the particle would have to cross the negative
-        axis to get there. In `z = Q - S > 0` the cubic is `2*c - D*z + 4*k*Q*z**2 - k*z**3`, `D` its slope at `Q`
-        and `c = cos(phi)`: where `D > 0` the zero lies near `z = c`, as for a circle, otherwise `z**2` is about
-        `-D/k`, and for `z >= 8` with `z**2 >= 4*(c + |D|)/k` the cubic is negative.
+        `Q` is `sin(theta0/2)`, mirrored as in `cubic`. The bound is `ahead[1]/ahead[0]`, the direction `psi`, unless
+        the particle would have to cross the negative axis to get there. In `z = Q - S > 0` the cubic is
+        `2*c - D*z + 4*k*Q*z**2 - k*z**3`, `D` its slope at `Q` and `c = cos(phi)`: where `D > 0` the zero lies near
+        `z = c`, as for a circle, otherwise `z**2` is about `-D/k`, and for `z >= 8` with `z**2 >= 4*(c + |D|)/k` the
+        cubic is negative.
         """
         D = ops.number(5.0) * cubic[2] * Q + cubic[1]
         far = ops.sqrt(ops.maximum((c - D) / cubic[3], ops.number(0.0)))

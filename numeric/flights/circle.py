@@ -1,4 +1,4 @@
-"""The unit circle: angles are the state, and a bounce is `theta + pi - 2*phi`, `lam*phi`."""
+"""The unit circle: the state is `(theta, phi)`, and a bounce takes it to `(theta + pi - 2*phi, lam*phi)`."""
 
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus

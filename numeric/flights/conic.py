@@ -55,7 +55,7 @@ class Conic(Ellipse):
         return None
 
     def fly(self, ops: Backend[N, M], shape: Fields[N], law: str, position: Fields[N], exit: Fields[N]) -> Landing[N]:
-        """`Ellipse.fly`, with twice the digits where the ellipse is long."""
+        """The landing of `Ellipse.fly`, found with twice the digits if the ellipse is so long that this is needed."""
         landing = super().fly(ops, shape, law, position, exit)
         if not self.refines or not ops.doubles:
             return landing
@@ -107,8 +107,9 @@ class Conic(Ellipse):
         return ops.number(0.0), ops.atan2(n[1], n[0])
 
     def _seen(self, theta: Array) -> tuple[Array, Array, Pair[Array]]:
-        """At polar angles: `1/r`, and the length and the direction of the normal `p*n + Q` (see the module for the
-        symbols).
+        """The values `1/r` at the polar angles `theta`, and the lengths and the directions of the normals `p*n + Q`.
+
+        The letters are the module's.
         """
         ops, focus = self.boundary.ops, self.focus(self.boundary.ops)
         u = np.cos(theta), np.sin(theta)

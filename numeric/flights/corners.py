@@ -46,9 +46,7 @@ def piece_of(kind: str, x: Fields[N]) -> PieceNumbers[N]:
 
 
 def span(piece: PieceNumbers[N]) -> Pair[N]:
-    """`(base, slope)` such that `base + slope*|p|` bounds the sum of the moduli of the terms of the piece's point at
-    `p`.
-    """
+    """`(base, slope)` of a bound, `base + slope*|p|`, of the sum of the moduli of the terms of a point of the piece."""
     x, y, ax, ay, bx, by = (modulus(z) for pair in (piece.origin, piece.A, piece.B) for z in pair)
     if piece.kind == FOCAL:
         return ax + ay + ax + ay + bx + by, x - x

@@ -105,7 +105,7 @@ class Boundary:
         return bool(np.max(curvature) <= 1e-12 * np.max(np.abs(curvature)))
 
     def curve_on(self, index: int, theta: Array, count: int = 6) -> Array:
-        """`curve` on one component."""
+        """Rows with the values of `curve` at the parameters `theta` of the component `index`."""
         values = self.ir.parts[index].first(count)(self.ops, theta, *self.numbers)
         return np.array(np.broadcast_arrays(theta, *values)[1:], dtype=float)
 
@@ -203,7 +203,7 @@ class Family(ABC):
         return self.boundary.frame(component, theta)
 
     def cartesian(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
-        """The points of `frame`."""
+        """The Cartesian coordinates of boundary points, those of `frame`."""
         x, y = self.boundary.curve(component, theta, 2)
         return x, y
 
@@ -228,7 +228,7 @@ class Family(ABC):
         return None
 
     def curving(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Pair[N]:
-        """`bending` at a position in the family's fields; a family defines it together with `framed`."""
+        """`ds/dp` and curvature (as `bending`) at a position in the family's fields; defined together with `framed`."""
         raise NotImplementedError(self.name)
 
     def exit_fields(self, ops: Backend[N, M], frame: Frame[N], phi: N) -> list[N]:
@@ -365,7 +365,7 @@ class Family(ABC):
         return landing, [] if law == SLAP else self.leave(ops, shape, law, lam, landing)
 
     def rate(self, ops: Backend[N, M], shape: Fields[N], law: str, state: Fields[N]) -> N:
-        """`exit_normal_speed` of a particle that is about to leave."""
+        """`N0 = speed*cos(phi0)` (`exit_normal_speed`) of a particle that leaves in this state."""
         return self.exit_normal_speed(ops, shape, *self._split(ops, shape, law, state, whole=True))
 
     def bounce_with_tangent(
@@ -406,7 +406,7 @@ class Family(ABC):
         return landing.position + leaving, landing.code, [moved * rise, turned, growth, counted, down, volume, n0], end
 
     def leaving_rate(self, ops: Backend[N, M], shape: Fields[N], landing: Landing[N], leaving: Fields[N]) -> N:
-        """`exit_normal_speed` at a landing, where the frame is already computed."""
+        """`N0 = speed*cos(phi0)` of a particle that leaves after a landing, whose frame may be known already."""
         exit = leaving or self.normal_exit_of_unit_length(ops, shape, landing.position)
         return self.exit_normal_speed(ops, shape, landing.position, exit)
 
@@ -422,7 +422,7 @@ class Family(ABC):
         )
 
     def normal_exit_of_unit_length(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> list[N]:
-        """`normal_exit` normalised; where only the flight is computed, a normal of any length will do."""
+        """The direction along the normal, of length one; that of `normal_exit` may have any length."""
         return self.normal_exit(ops, shape, position)
 
 

@@ -82,7 +82,10 @@ def laid(table: Array, boxes: Sequence[Array], lines: Sequence[Sequence[float]],
 
 
 def _square_rows(link: Array, way: int, low: Array, cell: Array) -> list[list[float]]:
-    """The rows of `PieceGrid.squares` for one quadrant of directions: left if `way` is odd, down if it is 2 or more."""
+    """The rows of `PieceGrid.squares` for one quadrant of directions: left if `way` is odd, down if `way >= 2`.
+
+    `link` has for each cell the first line of its list in `items`, or -1 or -2, as in `PieceGrid`.
+    """
     flip = (slice(None, None, -1 if way & 2 else 1), slice(None, None, -1 if way & 1 else 1))
     empty = (link == -1.0)[flip]
     side = np.zeros(link.shape)
@@ -110,7 +113,8 @@ def met(
 ) -> list[N]:
     """The landing, its length first, after `tried` was called for all lines of `items` along the flight.
 
-    `best` is the landing before; `tried` returns the nearer landing for one line.
+    `best` is the nearest landing known before. `tried` returns the nearer of two landings: a known
+    one, and the one on the piece of a line of `items`.
     """
     nought, one, half = ops.number(0.0), ops.number(1.0), ops.number(0.5)
     left, down = (ops.with_sign(one, side) < nought for side in v)  # of -0.0 too

@@ -16,7 +16,7 @@ MOST_KNOWN = 256  # tables of which it is remembered whether they are convex
 
 
 class Harmonic(Family):
-    """The base of the ellipse's and similar families: their reflection and their tangent map."""
+    """The base of the families with the module's state: their reflection, tangent map and arc length."""
 
     position = ("ux", "uy")
     direction = ("vx", "vy")
@@ -123,7 +123,7 @@ class Harmonic(Family):
 
 
 class Ellipse(Harmonic):
-    """The ellipse, with a single harmonic: the midpoint of a chord lies along `support`, so no equation is solved."""
+    """The ellipse, with one harmonic: for the mean `m` of a chord's parameters `exp(i*m)` lies along `support`."""
 
     name, path = "ellipse", "closed form in unit numbers"
     narrow = 32  # few values are alive at a time

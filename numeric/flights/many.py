@@ -35,7 +35,7 @@ PARTS = 64  # boxes round a piece
 
 
 class Many(Pieces):
-    """The flight of `Pieces`, with a grid by which a flight tests few pieces."""
+    """The flight on many sides and arcs: that of `Pieces`, with a grid that selects the few pieces to be tested."""
 
     path = "closed form on sides and arcs from a grid, first hit"
     width = 8

@@ -198,7 +198,7 @@ class Pieces(Coordinates):
     def _ends_of_own(
         self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], corners: list[Pair[N]], first: N, last: N
     ) -> Pair[N]:
-        """On which sides of a flight the ends of its own piece lie, with corners looked up; see `_sides_of_own`."""
+        """On which sides of a flight the ends of its own piece lie, as in `_sides_of_own`; corners are looked up."""
         ops, smooth = flight.ops, [not start for start, _ in self.corners]
         if not any(smooth):
             return first, last
@@ -282,7 +282,7 @@ class Pieces(Coordinates):
         return ops.select(own, ops.number(-OWN), ops.select(side <= ops.number(0.0), *ends))
 
     def _spans(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]]) -> list[Pair[N]]:
-        """`span` of every piece, as constants if there are no parameters."""
+        """The pair `(base, slope)` that `span` gives, for every piece; constants if there are no parameters."""
         if self.boundary.shape:
             return [span(piece) for piece in pieces]
         return [(ops.number(float(x)), ops.number(float(y))) for x, y in map(span, self.known)]
@@ -293,7 +293,7 @@ class Pieces(Coordinates):
         return base + slope * modulus(p)
 
     def _farthest(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]]) -> N:
-        """A bound of `_size` over the whole table."""
+        """A bound, for all points of the table, of the sum that `_size` gives."""
         largest = ops.number(0.0)
         for (base, slope), (low, high) in zip(
             self._spans(ops, pieces), (piece.middle for piece in pieces), strict=True
@@ -437,13 +437,13 @@ class Pieces(Coordinates):
             yield passing(flight, pieces[j].start, sides[j], start, t)
 
     def _slack_at(self, flight: Ray[N, M], pieces: list[PieceNumbers[N]], where: N) -> N:
-        """`_slack` of the arc on which a flight ends, if it is dispersing; negative on all other pieces."""
+        """The bound `_slack` for the piece on which a flight ends, if it is dispersing; otherwise a negative number."""
         none, known = -flight.ops.number(1.0), zip(pieces, self.bulges, strict=True)
         slack = [self._slack(flight, pieces, piece) if bulges else none for piece, bulges in known]
         return chosen(flight.ops, where, slack)
 
     def _gap(self, ops: Backend[N, M], pieces: list[PieceNumbers[N]], where: N, u: Pair[N]) -> N:
-        """The parameter's distance of a landing from the nearer end of its piece; negative beyond the end.
+        """The distance, in the parameter, of a landing from the nearer end of its piece; negative beyond the end.
 
         A smooth join is not an end.
         """

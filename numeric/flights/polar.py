@@ -141,7 +141,7 @@ class March(Generic[N, M]):
         return list(ops.when(shallow, state, careful))
 
     def _going(self, state: list[N]) -> M:
-        """Has the march not yet ended?"""
+        """The mask of particles whose march has not ended."""
         going: M = self.ops.number(0.5) < state[2]
         return going
 
@@ -155,7 +155,7 @@ class March(Generic[N, M]):
         return [*self._turned(u, c, s), ends, modulus(s)]
 
     def _careful(self, state: list[N]) -> list[N]:
-        """A `_step` for flights that begin almost along the wall, where the wall may be almost straight.
+        """A step of the march for flights that begin almost along the wall, which may be almost straight.
 
         `K` is computed from the divided equation, without cancellation. A step is at most `GROWTH` times the one
         before, so that `w` here and the bound of its slope give a better bound than `W` does.

@@ -212,10 +212,9 @@ class Spline(General):
     def _own(
         self, ops: Backend[N, M], start: Pair[N], own: list[N], v: Pair[N], best: list[N]
     ) -> tuple[list[N], Pair[N]]:
-        """The nearest landing: `best` or one on the piece of departure, whose zero at the start is divided out; and the
-        sides of its ends.
+        """The nearer landing, `best` or one on the piece of departure; and on which sides of the flight its ends lie.
 
-        The second result has for each end of this piece the side of the flight on which the end lies.
+        The zero of the flight function at the start is divided out.
         """
         component, theta = start
         low, high = self._ends_of(ops, component)
@@ -254,11 +253,10 @@ class Spline(General):
         return best, (least(ops, low, ops.number(-TINY)) * first, most(ops, high, ops.number(TINY)) * last)
 
     def _ahead(self, ops: Backend[N, M], component: N, z0: Pair[N], v: Pair[N], floor: N) -> tuple[list[N], list[N], N]:
-        """The two nearest pieces, not nearer than `floor`, whose boxes the flight may meet; and the bound of the third
-        one.
+        """The two nearest pieces with keys up to `floor` whose boxes the flight may meet; and the key of the third one.
 
-        A piece is given by its number and by minus a lower bound of the length at which the flight meets it. Each
-        choice has its own mask: to combine masks takes longer than to choose.
+        A piece is given by its key, minus a lower bound of the length at which the flight meets it, and its number.
+        Each choice has its own mask: to combine masks takes longer than to choose.
         """
         nought, never = ops.number(0.0), ops.number(-FAR)
         aside, begin = plane.cross(z0, v), plane.dot(v, z0)

@@ -219,7 +219,10 @@ class BatchRun:
         return {name: row[: self.count] for name, row in zip(self.names, self.state, strict=False)}
 
     def kernel(self, starts: bool = False, told: bool = True, streams: bool = False) -> machine.Run | None:
-        """The compiled kernel: with `starts`, one that begins from the starts; with `told`, one that records."""
+        """The compiled kernel, which with `starts` begins from the starts, and with `told` records.
+
+        With `streams` its records bypass the caches.
+        """
         engine = self.engine
         told_of = self.told if told else ()
         spec = KernelSpec(self.law, told=told_of, starts=starts, length=self.how, streams=streams)
@@ -310,7 +313,7 @@ def shared(
     bounces: int,
     threads: int | None,
 ) -> None:
-    """Runs a kernel on a range of columns, divided among threads; the rows have length `row`."""
+    """Runs a kernel on some columns of the arrays at `pointers`, divided among threads; `row` is the length of rows."""
     first, last = columns
     pieces = _pieces((last - first) // width, (last - first) * bounces, threads)
     calls = [(*pointers, row, first + one * width, first + other * width, bounces) for one, other in pieces]

@@ -41,7 +41,7 @@ class KernelSpec(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The specification as part of a name."""
+        """The specification as a text, which is part of a kernel's key."""
         words = [word for word in ("record", "exponents", "starts", "once", "streams") if getattr(self, word)]
         how = ["-".join(map(str, self.length))] if "s" in self.told and self.length.terms else []
         return "-".join([self.law, *words, *self.told, *how])
@@ -54,16 +54,20 @@ def fields(family: Family, spec: KernelSpec) -> tuple[str, ...]:
 
 
 def starting(q: Array, omega: Array, n0: Array) -> list[Array]:
-    """The rows of a tangent vector at the start, where `q` is the shift across the first flight and `n0` its `N0`."""
+    """The rows `TANGENT` of a tangent vector at the start.
+
+    `q` is the shift across the first flight, `omega` the change of its direction, and `n0` is `speed*cos(phi0)`.
+    """
     nought = 0.0 * q
     return [q, omega, nought, nought + 1.0, nought + 1.0, nought, n0]
 
 
 def rescaled(ops: Backend[N, M], rows: list[N]) -> list[N]:
-    """The rows of a tangent vector, rescaled if they are far from one; called every `renormalise_every` bounces.
+    """The rows `TANGENT` of a tangent vector, with sizes far from 1 rescaled; called every `renormalise_every` bounces.
 
-    The vector is `(q, omega)*2**growth/down`, and the product of the ratios of cosines is `2**volume*up/down`, so that
-    no bounce needs a logarithm or a division.
+    With the rows called `q, omega, growth, up, down, volume, n0`, the vector is `(q, omega)*2**growth/down`, and the
+    product of the bounces' `N0/N1` (`numeric.flights.family`), times their slopes if the law is no uniform contraction,
+    is `2**volume*up/down`. So no bounce needs a logarithm or a division.
     """
     q, omega, growth, up, down, volume, n0 = rows
     size, one, nought = ops.maximum(modulus(q), modulus(omega)), ops.number(1.0), ops.number(0.0)

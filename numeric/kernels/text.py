@@ -238,7 +238,7 @@ def _matrix(
     before: list[LLVMVector],
     landing: Landing[LLVMVector],
 ) -> list[LLVMVector]:
-    """The derivative of a bounce, as `MATRIX` has it, by the tangent map of `numeric.flights.family`."""
+    """The entries `machine.MATRIX` of the derivative of a bounce, by the tangent map of `numeric.flights.family`."""
     position, exit = before[: len(family.position)], before[len(family.position) :]
     n0, (rate, curvature) = family.exit_normal_speed(ops, shape, position, exit), family.curving(ops, shape, position)
     ends = family.kept(ops, shape, position), family.kept(ops, shape, landing.position)

@@ -78,7 +78,7 @@ class Trace:
         return self.known[text]
 
     def number(self, x: Any) -> str:
-        """An operand: lanes, or a double that is the same in all of them."""
+        """The text of an operand: of lanes, or of a double that is the same in all lanes."""
         if isinstance(x, Lanes):
             return x.text
         return f"splat (double 0x{struct.unpack('<Q', struct.pack('<d', float(x)))[0]:016X})"

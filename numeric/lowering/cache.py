@@ -181,7 +181,10 @@ def _entries(place: str) -> Iterator[tuple[str, int, float]]:
 
 
 def _bound(place: str, written: int) -> None:
-    """Removes the oldest entries until three quarters of the limit are left; lists the folder only when it may be."""
+    """Removes the oldest entries, if all have more than `LIMIT` bytes, until three quarters of `LIMIT` are left.
+
+    `written` is the number of new bytes. The folder is listed only if their sum shows that it may be too full.
+    """
     _sizes[place] = _sizes.get(place, LIMIT) + written
     if _sizes[place] <= LIMIT:
         return

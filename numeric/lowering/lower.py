@@ -104,7 +104,7 @@ def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any
 
 @lru_cache(maxsize=64)
 def proved_throughout(table: Table) -> bool:
-    """Is it proved, by a positive radius, that the table is one for all values of its free shape parameters?"""
+    """Is it proved, by a positive radius, that the boundary bounds a table for all values of its free parameters?"""
     try:
         return radius_over(table)
     except ValueError:  # some values give no table; others may
@@ -211,7 +211,7 @@ class Nodes:
 
 
 def _program(symbols: list[Symbol], formula: Callable[[Nodes], list[Node]], *first: str) -> Program:
-    """The program whose outputs `formula` gives when it is called with the converter of expressions."""
+    """The program with inputs `first`, `symbols` and outputs `formula(nodes)`, where `nodes` converts expressions."""
     builder = Builder(*first, *(symbol.name for symbol in symbols))
     nodes = dict(zip([theta] if first == ("theta",) else [], builder.nodes, strict=False))
     nodes |= dict(zip(symbols, builder.nodes[len(first) :], strict=True))
@@ -390,7 +390,8 @@ def _pieces(table: Table, symbols: list[Symbol]) -> dict[str, Program]:
 
     For a cubic the outputs are the coefficients of `x` and `y`, for an arc about a focus those of `flight.focal_arc`.
     For the others they are: the coefficients of the point `O + p*A + q*B`, where `(p, q)` is the cosine and sine of the
-    parameter, or the parameter and -1; the first corner; `A x B`; the radius; and numbers that mark the ends.
+    parameter on an arc, and the parameter and -1 on a side; the first corner; `A x B`; the radius; and numbers that
+    mark the ends.
     """
 
     def program(numbers: list[Expr]) -> Program:

@@ -86,7 +86,7 @@ class Program(NamedTuple):
 
     @staticmethod
     def from_data(data: list[Any]) -> "Program":
-        """The inverse of `as_data`; `ValueError` for a word outside the vocabulary."""
+        """The program of nested lists, as `as_data` gives them; `ValueError` for a word outside the vocabulary."""
         inputs, lines, outputs = data
         for line in lines:
             if line[0] not in VOCABULARY:
@@ -280,7 +280,7 @@ class TableIR(NamedTuple):
 
     `same_as` names the paper's table with the same boundary, if that table has a flight method of its own; `programs`
     has the programs for other flight methods, by name. For the end of every component, `joins` has the component that
-    begins there, the name of the `symbolic.tables.joins.Contact`, and the side to which a corner turns (1 left, -1
+    begins there, the name of the `symbolic.tables.joins.JoinKind`, and the side to which a corner turns (1 left, -1
     right).
     """
 
@@ -315,7 +315,7 @@ class TableIR(NamedTuple):
 
     @staticmethod
     def from_text(text: str) -> "TableIR":
-        """The inverse of `as_text`."""
+        """The table IR of a text that `as_text` has written."""
         data = json.loads(text)
         read = Program.from_data
         return TableIR(
@@ -385,7 +385,7 @@ def table_ir_in_unit(
 
 
 class TableSymmetry(NamedTuple):
-    """A symmetry of a table in numbers: `symbolic.tables.geometry.TableSymmetry` without its name."""
+    """A symmetry of a table, as `symbolic.tables.geometry.Symmetry`, but with floats and without a name."""
 
     sign: int
     angle: float
@@ -419,7 +419,7 @@ def symmetry_name(table: "Scene | Named | str", K: int, shape: dict[str, Any]) -
 
 
 def kept(name: str, made: Callable[[], str], read: Callable[[str], Kept]) -> Kept:
-    """What `read` makes of the text of this name: from disk, or from the package, or else newly made by SymPy and kept.
+    """The result of `read` on the text of this name, found on disk or in the package, or else made by `made` and kept.
 
     The name determines the text, together with this project's own sources.
     """

@@ -121,7 +121,7 @@ class March(Generic[N, M]):
         self.rate = slope * sine - self.r0 * cosine  # N0
 
     def marched(self) -> list[N]:
-        """The unit vector where the march stops, a flag that is 1 if it has not converged, and the bound of a step."""
+        """The unit vector where the march stops, a flag that is 1 if it has not converged, and the last step's size."""
         ops, family = self.ops, self.family
         one, nought = ops.number(1.0), ops.number(0.0)
         bound = self.size * self.r0 * ops.number(family.bounds.highest)

@@ -68,7 +68,7 @@ def contacts(table: Table) -> tuple[JoinKind, ...]:
 
 
 def bends(table: Table) -> tuple[int, ...]:
-    """For each component, 1 if the boundary turns left in a corner at its end, -1 if right, 0 if smooth or undecided.
+    """For each component, 1 if the boundary turns left in a corner at its end, -1 if right, else or if undecided 0.
 
     >>> from symbolic.tables import of_gallery
     >>> bends(of_gallery("mushroom", {}))

@@ -190,7 +190,7 @@ def _smooth_slopes(values: Sequence[int], steps: Sequence[int]) -> list[Fraction
 
 
 def _missed(points: Sequence[Vector], steps: Sequence[int], smoothness: int) -> Fraction | None:
-    """The distance of the spline through every second point from the other points, rounded up; None for less than 6."""
+    """The distance of a spline through every second point from the others, rounded up; None for fewer than 6 points."""
     if len(points) < 6:
         return None
     even = points[::2] if len(points) % 2 == 0 else points[:-1:2]

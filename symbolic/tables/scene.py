@@ -136,7 +136,7 @@ class Scene:
 
     @property
     def name(self) -> str:
-        """The table's name: one of the paper's, the user's own, or `polar`, `parametric`, `piecewise`."""
+        """The table's name: one of the paper's, the user's own, or `polar`, `parametric`, `piecewise`, `measured`."""
         return name_of(self.document)
 
     @property

@@ -353,7 +353,7 @@ def polynomial_zero(
     wanted: M | None = None,
     accepts: Callable[[N], M] | None = None,
 ) -> N:
-    """`bracketed_zero` for a polynomial, constant first; `steps` counts steps of Halley's, then of Newton's method."""
+    """The zero of a polynomial, constant first, as by `bracketed_zero`; first `steps` by Halley, then by Newton."""
     for _ in range(steps[0]):
         x = halley(p, x)
     return ops.zero(lambda at: value_and_slope(p, at), x, low, high, scale, steps[1], wanted, accepts)

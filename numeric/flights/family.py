@@ -378,7 +378,7 @@ class Family(ABC):
         tangent: Fields[N],
         kept: Fields[N],
     ) -> tuple[list[N], N | None, list[N], list[N]]:
-        """`bounce` for a particle with a tangent vector, whose rows are those of `numeric.kernels.machine.TANGENT`.
+        """One bounce of a particle with a tangent vector, whose rows are those of `numeric.kernels.machine.TANGENT`.
 
         Returns the new state, the code of the outcome or None, the new rows, and the values that the next flight uses.
         To avoid divisions, the vector is not normalised: it changes sign and grows by the factor `below*N1` too much,

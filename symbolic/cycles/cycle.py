@@ -208,7 +208,7 @@ def monodromy(cycle: Cycle, base: int = 0, contraction: Expr | int | str = lam) 
 
 @lru_cache(maxsize=256)
 def _monodromy(cycle: Cycle, base: int, contraction: Expr) -> Matrix:
-    """`monodromy`, cached, as an immutable matrix."""
+    """The stability matrix of `monodromy`, cached, as an immutable matrix."""
     product = eye(2)
     for i in range(base, base + len(cycle.bounces)):
         product = flight_matrix(cycle, i, contraction) * product

@@ -45,7 +45,7 @@ def table_of(given: Tabled) -> Table:
 
 
 def _each(given: Tabled | Component, derive: Callable[[Component], Expr]) -> Any:
-    """`derive` of a component, or of the only one of a table; for several components a dict of results by name."""
+    """The result of `derive` for a component, or for the only one of a table; for several a dict of results by name."""
     if isinstance(given, Component):
         return derive(given)
     parts = table_of(given).components
@@ -96,7 +96,7 @@ def arc_length(table: Tabled | Component) -> Any:
 
 
 def perimeter(table: Tabled) -> Expr:
-    """The length of the whole boundary; numbers where it is an unevaluated integral: see `arc_length`.
+    """The length of the whole boundary; see `arc_length` for numbers if it is an unevaluated integral.
 
     >>> perimeter("cardioid"), perimeter(named("egg").at(alpha="1/10")).evalf(20)
     (8, 6.4225893330511003622)

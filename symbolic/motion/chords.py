@@ -156,7 +156,7 @@ def ends_kernel(table: Table) -> Kernel:
 
 @cache
 def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) -> Kernel:
-    """`chord_angle` as a generated function of `(theta0, theta1, *shape)`."""
+    """The values of `chord_angle` as a generated function of `(theta0, theta1, *shape)`."""
     staged = chord_angle(table, here, there, order)
     ends = f"{table.components[here].name} to {table.components[there].name}"
     about = f"Angle from the inward normal to the chord, {ends}, with derivatives to order {order}."
@@ -166,7 +166,7 @@ def chord_kernel(table: Table, here: int = 0, there: int = 0, order: int = 1) ->
 
 @cache
 def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
-    """`chord_angle` along each side of a polygon, as a generated function of the parameters at its corners.
+    """The values of `chord_angle` for all sides of a polygon, as a generated function of the parameters at its corners.
 
     The results are the values of `chord_angle` from all corners to the next one, then from all corners to the one
     before. A value that depends on one corner only is computed once. The table has one component and no free shape

@@ -340,7 +340,7 @@ def flight(s: Expr = s, phi: Expr = phi) -> tuple[Expr, Expr]:
 
 
 def iterate(n: int) -> tuple[Expr, Expr]:
-    """`flight` applied `n` times, with arc length not reduced modulo the perimeter.
+    """The map `flight`, applied `n` times, with arc length not reduced modulo the perimeter.
 
     >>> iterate(2)
     (-2*lam*phi - 2*phi + s + 2*pi, lam**2*phi)

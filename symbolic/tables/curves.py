@@ -77,7 +77,7 @@ def trigonometric(expression: Expr) -> Expr:
 
 @lru_cache(maxsize=256)
 def _summed(expression: Expr) -> Expr | None:
-    """`trigonometric` for a real polynomial whose coefficients may contain symbols; None for other expressions."""
+    """The sum of `trigonometric` for a real polynomial, with or without symbols in its coefficients; else None."""
     letters = sorted(expression.free_symbols - {theta}, key=str)
     own = ring(letters or [Dummy("x")], QQ)[0]
     try:

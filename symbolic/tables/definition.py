@@ -136,7 +136,7 @@ def range_ends(label: str, text: str) -> "tuple[Fraction | Expr, Fraction | Expr
 
 
 def named_boundary(name: str, K: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The entries of a scene for a table of the paper, and its shape parameters' values, which are still empty."""
+    """The entries of a scene for a table of the paper; and an empty dict, for values of its shape parameters."""
     if name not in PAPER:
         known = (*PAPER, *GALLERY)
         raise ValueError(f"no table is called {name!r}; accepted: {', '.join(known)}{like(name, known)}")

@@ -271,7 +271,7 @@ def _crossings(ring: list[Arc], point: Box) -> int | None:
 
 
 def _units(table: Table, values: Mapping[Symbol, Expr]) -> tuple[Expr, Expr]:
-    """Powers of two that scale the boundary to a size of about 1; they differ for both axes only if it is very flat.
+    """Powers of two that scale `x` and `y` to a size of about 1; the two differ only if the boundary is very flat.
 
     Scaling changes no proof: each statement that is proved here is invariant under affine maps.
     """

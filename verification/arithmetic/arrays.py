@@ -215,7 +215,7 @@ class ArrayOps:
         return BallArray(m, np.where(x.m - x.r > 0, r, np.inf))
 
     def sin(self, x: BallArray) -> BallArray:
-        """The sine of the midpoint; its radius grows by no more than the radius of `x`, as the slope is at most 1."""
+        """The midpoint's sine; its error bound plus the radius of `x` is the radius, as the slope is at most 1."""
         return self.turned(x)[1]
 
     def cos(self, x: BallArray) -> BallArray:

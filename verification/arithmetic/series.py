@@ -202,7 +202,7 @@ def along(near: Sequence[Jet], function: Callable[[list[Any]], Sequence[Any]]) -
 
 
 def coefficients(series: Any, count: int) -> list[Any]:
-    """The first `count` coefficients of a series; nan beyond those known, as after division by one that starts at 0.
+    """The first `count` coefficients of a series; nan where not known, as after division by a series that is 0 at 0.
 
     >>> with taylor(3):
     ...     coefficients(arb_series([0, 1, 2]) / arb_series([0, 1]), 3)

@@ -367,7 +367,7 @@ def typed(table: Table, theta: Sequence[float], components: Sequence[str] | None
 
 
 def at_contraction(ring: Chords, x: Array, given: float, lam: float) -> Array:
-    """The cycle near `x` at the contraction `given`, followed to `lam`: the first one on its branch with this `lam`."""
+    """The first cycle at `lam` on the branch of the cycle near `x`, whose contraction is `given`."""
     if given == lam:
         return x
     found = branch(ring, x, "lam", given, (min(given, lam), max(given, lam)))

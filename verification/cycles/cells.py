@@ -287,8 +287,8 @@ def _rings(lower: Array, middle: Array, upper: Array) -> Array:
 def deflation(x: Array, step: Array, known: Array) -> Array:
     """The factor of each Newton step, when the known zeros on a closed boundary are divided out.
 
-    Half way to a known zero, a plain Newton step would reach it, while the deflated step turns back. Distances between
-    all rows and all known zeros come from two matrix products.
+    Near a known zero, the factor of a step that leads to it is negative, so that the deflated step turns back.
+    Distances between all rows and all known zeros come from two matrix products.
 
     >>> bool(deflation(np.array([[0.1, 0.1]]), np.array([[0.1, 0.1]]), np.zeros((1, 2)))[0] < 0)
     True
@@ -311,7 +311,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Zeros:
-    """Numbers of fixed points of index 1 and -1, and of undecided (`open`) cells; if none, the counts are complete."""
+    """Numbers of fixed points of index 1 and -1, and of undecided cells (`open`): if 0, the counts are complete."""
 
     positive: int
     negative: int
@@ -355,7 +355,7 @@ def _displacement(map: PinballMap, at: Array, n: int) -> tuple[Array, NDArray[np
 
 
 def _examined(map: PinballMap, cells: Array, half: Array, n: int) -> tuple[Array, Array]:
-    """The indices of the zeros in the cells that are decided, and the cells that are not."""
+    """The zeros of the displacement in the decided cells, as phase points, and the centres of the undecided cells."""
     points = np.array([[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
     v, near = _displacement(map, cells[:, None, :] + points[None] * half, n)
     centre, corners = v[:, 0], v[:, 1:]
@@ -416,7 +416,7 @@ def _each_once(map: PinballMap, zeros: Array, n: int) -> Array:
 
 
 def _on_the_circle(map: PinballMap, n: int) -> Zeros:
-    """The count at `lam = 0`, where every exit is normal: sign changes along the boundary of `T0**n` less the identity.
+    """The count for the slap map `T0`, at `lam = 0`: sign changes of `T0**n(theta) - theta` along the boundary.
 
     The transverse multiplier is 0, so the index of a sign change is 1 where the function falls.
     """

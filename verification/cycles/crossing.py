@@ -49,7 +49,7 @@ def next_to(table: Table, part: int, after: bool) -> int:
 def beyond(system: Cycles, event: Event, rough: bool = False) -> Iterator[Start]:
     """Cycles next to a border collision for which some or all colliding bounces lie on the neighbouring components.
 
-    With `rough` there are none unless the tangents agree at all joins concerned.
+    With `rough`, nothing is yielded if the tangents disagree at one of the joins that bounces meet.
     """
     ring, x = system.recurrence, event.x
     if not isinstance(ring, Chords):

@@ -74,8 +74,8 @@ def norm_of_inverse(system: "System", arithmetic: Arithmetic, z: Vector) -> floa
 
 
 def largest_row_sum(solve: Solve, transposed: Solve, n: int) -> float:
-    """Lower bound of the largest row sum of the matrix that `solve` applies: Hager's ascent, then one asymmetric
-    vector.
+    """Lower bound of the largest row sum of the matrix that `solve` applies: Hager's ascent, then a vector of
+    alternating signs.
 
     >>> twice = lambda r: [2 * r[0], r[0] + r[1]]
     >>> largest_row_sum(twice, lambda r: [2 * r[0] + r[1], r[1]], 2)
@@ -108,8 +108,8 @@ def digits_left(condition: float, unit: float) -> int:
 def costs_half(condition: float, unit: float, digits: int) -> bool:
     """Does a residual of some units of rounding leave less than half of the `digits`?
 
-    At a fold it does, whatever is computed there: at a distance `h` of the size of the root of the residual, the
-    condition number is of the size of `1/h`.
+    Next to a fold it always does: a computed solution is off by some `h` of the size of the root of the residual, and
+    the condition number there is of the size of `1/h`.
 
     >>> costs_half(8e6, 2.0**-52, 15), costs_half(1e7, 2.0**-52, 15), costs_half(1e7, 1e-65, 50)
     (False, True, False)
@@ -234,8 +234,8 @@ def refined(problem: System, start: Sequence[Any], digits: int, in_balls: bool =
     """The solution near `start` to `digits` digits, in mpmath numbers.
 
     With `in_balls` a correction is computed in balls, many times faster than in mpmath, and its midpoint taken if the
-    radii show all digits right; if not, as along long cycles, it is computed in mpmath. The last bits differ; files
-    have mpmath's.
+    radii show all digits right; if not, as along long cycles, it is computed in mpmath. The last bits of the result
+    may depend on `in_balls`.
 
     >>> from symbolic.tables import ellipse
     >>> from sympy import Rational

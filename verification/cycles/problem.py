@@ -288,7 +288,7 @@ Series = Callable[[list[Any]], Sequence[Jet]]
 
 
 def bend_of(kind: BifurcationKind, w: Sequence[Any], v: Any, series: Series, solve: Solve) -> Any:
-    """The coefficient of `e**2` in `w.F` at a fold, or of `e**3` at a flip, on the curve without a term in `e**2`."""
+    """The coefficient of `e**2` in `w.F` at a fold; at a flip of `e**3`, on a curve where `F` has no term in `e**2`."""
     second = [rule.c[2] for rule in series([v])]
     if kind is BifurcationKind.FOLD:
         return dot(w, second)
@@ -307,7 +307,7 @@ def normal_form(
 ) -> NormalForm:
     """The normal form of a cycle that folds or flips, from its singular vectors.
 
-    `series` expands the rules along curves as `expanded` does, and `solve` inverts the linearised rules.
+    `series(directions)` gives the rules as jets on a curve through the cycle; `solve` inverts the linearised rules.
     """
     lower, _, upper = terms.slope
     turn = closure.turn * (w[-1] * upper[-1] * v[0] - w[0] * lower[0] * v[-1])
@@ -324,7 +324,7 @@ def expanded(
 ) -> list[Jet]:
     """The rules as jets on the curve `x + directions[0]*e + directions[1]*e**2`, to one order beyond the directions.
 
-    Around the end of the ring the odd powers of `e` are multiplied by `sign`, and with a mirror all powers are negated.
+    Where the ring closes, the odd powers of `e` are multiplied by `sign`, and with a mirror all powers are negated.
     """
     own = [Jet(*coefficients, 0) for coefficients in zip(x, *directions, strict=True)]
     padded = ring.closure.padded(own, ring.closure.angle(arithmetic))

@@ -70,7 +70,7 @@ class Found:
         return len(self.theta)
 
     def index(self, n: int) -> int | None:
-        """Fixed-point index of `T**n` at a bounce, the sign of `det(1 - M**(n/period))`; None if it is not unique."""
+        """Fixed-point index of `T**n` at a bounce: sign of `det(1 - M**(n/period))`; None if one-sided `M` disagree."""
         one, two = self.spectrum.multipliers
         power = n // self.period
         if self.one_sided:
@@ -242,7 +242,7 @@ def _point(table: Table, part: int) -> Callable[..., Any]:
 
 
 def _winding(table: Table, components: Sequence[int], x: Array) -> int:
-    """Turns around the boundary in one period, where a chord counts for the boundary to its right; 0 with holes."""
+    """Turns around the boundary in one period; a chord counts as the arc to its right. 0 if the table has holes."""
     if len(curves(table)) > 1:
         return 0
     parts = [table.components[i] for i in components]

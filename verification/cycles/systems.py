@@ -46,7 +46,7 @@ from verification.cycles.recurrence import (
 
 
 def series_of(ring: Recurrence, x: Array, at: Parameters, kind: BifurcationKind) -> Series:
-    """A function that expands the rules along curves through a cycle, as `expanded` does."""
+    """`expanded` for the cycle `x`: a function of `directions` that gives the rules as jets on a curve through it."""
     return lambda directions: expanded(ring, FLOAT64, [float(v) for v in x], at, kind.multiplier, directions)
 
 
@@ -96,7 +96,7 @@ def reflected(table: Table) -> bool:
 
 @cache
 def symmetries(table: Table, law: Law = PAPERS_LAW) -> tuple[Closure, ...]:
-    """Symmetries other than the identity, as `theta -> turn*theta + shift`; mirrors come first, if the law is odd."""
+    """Symmetries other than the identity, as `theta -> turn*theta + shift`: mirrors, if the law is odd, then turns."""
     if law.placed:
         return ()
     k = rotations(table)
@@ -335,7 +335,7 @@ class CriticalCycles:
         return np.append(terms.value, g), matrix
 
     def tests(self, z: Array) -> dict[str, float]:
-        """The test functions: coefficient of the normal form, `det M - 1`, and the other multiplier minus 1, plus 1."""
+        """The test functions: a normal form coefficient, `det M - 1`, and the other multiplier minus 1, and plus 1."""
         terms = self.terms(z)
         v, w, _ = self.vectors(terms)
         found = spectrum(terms, self.recurrence.closure)

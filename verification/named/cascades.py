@@ -43,7 +43,7 @@ class Cascade:
 
 @cache
 def cascade(alpha: Rational, lam: Rational, period: int, step: float, count: int = 3) -> Cascade:
-    """The first period doublings of an attracting cycle of this period that exists at `lam`, in steps of `step`.
+    """The first `count` doublings of an attracting cycle of this period, followed from `lam` in steps of `step`.
 
     >>> found = cascade(Rational(2, 25), Rational(3, 10), 4, 0.005, count=1)  # the paper's lambda_3, section 6.6
     >>> found.periods, round(found.lams[0], 6), found.proved

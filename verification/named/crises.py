@@ -199,8 +199,8 @@ def widenings(alpha: str, lams: Array) -> list[tuple[OrbitExtent, OrbitExtent]]:
     """The quarter steps of an upward scan in which the attractor suddenly grows: the extents on both sides of each.
 
     A length is compared with its maximum over all smaller contractions, so that a return to the old size at the end of
-    a window does not count. In the quarter step it must grow by half of `AT_ONCE`; steady growth by `AT_ONCE` over a
-    whole step gives only a quarter.
+    a window does not count. The length must grow by `AT_ONCE/2` in the quarter step; steady growth by `AT_ONCE` in a
+    whole step gives `AT_ONCE/4`.
     """
     found: list[tuple[OrbitExtent, OrbitExtent]] = []
     before: OrbitExtent | None = None

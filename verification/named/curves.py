@@ -13,9 +13,10 @@ Neimark-Sacker bifurcations are possible. Four facts about the paper's own egg a
   `det M = 1` the trace crosses 2 there: on one side the multipliers are complex, of modulus 1;
 - `invariant_circle`: the cycle on that side with trace 1/2, around which an attracting closed curve is born.
 
-The end of a cascade, `delta` and `lambda_infinity`, is estimated and not certified, by two schemes that both assume
-only geometric convergence: Wynn's epsilon algorithm on the sequence itself, and Aitken's process on the remainder after
-the leading term has been removed with the universal constant of [Feigenbaum1979]. Their difference is the stated error.
+The limit `lambda_infinity` of a cascade, and `delta`, that of the ratios of its steps, are estimated and not certified.
+Two schemes that both assume only geometric convergence are used: Wynn's epsilon algorithm on the sequence itself, and
+Aitken's process on the remainder after the leading term has been removed with the universal constant of
+[Feigenbaum1979]. Their difference is the stated error.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -133,7 +134,7 @@ class AccumulationCurve:
 def accumulation_curve(curves: list[BifurcationCurve], alphas: Array) -> AccumulationCurve:
     """The contraction at which the cascade ends, for each shape that all doublings in `curves` reach.
 
-    The error is the difference to a second extrapolation or, if larger, to the same one without the last curve.
+    The error is the largest difference to other extrapolations, and to the same one without the last curve.
     """
     doublings = [c for c in curves if c.kind is BifurcationKind.FLIP and c.period > 2]
     found = []
@@ -217,9 +218,9 @@ def contracting_up_to(alpha: Expr, K: int = 3) -> float:
     """A contraction, a multiple of 1/64, up to which the determinant of every cycle of the egg is below 1.
 
     With `d` the largest tilt of the normal and `r` the ratio of the largest and the smallest radius, the sine
-    rule on the triangle of a chord and the centre gives `|eta| <= d + asin(r*sin(d + |phi|))`. If the largest
-    `|eta|` of a cycle, with `|phi| <= lam*|eta|`, could not be between the root of `x*tan(x) = 1` and `pi/2`,
-    every factor `lam*cos(phi)/cos(eta)` of the determinant, one for each bounce, is below 1.
+    rule on the triangle of a chord and the centre gives `|eta| <= d + asin(r*sin(d + |phi|))`. As `|phi|` is at most
+    `lam*|eta|`, this can exclude that the largest `|eta|` of a cycle is between the root of `x*tan(x) = 1` and
+    `pi/2`; then every factor `lam*cos(phi)/cos(eta)` of the determinant, one for each bounce, is below 1.
 
     >>> contracting_up_to(Rational(2, 25))
     0.328125

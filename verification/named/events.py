@@ -68,7 +68,7 @@ def proof_of(
 
 
 def digits_to_follow(period: int) -> int:
-    """More digits of a proof, with which the independent checker can follow a cycle all round."""
+    """Digits to add to a proof so that the independent checker can follow the whole cycle, up to `FOLLOWED` bounces."""
     return 2 * period if 6 < period <= FOLLOWED else 0
 
 
@@ -199,7 +199,7 @@ class EventCurve:
         return dict(self.__dict__)
 
     def passes(self, at: tuple[float, float, float], box: Box) -> bool:
-        """True if the curve passes a point of the plane with the same `det M - 1`, up to `SAME` of the plane's size.
+        """True if the curve passes the point `at` (two parameters, `det M - 1`), up to `SAME` of the plane's size.
 
         At a pitchfork the determinant is that of the half cycle that flips, and is not compared.
         """

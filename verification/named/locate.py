@@ -367,7 +367,7 @@ def _continued(kind: str, alpha: Expr, lam: float, notes: dict[str, str], law: L
 
 
 def one_of(kind: str, parameter: str, digits: int, alpha: Expr, law: Law = PAPERS_LAW, **which: Expr) -> SearchOutcome:
-    """A numbered event: the end or merging of a window or small family of a given period, or an interior crisis."""
+    """A crisis with a number (`period` or `n`): of bands, a window or a small family of cycles, or an interior one."""
     from verification.proofs.manifolds.known import CONTACTS
 
     name = f"{kind}-{which[parameter]}"

@@ -47,8 +47,8 @@ Tick = Callable[[str], None]
 class PeriodicOrbit:
     """A cycle of minimal period in a scene: its bounces, in radians, and its multipliers, the larger one first.
 
-    If a bounce lies on a join at which the curvature jumps, the multipliers use the component behind the join, and
-    `one_sided` has what the derivatives on all sides imply, in float64.
+    If a bounce lies on a join at which the curvature jumps, the multipliers use the component that begins
+    there, and `one_sided` has what the derivatives on all sides imply, in float64.
     """
 
     scene: Scene

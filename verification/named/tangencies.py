@@ -127,9 +127,7 @@ def proved(scene: Scene, contact: Contact, digits: int) -> Tangency | str:
 def near(
     scene: Scene, ends: tuple[float, float], period: int, seed: int = 1, heard: Tick = lambda said: None
 ) -> Iterator[tuple[Touch, PeriodicOrbit]]:
-    """The tangencies between two contractions that Newton's method finds, started at the scene's; with their
-    saddles.
-    """
+    """The tangencies, each with its saddle, that Newton's method finds from the scene's contraction, within `ends`."""
     mirror = scene.law.odd and reflected(scene.table)
     map, known = pinball(scene.table, scene.law), set[tuple[complex, ...]]()
     for cycle in find_cycles(scene, up_to=period, seed=seed, tick=heard):
@@ -148,7 +146,7 @@ def near(
 
 
 def round_of(cycle: PeriodicOrbit, turn: int, mirrored: bool) -> SaddleCycle:
-    """The shortest part of a cycle from which symmetries give the rest; angles count whole turns.
+    """The shortest part of a cycle that gives it by turns of `2*pi/turn`, and mirrors if `mirrored`; angles increase.
 
     >>> from symbolic import Scene
     >>> egg, thirds = Scene("egg", alpha="2/25"), (0.0, 2.0943951, -2.0943951)

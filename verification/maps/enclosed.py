@@ -304,7 +304,7 @@ class EnclosedMap:
         return abs(step) * 4 + (abs(middle) + 1) * arb(2) ** (4 - self.bits)
 
     def _landed(self, here: Bounce, guess: Bounce) -> Bounce | None:
-        """The enclosed landing near a guess; None when the interval Newton step does not close."""
+        """The enclosed landing near a guess; None if the interval Newton step does not lead inside its interval."""
         flight, middle, (vx, vy) = self._flight(here, guess.component), guess.theta, here.v
         value, slope = flight(middle)
         box = arb(middle, self._reach(value / slope, middle).upper())  # infinite where the slope may be 0

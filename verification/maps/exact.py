@@ -212,7 +212,7 @@ class ExactMap:
         return bool(x * vx + y * vy < 0 and abs(x * vy - y * vx) < NEAR * NEAR)
 
     def _sharpened(self, here: Bounce, component: int, theta: Any) -> Any:
-        """The zero of the flight function that Newton's method reaches from `theta`; None if it is not near it."""
+        """The zero of the flight function near `theta`, by Newton's method from there; None if none near is reached."""
         mp, (vx, vy) = self.context, here.v
 
         def correction(at: Vector) -> Vector:
@@ -258,7 +258,7 @@ class ExactMap:
 
 
 def float_map(table: Any, lam: Any, law: Law | str | None, shape: Mapping[str, Any]) -> tuple[PinballMap, Any]:
-    """The map in float64 of a table, a name or a scene, and its exact contraction; a map, and `lam`, as they are."""
+    """The map in float64 of a table, a name or a scene, and its exact contraction; a map and `lam` stay unchanged."""
     if isinstance(table, PinballMap) and law is None and not shape:
         return table, lam
     scene = as_scene(table, lam=lam, law=law, **shape)

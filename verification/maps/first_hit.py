@@ -209,7 +209,7 @@ def inside(
 
     `turns` says that the law, too, has period 2*pi. A parameter beyond its component's end is admitted if one analytic
     curve runs through the join; with `rough` also if only the tangents agree, for equations that go on along the next
-    component (`OverJoins`). With a single component nothing is refuted, as a turn less may bring the parameter back.
+    component (`OverJoins`). With a single component nothing is refuted: the parameter may be inside after whole turns.
     """
     ends = _ends(table, shape, BITS)
     for index, value in zip(components, zero, strict=False):
@@ -252,7 +252,7 @@ def _runs_on(table: Table, index: int, value: arb, shape: tuple[arb, ...], rough
 
 
 def minimal(table: Table, components: tuple[int, ...], zero: list[arb]) -> bool | None:
-    """True if the period is proved minimal: for each proper divisor `k`, some bounce differs from the `k`-th next."""
+    """True if the period is proved minimal: for each proper divisor `k`, some bounce differs from that `k` later."""
     n = len(components)
     for shift in (k for k in range(1, n) if n % k == 0):
         if not any(_apart(table, components, zero, i, (i + shift) % n) for i in range(n)):

@@ -52,7 +52,7 @@ def curve(program: Program, ops: Any, shape: Sequence[Any], count: int = 6) -> C
 
 @cache
 def _closure(program: Program, both: bool) -> Kernel:
-    """Source of a function of all inputs of a program but the first, which returns a function of the first input."""
+    """Source of a function of all inputs but the first that returns a function of the first; `both` uses `turned`."""
     first, words = len(program.inputs), set[str]()
     moving, outside, inside = {0}, list[str](), list[str]()
     turned = set[int]()

@@ -118,7 +118,7 @@ ROUGH = (JoinKind.TANGENT, JoinKind.CURVATURE)  # the map is continuous, and two
 
 @dataclass(frozen=True)
 class OverJoins:
-    """The position of balls of parameters that may reach over a join at which only the tangents are known to agree.
+    """A function that places balls of parameters on components; they may reach over joins at which tangents agree.
 
     A parameter beyond the end of a component is `start + (x - end)*ratio` on the next one, where the ratio makes the
     speeds agree. `ends` and `ratio` have one entry for the start and one for the end of each component.

@@ -155,7 +155,7 @@ def _formula(table: Table, here: int, there: int) -> Matrix:
 def _slopes_of_law(
     law: Law, part: Component, in_balls: bool, digits: int
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Minus the derivatives of the exit angle by the incidence angle and by the landing's arc length, as functions."""
+    """`-dphi/deta` and `dphi/ds` as functions: derivatives by the incidence angle and by the landing's arc length."""
     by_place = law.phi.diff(theta_letter) / geometry.speed(part) + law.phi.diff(s_letter)
     return _by_name(-law.phi.diff(eta_letter), in_balls, digits), _by_name(by_place, in_balls, digits)
 

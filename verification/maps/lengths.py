@@ -64,7 +64,7 @@ class ExactArcLength:
 
 
 class _Pieces:
-    """Function for the arc length from a component's start; `stretches` are those of the function `_stretches`."""
+    """Function for the arc length from a component's start; `stretches`: middles, half lengths, bounds of the speed."""
 
     def __init__(
         self, stretches: Sequence[tuple[float, float, float]], series: Callable[[Any], Any], bits: int

@@ -111,7 +111,7 @@ def digits_lost(map: PinballMap, states: Sequence[tuple[int, float, float]]) -> 
 def in_balls(
     map: PinballMap, lam: Any, start: Start, bounces: int, digits: int, step: Step, fields: Sequence[str] = KEYS
 ) -> Entries:
-    """The orbit enclosed in balls, to `digits` digits (decimals for numbers below one); one row per bounce."""
+    """The orbit enclosed in balls, to `digits` digits, or decimals for numbers below one; one row per bounce."""
     bits = bits_of(digits, MORE + EACH * min(bounces, FIRST))
     for _ in range(TRIES):
         entries, last = _attempt(map, lam, start, bounces, digits, bits, step, fields)

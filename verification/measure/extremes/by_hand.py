@@ -97,7 +97,10 @@ def centred(piece: PieceNumbers[Any]) -> PieceNumbers[Any]:
 
 
 def placed(known: list[PieceNumbers[Any]], family: Pieces, own: list[Any]) -> tuple[Any, Any, Any]:
-    """The points, unit directions and `size` (as in `Hit`) of the particles that have the kernel fields `own`."""
+    """The points, unit directions and sizes of the particles that have the kernel fields `own`.
+
+    The size of a point is the sum of the moduli of the numbers that are added up to it.
+    """
     at, p, q = own[0].astype(int), own[1].astype(WIDE), own[2].astype(WIDE)
     line = np.array([kind == LINE for kind in family.kinds])[at]
     length = np.where(line, 1, np.hypot(p, q))
@@ -163,7 +166,10 @@ def _may_meet(piece: PieceNumbers[Any], start: Any, z: Any, v: Any, table: float
 def _near(
     family: Pieces, known: list[PieceNumbers[Any]], j: int, z: Any, v: Any, size: Any
 ) -> Iterator[tuple[Any, Any, Any]]:
-    """Yields for the start of piece `j`, and its tangent if any: distance along the line, across it, and `size`."""
+    """Yields, for the start of piece `j` and its tangent if any: distance along the line, across it, and a size.
+
+    The size is the sum of the moduli that are added up to the particle (`size`) and to the corner or tangent point.
+    """
     piece = known[j]
     if not family.closed[j]:
         corner = [piece.start[i] - z[i] for i in (0, 1)]
@@ -183,7 +189,7 @@ def _cross(v: Any, w: Any) -> Any:
 
 
 def _met(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, own: Any, depart: Any) -> list[tuple[Any, ...]]:
-    """Intersections of lines with a curve: length, coordinates `p`, `q`, cos(incidence), and True if on the piece."""
+    """Intersections with a curve at `origin + p*A + q*B`: length, `p`, `q`, cos(incidence), True if on the piece."""
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     if piece.kind == LINE:
@@ -212,7 +218,10 @@ def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
 
 
 def _tangent(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
-    """Where the tangent parallel to a line touches a piece: distance along and across the line (or inf), and `size`."""
+    """Where the tangent parallel to a line touches a piece: distance along the line, across it, and a size.
+
+    The distance across is inf if that point is not on the piece; the size is that of `_near`.
+    """
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)
     root = np.hypot(a, b)

@@ -67,7 +67,7 @@ class Errors:
 
     @property
     def ratio(self) -> float:
-        """`error / (cond * eps)`; if it is at most 1, rounding the data once has at least as large an effect."""
+        """Forward error over condition number; if at most 1, rounding the data once has at least as large an effect."""
         return self.forward / self.condition if isfinite(self.condition) else 0.0
 
     @property
@@ -107,7 +107,7 @@ class Finding:
     def stability(self) -> StabilityVerdict:
         """The verdict on the worst start; `STOPPED` if the kernel gave no number.
 
-        How sensitive the answer is, is taken from the kernel's own verdict and not from a measurement.
+        Unless it is unstable, the verdict is the kernel's own on its condition number (`named`), if there is one.
 
         >>> Finding("fold", "Newton", Errors(4e9, 0.5, 8e12), named=Conditioning.SENSITIVE).stability.name
         'SENSITIVE'

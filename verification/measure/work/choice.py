@@ -173,8 +173,8 @@ class ArithmeticChoice:
 
 
 def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
-    """The methods in some rows that may be chosen: no textbook methods, and none that was not compared with the
-    truth.
+    """The methods in some rows that may be chosen: those that kept a promise, but no textbook methods, and mpmath
+    only with gmpy2.
     """
     made = []
     for row in rows:

@@ -55,7 +55,7 @@ def cycle_question(
     usual: Sequence[Method],
     here: bool = False,
 ) -> Question:
-    """Benchmark on the bounces of a cycle, in every arithmetic, against `usual` methods; if `here`, in this process."""
+    """Benchmark on a cycle's bounces, in every arithmetic, against `usual` methods; if `here`, in this process only."""
 
     def certified(digits: int) -> list[arb]:
         return list(whole(proof_near(problem, list(start), digits)).enclosure.zero)

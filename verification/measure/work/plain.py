@@ -92,7 +92,10 @@ def last_theta(said: str) -> str:
 
 
 class Asked(NamedTuple):
-    """A command or Python code, the plain script to compare, the largest accepted ratio of times, the common digits."""
+    """A command or Python code, and the plain script with which it is compared.
+
+    `bar` is the largest accepted ratio of times; `read` takes a number from the output, which must agree to `digits`.
+    """
 
     typed: str
     script: str

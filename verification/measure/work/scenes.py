@@ -86,7 +86,7 @@ class WorkPrecision:
 
 
 def not_kept(digits: int) -> Answer:
-    """The reference of a question that was pickled: `ValueError`."""
+    """Raises `ValueError`: takes the place of a question's reference, which is not pickled."""
     raise ValueError("a question that was pickled has no reference; ask it again with work_precision")
 
 

@@ -213,7 +213,7 @@ def textbook_corner() -> list[Method]:
 
 @cache
 def criticality() -> tuple[Kernel, Kernel]:
-    """Two kernels: the logarithmic slope of the expansion of `T0^2`, with its derivative; the expansion itself."""
+    """Two kernels of the slap map `T0`: the logarithmic slope of `|(T0^2)'|` and its derivative; `|(T0^2)'|` itself."""
     x = Symbol("landing", real=True)
     first, second = slope_squared(x), slope_squared(-sqrt(LAUNCH_Q2.subs(q, x)))
     slope = first.diff(x) / first + second.diff(x) / second
@@ -223,7 +223,7 @@ def criticality() -> tuple[Kernel, Kernel]:
 
 @dataclass(frozen=True)
 class StationaryExpansion:
-    """The equation that the expansion of `T0^2` is stationary at a landing. See `symbolic.cycles.cardioid_slap`."""
+    """The equation that `|(T0^2)'|` of the slap map is stationary. See `symbolic.cycles.cardioid_slap`."""
 
     label: str = "cardioid, the least expansion"
 

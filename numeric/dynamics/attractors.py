@@ -218,7 +218,7 @@ class _Sorting:
                 self._gather(stay)
 
     def _gather(self, stay: float) -> None:
-        """Divides the orbits of a few particles into chaotic sets, adds the new sets, and labels these particles."""
+        """Divides a few orbits into chaotic sets, adds new sets with this `stay`, and labels their particles."""
         spread = [i for i, a in enumerate(self.attractors) if a.kind is Kind.CHAOTIC]
         particles = self.particles.only(self.going)
         found = gathered(self.map, particles, [self.attractors[i].points for i in spread])

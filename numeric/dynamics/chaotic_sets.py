@@ -106,7 +106,7 @@ def drawn(size: int, count: int) -> Labels:
 
 
 class SetLabels(NamedTuple):
-    """The set of each orbit, if ratios from `JOINED` on join orbits, and `coarser`, if ratios from `APART` on do.
+    """The set of each orbit: `group` if ratios from `JOINED` on join orbits, `coarser` if ratios from `APART` on do.
 
     `spreads` tells which orbits still spread.
     """
@@ -255,11 +255,10 @@ def _recurrence(quarters: Labels) -> tuple[int, Array, bool]:
 
 
 def ratios(here: Labels, points: Labels, of: Labels, recurring: RecurrenceLevels) -> Array:
-    """For each row of points and each orbit: the share of points in the orbit's cells, divided by what an orbit itself
-    has.
+    """For each row of points and each orbit: the row's share in the orbit's cells, divided by the orbits' own share.
 
-    Row `i` belongs to orbit `of[i]` or to its image. The divisor is the share that a quarter has in the cells of the
-    quarter before; of the values of both orbits the smaller is taken. Rows are sorted.
+    Row `i` belongs to orbit `of[i]` or to its image, and is sorted. An orbit's own share is that of a quarter in the
+    cells of the quarter before; of the values of both orbits the smaller is taken.
     """
     found, level = np.zeros((len(points), len(here))), recurring.level
     for one in np.unique(level):
@@ -273,7 +272,7 @@ def ratios(here: Labels, points: Labels, of: Labels, recurring: RecurrenceLevels
 
 
 def visits(first: Labels, points: Labels) -> Array:
-    """For each two rows, the share of the points in a row of `points` that lie in cells of a row of `first`."""
+    """The share of each row of `points` that lies in the cells of each row of `first`; both hold numbers of cells."""
     from scipy.sparse import coo_array
 
     names = np.sort(first, axis=None)

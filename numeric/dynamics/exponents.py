@@ -131,8 +131,7 @@ def with_families(map: PinballMap, survey: Survey) -> Survey:
 
 
 def _settled(map: PinballMap, growth: Growth, classified: Classified, wait: int) -> tuple[Labels, int]:
-    """The label of each particle, and the number of bounces made: the cycle that the particle has reached, or its
-    class.
+    """The label of each particle: the cycle that it has reached, or else its class; and the number of bounces made.
 
     After a long chaotic transient rounding decides which of several cycles a particle reaches. So the label tells where
     the particle is now, not where the classification found it.

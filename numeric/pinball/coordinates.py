@@ -39,7 +39,7 @@ class States:
 
     @cached_property
     def size(self) -> float:
-        """The unit of distances between phase points: 1, or a power of two near a size that is not about 1."""
+        """The unit of distances between phase points: 1 if the table's size is about 1, else a power of two near it."""
         at = [(np.full(PLACES, i), np.linspace(low, high, PLACES)) for i, (low, high) in enumerate(self.ends)]
         points = np.concatenate([self.family.cartesian(*place) for place in at], axis=1)
         half = float(np.max(np.ptp(points, axis=1))) / 2

@@ -260,7 +260,7 @@ class PinballMap:
         """`d(s1, phi1)/d(s0, phi0)`, a matrix for each particle. Paper: eq. (derivative_of_map).
 
         The second row is `lam*(K1*ds1 - K0*ds0 - dphi0)`, so that it keeps its digits however small `lam` is. For any
-        other law, its slope replaces `lam`, and its derivative along the boundary times `ds1` is added.
+        other law, minus its slope replaces `lam`, and its derivative by arc length times `ds1` is added.
         """
         ordinary = self.unit == ONE
         single = self._single(MATRIX).told(theta, phi, component) if ordinary and self.reflection.uniform else None
@@ -375,7 +375,7 @@ class PinballMap:
         return self._with(lam, Law())
 
     def slopes(self, eta: Array, theta: Array, component: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Minus the derivative of the exit angle by the incidence angle, and that by the arc length of the landing."""
+        """The derivatives `-dphi/deta` and `dphi/ds` of the law, by incidence angle and arc length of the landing."""
         formula, lam = self.family.formula, np.broadcast_to(self.lam, eta.shape)
         if formula is None or self.reflection.uniform:
             return np.asarray(lam, dtype=float), np.zeros(eta.shape)
@@ -409,7 +409,7 @@ class PinballMap:
         self.reflection.check((Fraction(float(np.min(self.lam))), Fraction(float(np.max(self.lam)))), *places)
 
     def _law(self, phi: Array) -> str:
-        """The law whose kernel a run needs: not `slap`, even at `lam = 0`, if a particle does not start normally."""
+        """The law whose kernel a run needs: not `slap`, even at `lam = 0`, if a start is not along the normal."""
         return PINBALL if self.law == SLAP and np.any(phi != 0) else self.law
 
     def _shape(self, given: dict[str, Any]) -> list[Fraction | float]:

@@ -2,7 +2,7 @@
 
 For the paper's tables, other ellipses and finite Fourier sums, kernels record the wanted fields themselves: component,
 parameter, angles, point and arc length. For other tables, and without kernels, the recorded states are translated. Then
-arc length is computed from the parameter; so it is where its series would have too many terms.
+arc length is computed from the parameter, as it always is on a table where its series would have too many terms.
 """
 
 import ctypes

@@ -54,7 +54,7 @@ class Cost(NamedTuple):
         return self.collisions * self.nanoseconds * 1e-9 / self.workers
 
     def as_data(self) -> dict[str, Any]:
-        """The keys of the JSON document."""
+        """The entries of the JSON document."""
         return {**self._asdict(), "seconds": self.seconds}
 
     def lines(self) -> list[str]:

@@ -133,7 +133,7 @@ def returns(map: PinballMap, starts: Starts | PhasePoints, period: NDArray[np.in
 
 
 class Followed(NamedTuple):
-    """The period of each particle, 0 if it is on no cycle; the indices `going` of the latter, and their `Growth`.
+    """The period of each particle, 0 if it is on no cycle; and those still `going`: their indices and their `Growth`.
 
     `starts` has the last phase points of all particles.
     """

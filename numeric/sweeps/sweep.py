@@ -6,7 +6,7 @@ The sign of a finite-time Lyapunov exponent is decided by its error. A run is cu
 growth over the blocks gives the standard error of the mean. Two other effects can make a regular orbit look chaotic.
 First, on an elliptic or a neutral orbit vectors grow like the number of bounces, so that `B` bounces give an exponent
 of `log(B)/B`; so an exponent counts as positive only above twice this value. Second, an orbit may be in a chaotic
-transient. Then the growth falls in late blocks, which the scatter shows, unless the run ends before the transient.
+transient. Then the growth falls in late blocks, which the scatter shows, unless the transient is longer than the run.
 """
 
 import itertools
@@ -48,7 +48,7 @@ class Axis:
 
     @property
     def length(self) -> int:
-        """The axes of the sweep, by name."""
+        """The number of values that a task takes at a time."""
         return self.part or self.size
 
 
@@ -257,7 +257,7 @@ def said(parameter: str) -> str:
 
 
 def fixed(parameter: str, lam: float) -> dict[str, Any]:
-    """The contraction as a label of the results, if another parameter is varied; empty if `lam` is."""
+    """The contraction as a label of the results, if another parameter is varied; empty if `lam` itself is varied."""
     return {} if parameter == "lam" else {"lam": lam}
 
 
@@ -322,7 +322,7 @@ def measured(
 
 
 def counted(growth: Growth, bounces: int, threads: int | None = None) -> OrbitExponents:
-    """`measured` for particles whose vectors `Growth.settle` has already turned; `ValueError` for too few bounces."""
+    """The exponents over `bounces` bounces of particles after `Growth.settle`; `ValueError` for too few bounces."""
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")

@@ -213,7 +213,7 @@ def coefficients(series: Any, count: int) -> list[Any]:
 
 @dataclass(frozen=True)
 class TaylorModel:
-    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last one enclosed on all of it."""
+    """Taylor model of a function of `t` on `low < 0 < high`: coefficients at 0, the last one enclosed for all `t`."""
 
     low: arb
     high: arb

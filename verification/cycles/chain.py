@@ -130,7 +130,7 @@ class Elimination:
         """The solution of the chain with one more unknown and one more equation.
 
         `column` has the coefficients of the new unknown in the chain's rows; `row` and `corner` form the new equation.
-        If `column` is empty, neither is added. `r` is the right side.
+        If `column` is empty, no unknown and no equation is added. `r` is the right side.
 
         >>> from fractions import Fraction
         >>> one = Elimination(Chain(*[[Fraction(1)] * 3, [Fraction(4)] * 3, [Fraction(1)] * 3]))
@@ -141,8 +141,7 @@ class Elimination:
         return self._bordered(sides, column, row, corner, r)
 
     def transposed(self, column: Sequence[Any], row: Sequence[Any], corner: Sequence[Any], r: Sequence[Any]) -> Vector:
-        """As `bordered`, for the transposed system with the same `column`, `row` and `corner`, from the same
-        factorisation.
+        """The solution of the transpose of the system that `bordered` solves, from the same factorisation.
 
         >>> from fractions import Fraction
         >>> one = Elimination(Chain(*[[Fraction(n)] * 3 for n in (1, 4, 2)]))

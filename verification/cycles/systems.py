@@ -139,7 +139,7 @@ def _turn(table: Table) -> float:
 
 
 def images(ring: Recurrence, x: Array, y: Array, within: float) -> bool:
-    """Are two cycles of one ring the same, up to the first bounce and a symmetry of the table?
+    """Are two cycles of one ring the same, up to the choice of the first bounce and a symmetry of the table?
 
     >>> from symbolic.tables import ellipse
     >>> axis = Chords(ellipse.at(a=2), (0, 0))

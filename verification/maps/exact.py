@@ -212,7 +212,7 @@ class ExactMap:
         return bool(x * vx + y * vy < 0 and abs(x * vy - y * vx) < NEAR * NEAR)
 
     def _sharpened(self, here: Bounce, component: int, theta: Any) -> Any:
-        """The zero of the flight function near `theta`, by Newton's method from there; None if none near is reached."""
+        """The zero of the flight function near `theta`, by Newton's method from there; None if that fails."""
         mp, (vx, vy) = self.context, here.v
 
         def correction(at: Vector) -> Vector:

@@ -209,7 +209,7 @@ def inside(
 
     `turns` says that the law, too, has period 2*pi. A parameter beyond its component's end is admitted if one analytic
     curve runs through the join; with `rough` also if only the tangents agree, for equations that go on along the next
-    component (`OverJoins`). With a single component nothing is refuted: the parameter may be inside after whole turns.
+    component (`OverJoins`). With a single component nothing is refuted: modulo whole turns the parameter may be inside.
     """
     ends = _ends(table, shape, BITS)
     for index, value in zip(components, zero, strict=False):

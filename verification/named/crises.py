@@ -160,7 +160,7 @@ def _slope(x: Array, y: Array) -> float:
 class OrbitExtent:
     """The extent of the chaotic orbits that start near one end of a diameter, and the number of cells they visit.
 
-    `near` is the largest distance in `theta` from this end, at every second bounce; `far` is that from the other end.
+    `near` is the largest distance in `theta` from this end at even bounces, `far` that from the other end at odd ones.
     """
 
     lam: float

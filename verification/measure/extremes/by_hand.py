@@ -220,7 +220,7 @@ def _within(piece: PieceNumbers[Any], closed: bool, p: Any, q: Any) -> Any:
 def _tangent(piece: PieceNumbers[Any], closed: bool, z: Any, v: Any, size: Any) -> tuple[Any, Any, Any]:
     """Where the tangent parallel to a line touches a piece: distance along the line, across it, and a size.
 
-    The distance across is inf if that point is not on the piece; the size is that of `_near`.
+    The distance across is inf if the point of contact is not on the piece; the size is that of `_near`.
     """
     w = [z[i] - piece.origin[i] for i in (0, 1)]
     a, b, m = _cross(v, piece.A), _cross(v, piece.B), _cross(v, w)

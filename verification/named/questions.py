@@ -365,7 +365,8 @@ def ends_of(parameter: str, given: Any) -> tuple[float, float]:
 def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Located":
     """A proof in balls, to `digits` digits, of an event and its parameter, or of a cycle and its first bounce.
 
-    Folds, period doublings, pitchforks and cycles have certificates. The checklist of the result says what holds;
+    Cycles, folds, period doublings, and pitchforks at which a mirror symmetry is lost have certificates; another
+    pitchfork has its value in float64, not certified. The checklist of the result says what holds, and
     `certify(...).save("fold.json")` writes the certificate, for `check` or `pinball check fold.json`.
     `notes["stability"]` is what the one-sided derivatives prove where the curvature jumps at a bounce.
 
@@ -374,6 +375,8 @@ def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Locat
     True
     """
     import time
+
+    from flint import arb
 
     from verification.arithmetic.balls import decimal
     from verification.named.events import proof_of
@@ -388,9 +391,14 @@ def certify(found: "BranchEvent | PeriodicOrbit", *, digits: int = 30) -> "Locat
     elif isinstance(found, BranchEvent):
         lam = None if found.parameter == "lam" else found.orbit.scene.lam
         event = proof_of(found.event, digits, found.parameter, lam)
+        name, place = f"{found.kind} of period {found.orbit.period} in {found.parameter}", -1
+        if event is None and found.kind == "pitchfork":
+            notes = {"digits": "of float64; only pitchforks at which a mirror symmetry is lost are proved"}
+            seconds, ball = time.perf_counter() - started, arb(found.value, "inf")
+            return Located(name, f"{found.value:.9g}", "inf", 9, {"proof": None}, seconds, ball, notes=notes)
         if event is None:
             raise ValueError(f"certify: a {found.kind} has no certificate; accepted: fold, period doubling, pitchfork")
-        proof, name, place = event, f"{found.kind} of period {found.orbit.period} in {found.parameter}", -1
+        proof = event
     else:
         raise ValueError(
             f"certify: {type(found).__name__} given; accepted: a cycle, as in find_cycles(...)[0], or an event of a "

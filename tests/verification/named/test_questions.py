@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sympy import Interval, Rational, Symbol, solve, sqrt
 
-from symbolic import Scene
+from symbolic import Scene, tables
 from symbolic.cycles.polygons import saddle_node
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.gallery import mushroom, semi_ellipse, sinai
@@ -195,3 +195,14 @@ def test_a_doubling_is_told_once_by_a_branch_that_returns_on_its_mirror_image():
 
     assert [event.kind for event in branch.events] == ["period doubling"]
     assert len(branch.branch.at(0.36)) == 2
+
+
+@pytest.mark.slow
+def test_a_pitchfork_that_has_no_certificate_keeps_its_value_which_is_not_certified():
+    scene = Scene(tables.polar("1 + cos(4*theta)/36"))
+    (found,) = bifurcations(scene, "symmetry-breaking", period=12, searches=1, lam=("0.8879", "0.888"))
+
+    assert (found.certified, found.radius, found.certificate) == (False, "inf", None)
+    assert float(found.value) == pytest.approx(0.887936692, abs=1e-8)  # the report's, by another search
+    with pytest.raises(ValueError, match="was not proved; accepted"):
+        found.save("pitchfork.json")

@@ -289,8 +289,11 @@ def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]
     inside = {letter: Interval.open(range.start, range.end) for letter, range in box.items()}
     if any(nonnegative(-gap, inside) for gap in (one, other)):
         return None
-    r = root(square, box)
-    value = shortened((1 - r) / (1 + r))
+    above, below = root(square, box).as_numer_denom()
+    value = plain = (below - above) / (below + above)
+    if (shorter := shortened(plain)) != plain:
+        divisor = shorter.as_numer_denom()[1]  # where it vanishes, the shorter form may be 0/0
+        value = shorter if divisor.is_number or positive(divisor, box) or positive(-divisor, box) else plain
     held = all(nonnegative(gap, inside) for gap in (one, other))
     return value if held else Piecewise((value, And(one >= 0, other >= 0)))
 
@@ -311,7 +314,8 @@ def _kernel(letters: tuple[Symbol, ...], names: tuple[str, ...], entries: tuple[
 def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int = 50) -> Any:
     """The code of an expression or a matrix, for arrays, for mpmath numbers, for balls, or as text.
 
-    The function takes the free symbols in alphabetical order, `theta` first. `arithmetic` is `"numpy"`, `"mpmath"` or
+    The function takes the free symbols, by position or by name: `theta`, `theta0`, `theta1` come first, then the others in
+    alphabetical order. `arithmetic` is `"numpy"`, `"mpmath"` or
     `"arb"` (with `digits`), or `"text"`, which returns the source in the closed vocabulary of
     `symbolic.expressions.text`; a rational is written `q(1, 3)` there and never rounded.
 

@@ -1,7 +1,7 @@
 """Hypothesis strategies for tables, shapes, laws, contractions and phase points, for your own tables too::
 
     from hypothesis import given
-    from verification.maps import strategies
+    from verification import strategies
 
     @given(strategies.particles(tables=my_table))
     def test_my_law(particle):
@@ -28,7 +28,10 @@ STEEPEST = 1.57  # radians; |phi| stays below
 
 @dataclass(frozen=True)
 class Particle:
-    """A phase point of a map: `theta` is the parameter on the component of index `component`."""
+    """A phase point of a map: `theta` is the parameter on the component of index `component`.
+
+    `particle.map.scene.shape` has the numbers that were drawn for the parameters of the table, by name.
+    """
 
     map: PinballMap
     lam: float

@@ -50,6 +50,16 @@ def test_the_egg_s_diameter_flips_on_the_paper_s_curve():
     assert abs(there.evalf(30) - Rational(1, 3)) < Rational(1, 10**25)
 
 
+@pytest.mark.parametrize("b", [Rational(4, 11), Rational(1, 10), Rational(0), Rational(1, 2)])
+def test_a_threshold_over_a_range_of_shapes_is_that_of_each_shape(b):
+    """At 4/11 the stability number is 0, and a form with a rational denominator would be 0/0."""
+    family = tables.polar("1 + b*cos(4*theta)/12", b="0:1/2")
+    of_all = thresholds(double_normals(family)[1])["focus"].subs(family.shapes[0].symbol, b)
+    own = [thresholds(cycle)["focus"] for cycle in double_normals(family.at(b=str(b)))]
+
+    assert any(one is not None and simplify(of_all - one) == 0 for one in own)
+
+
 def test_the_cuspless_threshold_is_a_number():
     assert thresholds(double_normals("cuspless")[0]) == {"flip": lambda_c(), "focus": None}
 

@@ -87,7 +87,8 @@ def looks(rows: Sequence[MethodResult]) -> dict[str, dict[str, Any]]:
 def image(figure: "Figure", ending: str = "svg") -> bytes:
     """A figure as the bytes of an image file; equal figures give equal bytes. Pages use WebP: its files are small."""
     with styled():
-        return encoded(figure, f".{ending}", **({"dpi": 110, **SMALL} if ending == "webp" else {}))
+        rastered: dict[str, Any] = {"webp": {"dpi": 110, **SMALL}, "png": {"dpi": 200}}
+        return encoded(figure, f".{ending}", **rastered.get(ending, {}))
 
 
 def height(magnitude: float, wide: bool) -> float:

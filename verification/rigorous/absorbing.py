@@ -30,8 +30,8 @@ def reached(
     """The sorted indices of all cells that the boxes `start` and their later images meet; or None.
 
     Cells are cut into `parts` by `parts` pieces before they are mapped. None is returned if there are no boxes, if an
-    image is not enclosed, if a box or an image leaves the charts, if there are more than `most` cells, or if a cell
-    touches a cell of the set that is shifted by one of the `turns` (in columns).
+    image is not enclosed, if a box or an image leaves the charts, if there are more than `most` cells, or if the set
+    touches a copy of itself that is shifted by one of the `turns`, in columns.
     """
     first = grid.met(Images.exact(start))
     if first.out.any() or not first.source.size:
@@ -68,7 +68,7 @@ def cells(grid: Grid, numbers: Indices) -> Cells:
 
 
 def _ordered(numbers: Indices) -> Indices:
-    """The distinct numbers, sorted; many of them are neighbours, for which sorting is faster than `np.unique`."""
+    """The distinct numbers, sorted; this is faster than `np.unique` if many numbers are neighbours."""
     found = np.sort(numbers)
     return found[np.append(True, found[1:] != found[:-1])] if found.size else found
 
@@ -134,10 +134,10 @@ def grown(map: BoxMap, grid: tuple[int, int, int], start: Boxes) -> AbsorbingSet
 
 
 def kept_apart(map: BoxMap, grid: tuple[int, int, int], start: Boxes | None) -> Array | None:
-    """The polar angles of a trapping region that grows from `start` and does not meet its copies rotated by thirds; or
-    None.
+    """The polar angles of a trapping region that grows from `start` and is disjoint from its copies, or None.
 
-    `grid` is as for `grown`, with a multiple of three columns; the table has a threefold rotation symmetry.
+    The copies are rotated by 120 and 240 degrees; the table has this symmetry. An angle is given for each column of
+    cells that the region meets. `grid` is as for `grown`, with a multiple of three columns.
     """
     if start is None or grid[0] % 3 or not map.charts[0].period:
         return None

@@ -45,7 +45,7 @@ class Boxes(NamedTuple):
 
 
 class Images(NamedTuple):
-    """Rectangles that hold images: `source` has the index of the mapped box; `lost` the boxes with no proved image."""
+    """Rectangles `boxes` that hold images, the index `source` of each one's mapped box, and indices of `lost` boxes."""
 
     source: Indices
     boxes: Boxes
@@ -84,14 +84,14 @@ class BoxMap(Protocol):
 
 @dataclass(frozen=True)
 class Turned:
-    """A map of one closed curve, modulo a rotation symmetry of order `turns`."""
+    """A map of phase space with one periodic chart, modulo a rotation symmetry of order `turns`."""
 
     map: BoxMap
     turns: int
 
     @property
     def charts(self) -> tuple[Chart, ...]:
-        """The chart: the middle one of `turns` equal parts of the map's periodic chart, and periodic itself."""
+        """One periodic chart: the middle one of `turns` equal parts of the map's own chart."""
         (chart,) = self.map.charts
         middle, half = (chart.x[1] + chart.x[0]) / 2, (chart.x[1] - chart.x[0]) / 2 / self.turns
         return (chart._replace(x=(middle - half, middle + half)),)
@@ -112,8 +112,8 @@ class PlaneImages:
     balls.
 
     The formula is continuous on the chart. The entries hold the derivative at every point of the box where there is
-    one: over a box that meets a corner of the graph, the hull of both sides. A formula that jumps needs a `BoxMap` of
-    its own. A float in a formula is the double, so that 1.4 is not 7/5: `from_text` reads exact numbers.
+    one: over a box that meets a kink, the hull of the derivatives on both sides. A formula that jumps needs a `BoxMap`
+    of its own. A float in a formula is a double, so 1.4 is not exactly 7/5; `from_text` reads exact numbers.
 
     >>> half = PlaneImages("halving", Chart("plane", (-1, 1), (-1, 1)), lambda x, y: (x / 2, y / 2),
     ...     lambda x, y: ((0.5, 0), (0, 0.5)))
@@ -131,8 +131,8 @@ class PlaneImages:
     def from_text(cls, label: str, chart: Chart, x: str, y: str) -> "PlaneImages":
         """The map whose coordinates are two formulas in `x` and `y`; SymPy differentiates them.
 
-        Numbers are exact: `1.4*x` and `7/5*x` are the same. `ValueError` for a text that is no formula, and for one
-        whose derivative is none, such as `abs(x)`.
+        Numbers are exact: `1.4*x` and `7/5*x` are the same. `ValueError` for a text that is not a formula,
+        or whose derivative is not one, as for `abs(x)`.
 
         >>> henon = PlaneImages.from_text("Henon", Chart("plane", (-2, 2), (-1, 1)), "1 - 1.4*x**2 + y", "0.3*x")
         >>> box = Boxes(np.array([0]), (np.array([1.0]), np.array([1.0])), (np.array([0.5]), np.array([0.5])))
@@ -163,7 +163,7 @@ class PlaneImages:
         return (self.chart,)
 
     def images(self, boxes: Boxes) -> Images:
-        """The images by the mean-value theorem; lost where one is not finite, or the low end of a box is not low."""
+        """The images by the mean-value theorem; lost if not finite, or if a box has a low end above its high end."""
         with np.errstate(all="ignore"):  # infinite and NaN entries count as not proved
             centre, reach, whole = centred(boxes)
             (a, b), (c, d) = self.derivative(*whole)

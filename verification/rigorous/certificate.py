@@ -44,7 +44,7 @@ Metadata = dict[str, "Entry"]
 
 
 class Entry(NamedTuple):
-    """How a field is read from an entry (given the fields before) and written; an empty `name` means the field's."""
+    """How a field is read from its entry, given the fields before, and written; an empty `name` means the field's."""
 
     read: Callable[[Any, Mapping[str, Any]], Any]
     write: Callable[[Any], Any]
@@ -90,7 +90,7 @@ class Certified(Theorem):
     """A theorem that can be written as a JSON document, with a fixed entry `kind`.
 
     Subclasses are frozen dataclasses with `eq=False, repr=False`: theorems with the same document are equal. The
-    attribute `map` is not pickled, because its functions are compiled anew.
+    attributes `map` and `proof` are not pickled; their functions are compiled anew.
     """
 
     kind: ClassVar[str]
@@ -167,8 +167,7 @@ class Certified(Theorem):
         """Raises `ValueError` at the first entry of a document that differs, as JSON text, from the entry of this
         theorem.
 
-        Without `evidence`, entries other than those of the statement may be anything. Runs of cells may stand in any
-        order.
+        Without `evidence` the entries in `beside` may be anything. Runs of cells may stand in any order.
         """
         true = self.to_dict() | ({"runs": given["runs"]} if "runs" in given else {})
         if _text(given.get("name")) != _text(true["name"]):
@@ -196,7 +195,7 @@ def _text(entry: Any) -> str:
 
 
 def read_document(path: Path) -> dict[str, Any]:
-    """The JSON object in a file; `ValueError` if the file is too large, not JSON, or ambiguous."""
+    """The JSON object in a file; `ValueError` if it is too large, not JSON, or ambiguous, as by a repeated key."""
     try:
         with path.open("rb") as file:
             text = file.read(LARGEST_FILE + 1)

@@ -156,7 +156,7 @@ def halved(cells: Cells) -> Cells:
 def mapped(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> tuple[Rectangles, Mask]:
     """Cells that images of blocks meet, with blocks cut into `parts` by `parts`; and a mask of blocks not enclosed.
 
-    A piece for which the map gives no image and which it does not call lost counts as not enclosed.
+    A block is not enclosed if the map calls one of its pieces lost, or returns no image of one.
     """
     found, lost = [], np.zeros(cells.chart.size, dtype=bool)
     step = max(1, BLOCK // parts**2)
@@ -245,12 +245,12 @@ class Transitions:
         return graph, graph.T.tocsr()
 
     def connected(self, start: Mask) -> Mask:
-        """Leaves on walks from `start` back to `start`; if no others, then orbits that leave `start` never return."""
+        """Leaves on walks from `start` back to it; if all of them are in `start`, orbits that leave it never return."""
         found: Mask = self.reached(start) & self.reached(start, backward=True) & np.append(self.leaf, True)
         return found
 
     def reached(self, start: Mask, backward: bool = False) -> Mask:
-        """The vertices to which walks lead from `start`, itself included; from which they lead to it, if `backward`."""
+        """The vertices of walks from `start`, itself included; or if `backward`, the vertices of walks to `start`."""
         graph = self.condensed[1 if backward else 0]
         size = graph.shape[0]
         first = np.unique(self.components[start])
@@ -379,8 +379,8 @@ def ranges(first: Indices, last: Indices) -> Indices:
 class MorseGraph:
     """The Morse sets of a transition graph, largest first, and their order.
 
-    `below[i, j]` is True where a walk leads from set `i` to set `j`. Several sets may hold one attractor with its
-    neighbourhood; a set may hold no orbit at all.
+    `below[i, j]` is True where a walk leads from set `i` to set `j`. One attractor and its neighbourhood may be
+    spread over several sets; a set may hold no orbit at all.
     """
 
     transitions: Transitions

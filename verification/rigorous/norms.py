@@ -13,12 +13,11 @@ SLACK = 1e-9  # relative; more than the rounding of a dozen operations
 
 
 def shrinkage(size: Array, target: NDArray[np.int64]) -> float:
-    """An upper bound `q` for which `size*v <= q*v'`, where each set has a vector `v > 0`, and `v'` is the vector of the
-    set's target.
+    """A number `q` such that `size*v <= q*v'` for vectors `v > 0`, one for each set; `v'` is that of the set's target.
 
     `size` has shape `(2, 2, sets)` and bounds the derivative's entries in modulus over each set; set `i` is mapped to
-    set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`. It is infinite where a bound
-    is negative, infinite or nan, and where a set has no target, which is written -1.
+    set `target[i]`. Two orbits that visit the same sets approach each other like `q**n`. `q` is infinite if a
+    bound is negative, infinite or nan, or if a set has no target, which is written -1.
 
     >>> round(shrinkage(np.array([[[0.5], [8.0]], [[0.0], [0.25]]]), np.array([0])), 2)
     0.5
@@ -41,7 +40,7 @@ def times(first: Matrix, second: Matrix) -> Matrix:
 
 
 def in_frame(frame: tuple[tuple[float, float], tuple[float, float]], matrix: Matrix) -> Matrix:
-    """The product of the inverse of `frame`, a 2 by 2 matrix given by its rows, and a matrix."""
+    """The product `frame**-1 * matrix`; `frame` is a 2 by 2 matrix, given by its rows."""
     (a, b), (c, d) = ([BallArray(x) for x in row] for row in frame)
     det = a * d - b * c
     return times([[d / det, -b / det], [-c / det, a / det]], matrix)

@@ -195,7 +195,7 @@ def holds(polygon: Polygon, point: Row) -> bool:
 
 @dataclass(frozen=True)
 class ConeExpansion:
-    """A cone of vectors `(u, v)`, by the `ratio` `u/v`, that both pieces map into itself; bounds of growth of `|v|`."""
+    """A cone that both pieces map into itself: the range `ratio` of `u/v` in it; and bounds of the growth of `|v|`."""
 
     ratio: arb
     least: arb

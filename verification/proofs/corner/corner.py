@@ -35,12 +35,13 @@ Place = tuple[int, Any]  # component and parameter
 
 @dataclass(frozen=True)
 class Corner:
-    """One-sided derivatives at the orbit that leaves the upper corner at `phi-star`.
+    """One-sided derivatives at the orbit that leaves the upper corner at the exit angle `phi-star`.
 
-    `slope_wall` and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc; `motion` is `d
-    s_2/d phi`, positive when larger angles land on the arc. `wall` and `arc` are the linear parts of the half return,
-    mirrored to the upper corner; their shift is the derivative by `lam`. `descent` is the derivative in `lam` of `s_4`
-    at the kink: when it is negative, the minimum of `s_4` falls below `s*` as `lam` grows.
+    `s_2` and `s_4` are the arc lengths of the second and the fourth bounce, `s*` that of the upper corner. `slope_wall`
+    and `slope_arc` are `d s_4/d phi` where the second bounce is on the wall or the arc; `motion` is `d s_2/d phi`,
+    positive when larger angles land on the arc. `wall` and `arc` are the linear parts of the half return, mirrored to
+    the upper corner; their shift is the derivative by `lam`. `descent` is the derivative in `lam` of `s_4` at the kink:
+    when it is negative, the minimum of `s_4` falls below `s*` as `lam` grows.
     """
 
     slope_wall: arb
@@ -107,7 +108,7 @@ def corners(arithmetic: Arithmetic) -> tuple[Any, Any]:
 
 
 def at_corner(arithmetic: Arithmetic, theta1: Any, contraction: Any) -> Corner:
-    """The one-sided derivatives at a solution `(theta1, contraction)` of `cycles.critical.corner`."""
+    """The one-sided derivatives at the orbit through both corners that lands on the arc at `theta1` first."""
     edge = corners(arithmetic)
     top, right, left = (ARC, edge[ARC]), (ARC, theta1), (ARC, -theta1)
     bottom = {component: (component, -edge[component]) for component in (ARC, WALL)}
@@ -201,7 +202,7 @@ def _guesses() -> dict[tuple[int, int], Callable[[float, float], tuple[float, fl
 
 @cache
 def corner_parameters() -> tuple[arb, arb]:
-    """The same parameters as `corners`, in balls of `BITS` bits."""
+    """The parameters of the upper corner on arc and wall, in balls of `BITS` bits."""
     with working(BITS):
         return corners(balls(BITS))
 
@@ -253,7 +254,7 @@ def on_arc(previous: BoundaryPoint, here: BoundaryPoint, near: float, lam: Quant
 
 
 def beyond(bounce: BoundaryPoint, upper: bool) -> Quantity:
-    """The distance of a bounce beyond the upper corner; of its mirror image if `upper` is False."""
+    """The distance of a bounce, or if `upper` is False of its mirror image, beyond the upper corner."""
     sign, at = 1 if upper else -1, bounce.at
     edge = corner_parameters()[bounce.component]
     return Quantity(sign * at.centre - edge, tuple(sign * s for s in at.slopes), sign * at.whole - edge)

@@ -45,9 +45,10 @@ from verification.rigorous.theorem import Verdict, hypothesis
 
 @dataclass(frozen=True, repr=False)
 class CornerOrbit(SolutionInBox):
-    """Exactly one orbit with `theta1` and `lam` in the box runs through both corners; it is where chaos begins.
+    """Exactly one orbit with `theta1` and `lam` in the box runs through both corners; at this `lam` chaos begins.
 
-    `free` names the value of the theorem: `lam`, or `phi`, the exit angle at the upper corner.
+    `theta1` is the bounce after the upper corner. `free` names the value of the theorem: `lam`, or `phi`, the exit
+    angle at the upper corner.
 
     >>> with working(80):
     ...     near = (arb("0.25452687132067834252").mid(), arb("0.0712172452489159804").mid())
@@ -97,12 +98,12 @@ class CornerOrbit(SolutionInBox):
 
     @hypothesis(refutable=True)
     def s4_minimum_at_a_kink(self) -> Verdict:
-        """`s_4`, as a function of the exit angle, has a minimum with a kink at `phi-star`."""
+        """The arc length `s_4` of the fourth bounce has a minimum, with a kink, at the exit angle `phi-star`."""
         return self.sides.minimum_at_kink if self.sides else None
 
     @hypothesis(refutable=True)
     def s4_dips_below(self) -> Verdict:
-        """The minimum of `s_4` falls as the contraction grows."""
+        """The minimum of `s_4`, the arc length of the fourth bounce, falls as the contraction grows."""
         fall = -self.sides.descent if self.sides else arb("nan")
         return True if fall > 0 else False if fall < 0 else None
 

@@ -101,8 +101,8 @@ def strips_of_the_map(last: float = 1e-6) -> tuple[tuple[float, float], ...] | N
     """Length and width of two convex sets whose union is proved to hold the attractor of the map itself; None if not
     proved.
 
-    Both are in units of `lam - lambda-star` and hold for all `lam` up to `lambda-star + last`, the first set for
-    bounces on the arc.
+    Both are in units of `lam - lambda-star` and hold for all `lam` up to `lambda-star + last`. The first set holds the
+    images of the bounces on the arc.
 
     >>> [width < 1e-3 for _, width in strips_of_the_map()]
     [True, True]
@@ -122,9 +122,10 @@ def saddles(last: float = 3e-6) -> dict[int, Row] | None:
     """The two orbits of period 4 born at `lambda-star`, proved for all `lam` up to `lambda-star + last`.
 
     They are returned as fixed points `(u, v)` of the half return, one on the arc and one on the wall, in units of `lam
-    - lambda-star`. For every matrix `A` in the enclosure of the half return's derivative on the region, `base + (1 -
-    A)^-1 (H(base)/e - base)` lies in a ball inside the region; so there is exactly one fixed point. From `lam =
-    0.07122` on both orbits are followed by `proofs.periodic.over_interval`.
+    - lambda-star`. With `e = lam - lambda-star` let `H` be the half return before the division by `e`, and `base`
+    a point of `v = 0`. For every matrix `A` in the enclosure of the derivative of `H` on the region, `base + (1 - A)^-1
+    (H(e*base)/e - base)` lies in a ball inside the region; so there is exactly one fixed point. From `lam = 0.07122` on
+    both orbits are followed by `proofs.periodic.over_interval`.
 
     >>> {component: v.str(3, radius=False) for component, (_, v) in saddles().items()}
     {0: '-0.532', 1: '10.1'}
@@ -187,10 +188,10 @@ def _exit_angle(theta1: float) -> float:
 
 
 def _attractor(lam: float, e: float, near: list[Array], orbit: tuple[float, float], rate: float) -> ScaledAttractor:
-    """The attractor from the bounces of an orbit near the corners, mirrored to the upper corner; the bounce before
-    gives `u`.
+    """The attractor from an orbit's bounces near the corners, mirrored to the upper corner.
 
-    The last entry of `near` is the distance along the boundary from the middle of the wall.
+    `near` has components, `theta`, `phi` and the distances along the boundary from the middle of the wall; `orbit` is
+    `theta1` and `phi-star`. The coordinate `u` of a bounce comes from the bounce before it.
     """
     component, theta, phi, from_middle = near
     on_wall = component == WALL

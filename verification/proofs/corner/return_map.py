@@ -203,9 +203,9 @@ def fourth_on_wall(
     or_lower: bool = False,
     tick: Tick = silent,
 ) -> Fourth:
-    """A search whether the fourth collision lies on the wall for all `|phi| <= angle` and `lowest <= lam <= highest`.
+    """The search for a proof that the fourth collision is on the wall if `|phi| <= angle`, `lowest <= lam <= highest`.
 
-    With `or_lower` the lower half of the arc is accepted as well, which means `s_4 > s*`.
+    With `or_lower` it may also be on the lower half of the arc; `s_4 > s*` on both.
 
     >>> fourth_on_wall(0.01, 0.0, 0.03).on_wall
     True
@@ -245,7 +245,8 @@ MARGIN = 1e-6  # relative, around the greatest exit angle
 class Course:
     """The components and positions of one possible orbit over a box: `component` is that of the second bounce.
 
-    `second` is the distance of the second bounce beyond the lower corner, `fourth` that of the fourth beyond the upper.
+    `second` is the distance of the second bounce beyond the lower corner, and `fourth` the distance of the fourth
+    bounce beyond the upper corner.
     """
 
     component: int

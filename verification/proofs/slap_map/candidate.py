@@ -150,7 +150,7 @@ def candidate(digits: int) -> PiecewisePolynomial:
 
 
 def _carried(ends: list[arb], points: list[arb], size: int, bits: int) -> list[list[tuple[int, list[arb]]]]:
-    """The terms of `L` at each collocation point: index of a piece's first coefficient, and all its factors."""
+    """For each collocation point the terms of `L f`: a piece's first index, and the factors of its coefficients."""
     at, quarter = Branches(bits), arb.pi() / 4
     floats = [float(end) for end in ends]
     rows = []

@@ -191,7 +191,7 @@ def halves(box: Box) -> list[Box]:
 
 @dataclass(frozen=True)
 class PeriodicPoints:
-    """Intervals that together hold all solutions of `T0**n(x) = x`, each at most one, or None; `T0` is the slap map."""
+    """Intervals that hold the solutions of `T0**n(x) = x`, at most one each, or None; `T0` is the slap map."""
 
     stretches: list[tuple[int, float, float]] | None
     boxes: int

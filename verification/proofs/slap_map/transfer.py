@@ -267,7 +267,7 @@ def largest(matrix: Matrix) -> float:
 
 
 def spread(matrix: Matrix) -> float:
-    """The largest `L1` distance of a column from their median: a bound of the matrix on vectors of sum 0.
+    """The largest `L1` distance of a column from the entrywise median: a bound of the matrix on vectors of sum 0.
 
     >>> spread(np.array([[1.0, 1.0], [2.0, 2.0]]))
     0.0

@@ -71,7 +71,7 @@ def anchor(cover: ConeField, point: tuple[int, float, float], period: int, half:
 
 
 def _span(cover: ConeField, chart: int, low: float, high: float) -> tuple[float, float]:
-    """The lowest and highest `phi` of the region over an interval and the next columns; 0, 0 if it leaves the chart."""
+    """Range of `phi` of the region over an interval and one column beside each end; 0, 0 if these leave the chart."""
     wide = cover.sides[0][chart]
     start = cover.grid.charts[chart].x[0]
     first, last = (int(np.floor((x - start) / wide)) for x in (low, high))

@@ -79,7 +79,7 @@ class NoTwoAttractors(Theorem):
 
     @cached_property
     def astray(self) -> int | None:
-        """The number of cells with curves across their column that are not proved to reach the rectangle; or None."""
+        """The number of cells for which `crossing` is not proved; None if there is no rectangle."""
         if isinstance(self.region, str) or self.anchor is None:
             return None
         return int(np.sum(~crossing(self.region, self.anchor)))
@@ -101,7 +101,7 @@ class NoTwoAttractors(Theorem):
 
     @hypothesis(name="saddle")
     def saddle_crossed(self) -> bool:
-        """The rectangle about the cycle is crossed again by what crosses it."""
+        """Unstable curves that cross the saddle's rectangle meet its stable set, and have images that do so too."""
         return self.anchor is not None
 
     @hypothesis
@@ -130,7 +130,7 @@ def continuous(map: JoinedMap) -> bool:
 
 
 def crossing(region: ConeField, at: SaddleRectangle) -> NDArray[np.bool_]:
-    """A mask of the cells such that unstable curves from there across the column reach and cross the rectangle."""
+    """A mask of the cells from which unstable curves across the column have images that are proved to cross `at`."""
     course = SpanMap(region)
     spans = course.columns()
     done = np.zeros(region.cells.chart.size, dtype=bool)

@@ -269,7 +269,7 @@ OUTSIDE = -1
 def transitions(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Told | None = None) -> Transitions:
     """The transition graph of blocks that cover phase space or a part of it; the uncovered part counts as outside.
 
-    `ValueError` for a block that is not one of the blocks `grid.whole(size)` of its size.
+    `ValueError` unless each block is one of `grid.whole(size)`, for its own `size`.
     """
     ends = ((cells.column, grid.columns), (cells.row, grid.rows))
     if any(np.any((count % cells.size != 0) | (at % cells.size != 0) | (at < 0) | (at >= count)) for at, count in ends):

@@ -300,9 +300,9 @@ def both(*answers: bool | None) -> bool | None:
 class AttractorBounds:
     """Bounds in units of `e`: the attractor reaches `inner`, and lies within the polygon `outer`.
 
-    `inner` are a low and a high `v` of points on the unstable manifold of the folding piece's fixed point; every
-    attracting set that holds this fixed point contains them. `strips` are the lengths and widths of two thin convex
-    sets whose union holds the attractor: the images of the two sides of the border.
+    `inner` are a low and a high `v` of points on the unstable manifold of a fixed point, that of the piece with a
+    multiplier below -1; every attracting set that holds this fixed point contains them. `strips` are the lengths and
+    widths of two thin convex sets whose union holds the attractor: the images of the two sides of the border.
     """
 
     inner: tuple[arb, arb]

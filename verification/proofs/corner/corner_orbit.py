@@ -163,7 +163,7 @@ class CornerOrbit(SolutionInBox):
 
 @dataclass(frozen=True, repr=False)
 class EqualMultipliers(SolutionInBox):
-    """The egg has exactly one 2-cycle with two equal multipliers whose bounces and `alpha` lie in the box."""
+    """The egg has exactly one 2-cycle with two equal multipliers and with its bounces and `alpha` in the box."""
 
     lam: Expr
 

@@ -92,7 +92,7 @@ class Barrier:
         return heights
 
     def _raised(self, heights: Array, changed: Mask, proved: bool) -> Array | None:
-        """The staircase, raised to `ABOVE` over the images of `changed` steps; None if an image is not enclosed."""
+        """The staircase, raised to at least `ABOVE` over the images of `changed` steps; None if one is not enclosed."""
         boxes, raised = self._pieces(heights, changed | np.roll(changed, 1)), heights.copy()
         for start in range(0, boxes.chart.size, BLOCK):
             some = boxes.chosen(slice(start, start + BLOCK))
@@ -106,7 +106,7 @@ class Barrier:
         return raised
 
     def _pieces(self, heights: Array, wanted: Mask) -> Boxes:
-        """Boxes around the steps `wanted` and the vertical borders at their left, each at most two columns high."""
+        """Boxes around the steps `wanted` and the vertical borders at their left, at most two column widths high."""
         column = np.flatnonzero(wanted)
         zero, one = np.zeros_like(column), np.ones_like(column)
         left, right = self.grid.boxes(Cells(zero, column, zero, one)).x
@@ -128,11 +128,11 @@ class Barrier:
         return Images(np.arange(boxes.chart.size), found, lost)
 
     def below(self, boxes: Boxes) -> Mask:
-        """A mask: which boxes are proved to lie strictly below the staircase."""
+        """A mask of the boxes that are proved to lie strictly below the staircase."""
         return self._sides(boxes, np.minimum, np.inf, lambda height: boxes.y[1] < height)
 
     def above(self, boxes: Boxes) -> Mask:
-        """A mask: which boxes are proved to lie strictly above the staircase."""
+        """A mask of the boxes that are proved to lie strictly above the staircase."""
         return self._sides(boxes, np.maximum, -np.inf, lambda height: boxes.y[0] > height)
 
     def _sides(self, boxes: Boxes, end: np.ufunc, first: float, holds: Callable[[Array], Mask]) -> Mask:

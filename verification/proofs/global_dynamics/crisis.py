@@ -205,7 +205,7 @@ class BoundaryCrisis(Certified):
         return parts[0], parts[-1]
 
     def _turned(self, points: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
-        """Phase points with the rotated copies by which the saddle repeats; each orbit meets one of these."""
+        """Phase points and their copies under rotations by which the saddle repeats; each orbit meets one of them."""
         with working(BITS):
             turn = self.saddle.closure.angle(balls(BITS))
             copies = range(Fraction(*self.saddle.closure.shift).denominator)

@@ -62,10 +62,10 @@ WALKS = 64  # the length of walks over which stretches are summed
 class Cluster:
     """A strongly connected component of clusters: its rectangles, whether it is a `sink`, and proved bounds.
 
-    In a sink distances shrink by `factor < 1` or more per bounce in some norm, so that it holds at most one cycle. In a
-    saddle the points that stay for `WALKS` bounces make up at most the share `factor`, and vectors in the cones grow by
-    `exp(growth)` or more per bounce in the mean of `WALKS`, so that each cycle is unstable where `growth > 0`. A bound
-    is None if it is not proved.
+    In a sink a bounce multiplies distances by at most `factor < 1`, in some norm, so that it holds at most one cycle.
+    In a saddle the points that stay for `WALKS` bounces make up at most the share `factor`, and vectors in the cones
+    grow by `exp(growth)` or more per bounce in the mean of `WALKS`, so that each cycle is unstable where `growth > 0`.
+    A bound is None if it is not proved.
     """
 
     boxes: Boxes
@@ -339,7 +339,7 @@ def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None
 
 
 def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> NDArray[np.bool_]:
-    """A matrix of booleans that says which cluster (column) holds which point (row)."""
+    """A matrix of which cluster (column) holds which point (row); `below` compares, strictly or not."""
     (left, right), (bottom, top) = part.boxes.x, part.boxes.y
     rows = [
         (part.boxes.chart == chart) & below(left, x) & below(x, right) & below(bottom, y) & below(y, top)

@@ -90,7 +90,7 @@ class Flights:
         return [places[name] for name in names] if on.size == self.chart.size else [places[name][on] for name in names]
 
     def sides(self, end: End, on: Indices) -> BallArray:
-        """The product `v x w` of flight direction and vector to the point `end`: positive if left of the flights."""
+        """The cross product of flight direction and vector to `end`: positive if `end` is left of the flights."""
         x, y, *_ = self.map.place(end[0], BallArray(end[1]))
         at, all_of = self.among(self.centre, SIDES[:4], on), self.among(self.whole, SIDES, on)
         return aside(x, y, *at, *all_of, self.reach[0][on], self.reach[1][on])[0]
@@ -197,7 +197,7 @@ class Flights:
 
     @staticmethod
     def tangent(on: Indices, at: Places) -> list[BallArray]:
-        """The velocity of the boundary at the starts of the boxes `on`: at their midpoints, or over whole boxes."""
+        """The velocity of the boundary at the starts of the boxes `on`, taken from the values `at`."""
         return [at["dx"][on], at["dy"][on]]
 
     def mean_value(
@@ -298,7 +298,7 @@ def departing(
 
 @Compiled
 def aside(x: BallArray, y: BallArray, *known: BallArray) -> list[BallArray]:
-    """The cross product `v x (z - z0)`, enclosed by the mean-value theorem; see `Flights.sides`."""
+    """The cross product of `(v, w)` and `z - z0`, enclosed by the mean-value theorem, for `Flights.sides`."""
     (x0, y0, v0, w0), (x1, y1, v, w, cos, speed, bend), (by_theta, by_phi) = known[:4], known[4:11], known[11:]
     value = v0 * (y - y0) - w0 * (x - x0)
     along = v * (x - x1) + w * (y - y1)

@@ -72,13 +72,13 @@ class OneStepExpansion(Theorem):
 
     @hypothesis
     def nears(self) -> bool:
-        """A piece that lands at the cusp is too short for `x` to fall to `near`; both sides are over `(1 - lam)**3`."""
+        """A piece that lands at the cusp is too short for `x` to fall to `near`."""
         from_cusp = (1 - self.share * (1 - lam) ** 2 / 3) ** 3
         return bool(positive(from_cusp - 3 * (1 + lam) * self.share * self.near**3, EVERY))
 
     @hypothesis
     def sums(self) -> bool:
-        """`1/passing + 1/landing`, both positive, is below `1/expansion` at `lam = 0`, where it is least."""
+        """`1/passing + 1/landing`, both terms positive, is below the least value of `1/expansion`, at `lam = 0`."""
         room = 1 / expansion().subs(lam, 0) - 1 / self.passing - 1 / self.landing
         return all(positive(each, {}) for each in (self.passing, self.landing, room))
 

@@ -69,7 +69,7 @@ def _runs(cells: Cells) -> Iterator[list[int]]:
 
 
 def _unrolled(runs: Any, region: Mapping[str, Any]) -> Cells:
-    """The cells that such entries describe; `ValueError` if an entry does not fit the grid of the `region` document."""
+    """The cells of entries `[chart, size, column, row, count]`; `ValueError` if one does not fit the `region`."""
     charts, columns, rows = len(region["scene"].table.components), region["columns"], region["rows"]
     given = [[whole_number("a run", x, LARGEST, 0) for x in run] for run in runs]
     if {len(run) for run in given} != {5} or not 1 <= sum(run[4] for run in given) <= MOST_BOXES:

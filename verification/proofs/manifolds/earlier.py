@@ -186,7 +186,7 @@ class BranchImages:
 
     @cached_property
     def ends(self) -> tuple[float, float, float]:
-        """Range of the first coordinate on the local stable manifold, relative to the saddle's, and the saddle's."""
+        """Least and greatest first coordinate on the local stable manifold, minus the saddle's; and the saddle's."""
         here, following = self.into.points(np.linspace(-self.end, self.end, 201))
         x = np.asarray(self.map.plane(here, following)[0])
         middle = float(x[100])

@@ -201,7 +201,7 @@ def carried(out: Local, map: PlaneMap, parameter: float, bounces: int) -> Iterat
 
 
 def gaps(into: Local, here: Array, following: Array, small: float = SMALL) -> tuple[Array, Array]:
-    """The gap to a local stable manifold, NaN if it is not `small` or undefined; and the parameter on the manifold."""
+    """The gap to a local stable manifold, NaN if undefined or not below `small`; and the parameter on the manifold."""
     at, ring = into.saddle, into.saddle.around()
     if at.map.turn:
         unit = 2 * np.pi / at.map.turn

@@ -275,7 +275,7 @@ SPARE = 4  # rounds by which the second cycle is longer
 class KnownCrisis:
     """A crisis: its `parameter` from the fold of a long `cycle`, with an error estimate, and the tangency `touch`.
 
-    `apart` is the difference between the parameters that the two give.
+    `apart` is the difference between the parameters of the fold and of the tangency.
     """
 
     kind: str
@@ -292,7 +292,7 @@ class KnownCrisis:
 
     @property
     def agrees(self) -> bool:
-        """True if the two methods agree within their errors."""
+        """True if the two parameters differ by at most `error` plus ten times the error of the tangency."""
         return self.apart <= 10 * self.touch.error + float(self.error)
 
     @property
@@ -311,7 +311,7 @@ def homoclinic_exponent(stable: float, unstable: float) -> float:
 
 
 def heteroclinic_exponent(stable: float, unstable: float) -> float:
-    """The limit exponent at a heteroclinic crisis, `1/2 + ln|unstable|/|ln|stable||`: of the saddle on the attractor.
+    """The limit exponent at a heteroclinic crisis, `1/2 + ln|unstable|/|ln|stable||`, for the saddle on the attractor.
 
     >>> heteroclinic_exponent(1 / 16, 4)
     1.0

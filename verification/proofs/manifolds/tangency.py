@@ -76,7 +76,7 @@ class Precision:
 
 @dataclass(frozen=True)
 class Near:
-    """A bounce near a saddle: its `place`, and derivatives by `z` (two), by the parameter, and mixed."""
+    """A bounce near a saddle: its `place`, two derivatives by `z`, one by the parameter, and the mixed second one."""
 
     place: arb
     first: arb
@@ -157,7 +157,7 @@ def _reach(made: Local) -> float:
 
 
 def smaller(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precision: Precision) -> Coefficients:
-    """The result of `pair` with the largest unit, from that of `scale` downwards, for which the remainder is bounded.
+    """Two bounces on a local manifold, with the largest unit up to that of `scale` for which the remainder is bounded.
 
     Smaller units come with more orders. Along long cycles the radii of coefficients grow by up to 100 per order in the
     largest unit. Where a multiplier is near 1, only many orders outweigh the product of the slopes along a round.
@@ -325,7 +325,7 @@ class Gap:
         return (*found.x, *self.at(*found.x))
 
     def contact(self) -> Contact:
-        """The same contact, with the starting values found by this search for the extremum."""
+        """The contact of this gap, with the starting values found by the search for the extremum."""
         z, _, end = self.extremum()
         unstable, stable = (
             replace(made.saddle.orbit, start=tuple(float(x) for x in made.saddle.points))

@@ -117,8 +117,8 @@ class Linear:
     """The equations and their derivatives at a point, or over a box.
 
     `values` are the residuals of the equations for the orbit, `along` those of the equations for the tangent vector.
-    `rows` are the derivatives of the first by the orbit, and also of the second by the vector; `bent` are the
-    derivatives of the second by the orbit.
+    `rows` are the derivatives of the orbit's equations by the orbit, which are also those of the vector's equations by
+    the vector; `bent` are the derivatives of the vector's equations by the orbit.
     """
 
     values: Vector
@@ -288,8 +288,8 @@ class SaddleFrame:
     """The bounces of a saddle in the order of the flight, its exit angle at the first bounce, and two slopes there.
 
     `along` is the derivative of the exit angle by the boundary parameter on the manifold of the flight, `across` that
-    of the boundary parameter by the exit angle on the other manifold. A round multiplies distances on the manifold by
-    `stretch`.
+    of the boundary parameter by the exit angle on the other manifold. A round of these bounces multiplies distances
+    on the manifold by `stretch`.
     """
 
     saddle: list[Any]

@@ -220,7 +220,7 @@ def over_interval(
 
 
 def _radii(moved: list[float], theta: list[float], share: float) -> list[float]:
-    """A guess of the radii of the box of bounces in the next step, from their last displacements."""
+    """A guess of the radii of the box of bounces in the next step: about `share` times their last displacements."""
     reaches = [abs((x - y) * share) for x, y in zip(moved, theta, strict=True)]
     return [0.7 * reach + 0.2 * max(reaches) + 1e-12 for reach in reaches]
 

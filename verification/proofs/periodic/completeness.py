@@ -133,7 +133,7 @@ def no_others(
 
 
 def one_smooth_curve(table: Table, law: Law) -> bool:
-    """Is the boundary one closed curve that has a tangent everywhere and no straight component?
+    """True if the boundary is one closed curve that has a tangent everywhere and no straight component.
 
     With several components, the law must also be independent of the place.
     """
@@ -178,7 +178,7 @@ class BoundaryChart:
         return np.asarray(low + (theta - start) / scale)
 
     def radii(self, parts: Sequence[int], radius: float) -> list[float]:
-        """Radii in the components' own parameters that hold a radius in `t`, on either side of a join."""
+        """For each bounce a radius in its component's parameter that covers `radius` in `t`, also beyond a join."""
         known, found = joins(self.table), []
         for part in parts:
             beside = [self.scale[known.beyond[part, k]].m / known.ratio[part, k] for k in (0, 1)]
@@ -221,7 +221,7 @@ def rough_length(part: Component) -> float:
 
 
 def start(turn: int, n: int, gap: float) -> Cuboids:
-    """One box that holds all chains: the first bounce modulo rotations of the table, and gaps between their bounds."""
+    """One box that holds all chains: the first bounce modulo rotations by `2*pi/turn`, and gaps of at least `gap`."""
     reach, middle = np.ceil(2**10 * pi / turn) / 2**10, 3.125
     half = np.ceil(2**10 * (2 * pi - gap - middle)) / 2**10
     return Cuboids(np.array([[0.0] + [middle] * (n - 1)]), np.array([[reach] + [half] * (n - 1)]))
@@ -262,7 +262,7 @@ def ball_array(found: Sequence[arb]) -> BallArray:
 
 
 def one_sided(theta: BallArray) -> Mask:
-    """A mask: which balls between `-2*pi` and `2*pi` lie inside `(-pi, pi)`, where arc length does not jump."""
+    """A mask of the balls proved to lie in `(-pi, pi)`, where arc length does not jump."""
     found: Mask = (theta + WIDE.pi).positive() & (WIDE.pi - theta).positive()
     return found
 
@@ -372,7 +372,10 @@ class Cover:
             return cls(angle, reflected, least_gap(angle, float(largest)), law, chart)
 
     def empty(self, boxes: Cuboids, turns: int, known: Sequence[tuple[Array, float]] = ()) -> Mask:
-        """A mask of the boxes that hold no cycle with this number of `turns`, or that lie in a box of `known`."""
+        """A mask of the boxes that hold no cycle with this number of `turns`, or that lie in a box of `known`.
+
+        The first gap of a cycle is assumed to be its largest.
+        """
         n = boxes.middle.shape[1]
         wide = [BallArray(boxes.middle[:, k], boxes.half[:, k]) for k in range(n)]
         last = 2 * turns * WIDE.pi - total(wide[1:])
@@ -444,7 +447,7 @@ def apart(x: BallArray) -> Mask:
 
 
 def inverses(slopes: list[list[BallArray]]) -> Array:
-    """Approximate inverses of matrices, given by balls whose midpoints are used, as rows; 0 for a singular matrix."""
+    """The approximate inverses, by rows, of the midpoints of matrices of balls; 0 for a singular matrix."""
     matrix = np.array([[s.m for s in row] for row in slopes]).transpose(2, 0, 1)
     good = np.all(np.isfinite(matrix), axis=(1, 2))
     good[good] = np.linalg.det(matrix[good]) != 0

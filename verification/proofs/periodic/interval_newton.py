@@ -87,7 +87,7 @@ class UniqueZero(Certified):
 
     @property
     def system(self) -> System:
-        """The equations, in the unknowns of which `centre` gives values."""
+        """The equations; `centre` has values of their unknowns."""
         raise NotImplementedError
 
     @cached_property

@@ -103,7 +103,11 @@ class Rotating:
 
 
 class Rotation:
-    """Equations of a cycle with complex multipliers, their derivatives and normal form, at a point or over a box."""
+    """Equations of a cycle with complex multipliers, their derivatives and normal form, at a point or over a box.
+
+    The *bordering function* is the last pivot of the linearised rules for vectors that a round multiplies by `mu`; it
+    is 0 where there are such vectors.
+    """
 
     def __init__(self, problem: Rotating, arithmetic: Arithmetic, z: Vector, order: int = 2) -> None:
         self.problem, self.arithmetic = problem, arithmetic
@@ -161,7 +165,7 @@ class Rotation:
         return -self.mu.conjugate() * speed / self.turn
 
     def cubic(self) -> Any:
-        """Coefficient of `z**2*conj(z)` times `conj(mu)`, for `z` scaled so that the last bounce moves by `2*Re(z)`."""
+        """The module's `conj(mu)*cubic`, for `z` scaled so that the last bounce moves by `2*Re(z)`."""
         words, mu = self.arithmetic, self.mu
         half, root = words.q(1, 2), words.sqrt(words.q(3, 4))
         phases = [complex_number(2 * half, 0 * half), complex_number(-half, root), complex_number(-half, -root)]
@@ -172,7 +176,7 @@ class Rotation:
         return -mu.conjugate() * dot(self.critical.left, harmonic(phases, third, 1)) / self.turn
 
     def expanded(self, phase: Any, bent: Sequence[tuple[Any, Any]]) -> Vector:
-        """The coefficients of `e**2` in the rules along `z = e*phase`; or of `e**3`, given pairs `(h20, h11)`."""
+        """The coefficients of `e**2` in the rules along `z = e*phase`; or of `e**3`, if `bent` has the `(h20, h11)`."""
         rule, order = self.ring.over(jets(self.arithmetic)), 3 if bent else 2
 
         def at(i: int, phase: Any) -> Jet:

@@ -227,11 +227,11 @@ def _volume(box: Box) -> float:
 
 
 def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, box: Box, closer: Any = None) -> bool:
-    """True if it is proved that no triangle in the box obeys the equations.
+    """True if it is proved that no triangle in the box whose first gap is the largest obeys the equations.
 
-    `angles` returns exit and incidence angles at three bounces, and `slopes` also their derivatives in twice the time.
-    `closer` encloses the angles from the gaps (`polar_polygon_kernel`), which reduces the number of boxes to a
-    twentieth.
+    `angles` returns exit and incidence angles at three bounces; `slopes` returns their derivatives too, and takes twice
+    the time. `closer` encloses the angles from the gaps (`polar_polygon_kernel`), which reduces the number of boxes to
+    a twentieth.
     """
     (first, _), (one, _), (two, _) = box
     wide = [arb(m, r) for m, r in box]

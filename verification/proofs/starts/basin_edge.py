@@ -1,13 +1,14 @@
 """The boundary of a basin above a barrier: the stable manifold of one saddle, a smooth curve.
 
-Let a barrier be given on one smooth closed convex curve. Above it there are an attracting cycle with a disc in its
-basin, and a saddle; both repeat after one bounce and a rotation of the table by `1/turns`. The hypotheses are those of
-`BasinEdge`. Let `S` be the set of starts whose orbits neither come below the barrier nor enter the disc. The orbit of
-such a start is an infinite walk in the graph of cells, so from some bounce on it stays in the cells around the saddle,
-to which no walk returns after leaving. There the difference between orbit and saddle does not grow, hence it shrinks,
-and the orbit converges to the saddle. Conversely, orbits that converge to the saddle start in `S`. So *`S` is the
-stable manifold of the saddle*. It is closed, since the other starts form two disjoint open sets: the basin of the
-cycle, and the starts whose orbits come below the barrier.
+Let the table be one smooth closed convex curve with a barrier, a closed curve around phase space that the map takes
+below itself. Above it there are an attracting cycle with a disc in its basin, and a saddle; both repeat after one
+bounce and a rotation of the table by `1/turns` of a full turn. The hypotheses are those of `BasinEdge`. Let `S` be the
+set of starts whose orbits neither come below the barrier nor enter the disc. The orbit of such a start is an infinite
+walk in the graph of cells, so from some bounce on it stays in the cells around the saddle, to which no walk returns
+after leaving. There the difference between orbit and saddle does not grow, hence it shrinks, and the orbit converges to
+the saddle. Conversely, orbits that converge to the saddle start in `S`. So *`S` is the stable manifold of the saddle*.
+It is closed, since the other starts form two disjoint open sets: the basin of the cycle, and the starts whose orbits
+come below the barrier.
 
 *It is an embedded curve, as smooth as the map.* Let the orbit of `x` in `S` be in the interior of the cells around the
 saddle from bounce `n` on. Points of `S` near `x` are in these cells at bounce `n` too, and stay there, since orbits
@@ -115,7 +116,9 @@ class BasinEdge(Theorem):
 
     @hypothesis
     def hyperbolic(self) -> bool:
-        """For differences `(u, v)` near the saddle `|u'| > max(|u|, |v'|)` if `|u| >= |v|`, and `|v'| < |v|` if not."""
+        """Differences `(u, v)` near the saddle are mapped to `(u', v')` with `|u'| > max(|u|, |v'|)` if `|u| >= |v|`,
+        and with `|v'| < |v|` if not.
+        """
         if self.place is None:
             return False
         parts, _ = self._about(WITHIN).parts(CUT, CUT)

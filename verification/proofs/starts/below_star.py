@@ -190,7 +190,7 @@ class ConvergenceBelowLambdaStar(Theorem):
 
     @hypothesis
     def carried(self) -> bool:
-        """Orbits that leave the join at other angles reach the tube or an entry tube."""
+        """Orbits from the join that land farther than `BESIDE` from `theta1` reach the tube or an entry tube."""
         with working(BITS):
             first, last = (_leaving(enclosed()[0] + sign * BESIDE) for sign in (1, -1))
         slices = np.linspace(-ANGLE, ANGLE, SLICES + 1)
@@ -301,7 +301,7 @@ def hulls(depth: arb) -> dict[int, Hull]:
 
 
 def inner(hull: dict[int, Hull], depth: arb) -> bool:
-    """True if the module docstring's inequalities for inner states hold; the second variable is `abs(V)`."""
+    """True if the module docstring's inequalities for inner states hold; they use derivatives by `abs(V)`."""
     steps = []
     for component, sign in ((ARC, -1), (WALL, 1)):
         (a, b, c), (f, g, h) = hull[component]

@@ -5,8 +5,8 @@ to the curve along which orbits approach the cycle; the cycle has two bounces, o
 proof has three steps:
 
 - the core is cut into cells by `theta`; the second images of each cell beyond `inner`, and of the cells closer to 0,
-  lie in the core and closer to 0 than the inner edge of the cell; so after one round for each cell an orbit is within
-  `inner`;
+  lie in the core and closer to 0 than the inner edge of the cell; so after at most as many rounds as there are cells
+  an orbit is within `inner`;
 - over a rectangle around the part within `inner` the derivative of two bounces is at most `M`, entry by entry, and `M*v
   <= q*v` with `q < 1` for a vector `v > 0`; so all orbits there converge to the fixed point of two bounces, at 0;
 - an *entry tube* is a wider and shorter set of the same kind, whose second image lies in the core.
@@ -58,7 +58,7 @@ class AbsorbingTube:
             raise ValueError(f"{self}: accepted: at least one cell, and bounds above 0")
 
     def holds(self, sets: Parallelograms, *sizes: tuple[float, float]) -> Mask:
-        """A mask of the sets in a tube with bounds `(outer, width)` out of `sizes`; without these, in this tube."""
+        """A mask of the sets in a tube with one of the bounds `(outer, width)` in `sizes`; by default, in this tube."""
         theta, phi = sets.middle
         with np.errstate(invalid="ignore"):
             far = sets.reach()

@@ -40,7 +40,7 @@ PARTS = 1500  # boxes along theta that cover a part of the annulus
 
 @dataclass(frozen=True)
 class ExpandingAnnulus:
-    """An annulus as in the module docstring: two convex parts on either side of the cycle."""
+    """An annulus as in the module docstring: two convex parts, one on each side of the cycle."""
 
     low: float
     high: float
@@ -131,7 +131,10 @@ class Division(RangeTheorem):
 
     @cached_property
     def region(self) -> Mask | None:
-        """Leaves reached from attracting Morse sets away from the core; None if they do not form a trapping region."""
+        """A mask of the leaves reached from the attracting Morse sets that have leaves outside of `entering`.
+
+        None if there are no such sets, or if the leaves form no trapping region or may hold the cycle.
+        """
         graph = self.graph.transitions
         beside = [i for i in self.graph.attracting if not np.all(self.entering[self.graph.sets[i]])]
         if not beside:

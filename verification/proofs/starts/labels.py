@@ -74,7 +74,7 @@ def reduced(how: np.ufunc, size: int, at: Indices, values: Array) -> Array:
 
 
 def image_labels(map: CurveMap, boxes: Boxes, slopes: BallArray) -> Landed:
-    """The labels that images of curves in these boxes may meet, computed for a block of boxes at a time."""
+    """The enclosed images of curves in these boxes, computed for a block of boxes at a time."""
     rows = []
     for start in range(0, boxes.chart.size, BLOCK):
         some = slice(start, start + BLOCK)
@@ -184,7 +184,7 @@ class Labels:
         return found[0], found[1]
 
     def across(self, chart: Indices, theta: Range) -> tuple[Indices, Indices, Indices]:
-        """All columns in which landings may lie, as landing, chart and column; after a turn, columns count on."""
+        """All columns in which landings may lie, as landing, chart and column, counted on after a full turn."""
         first, last = ((end - self.left[chart]) / self.wide[chart] for end in theta)
         low, high = np.floor(first - PAD).astype(np.int64), np.floor(last + PAD).astype(np.int64)
         if not self.map.closed:

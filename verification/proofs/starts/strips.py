@@ -208,7 +208,7 @@ class Remainder(NamedTuple):
 
 
 def remainder(map: PinballImages, core: AbsorbingTube, first: Strips, enough: float, rounds: int = 24) -> Remainder:
-    """Cuts strips until undecided starts of all `eta` have at most the measure `enough`, or `rounds` are over.
+    """Cuts strips until the undecided starts, `eta < 0` included, measure at most `enough`, or `rounds` times.
 
     A strip that is undecided, or not yet examined after the last round, counts with its whole measure.
     """

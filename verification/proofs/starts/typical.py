@@ -81,7 +81,10 @@ class Cut:
 
 
 class Balance:
-    """The coefficients of the inequalities for masses and ends, computed from standard pairs."""
+    """The coefficients of the inequalities for masses and ends, computed from standard pairs.
+
+    In its methods the index `gain` is 0 for the logarithm of the stretching, and 1 for minus the logarithm.
+    """
 
     def __init__(self, found: Pairs, window: int) -> None:
         labels, cast, spread = found.labels, found.cast, found.spread
@@ -135,7 +138,7 @@ class Balance:
 
     @staticmethod
     def _mean(values: Array, turn: Array) -> Array:
-        """The largest mean over a column of a function with these bounds on its parts; densities vary by `turn`."""
+        """The largest mean over a column of a function with bounds `values` on its parts; densities vary by `turn`."""
         steps, total = values[:, :-1] - values[:, 1:], values[:, -1].copy()
         for k in range(steps.shape[1]):
             share = (k + 1) / values.shape[1]

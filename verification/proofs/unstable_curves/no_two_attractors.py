@@ -79,7 +79,7 @@ class NoTwoAttractors(Theorem):
 
     @cached_property
     def astray(self) -> int | None:
-        """The number of cells for which `crossing` is not proved; None if there is no rectangle."""
+        """The number of cells from which curves across the column may miss the rectangle; None without a rectangle."""
         if isinstance(self.region, str) or self.anchor is None:
             return None
         return int(np.sum(~crossing(self.region, self.anchor)))

@@ -246,7 +246,7 @@ def fixed_point(piece: AffinePiece) -> Row:
 
 
 def kind(pieces: Pieces) -> FixedPointChange:
-    """The kind of the border collision, by which pieces have their fixed point on their own side for `e > 0`."""
+    """The kind of the border collision; it depends on whether fixed points lie on their own sides for `e > 0`."""
     own = [inward(fixed_point(piece)[1], component) for component, piece in pieces.items()]
     if all(x > 0 for x in own) or all(x < 0 for x in own):
         return FixedPointChange.FOLD

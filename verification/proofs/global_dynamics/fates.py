@@ -79,9 +79,9 @@ def clusters(
 ) -> list[Cluster] | None:
     """The components of clusters in which orbits may return, with bounds for each; None if not proved.
 
-    With a mask `among` only its vertices are used; no orbit may stay outside of them. Boxes at most `2*near` cells
-    apart form one cluster. None is returned if the image of a box is not enclosed, or if a cluster may land on both
-    sides of a join.
+    With a mask `among` only its vertices, and the orbits that stay in them, are considered. Boxes at most `2*near`
+    cells apart form one cluster. None is returned if the image of a box is not enclosed, or if a cluster may land on
+    both sides of a join.
     """
     recurrent = graph.recurrent if among is None else among
     if graph.recurrent[-1] and np.any(graph.edges.indices[: graph.edges.indptr[-2]] == graph.count):

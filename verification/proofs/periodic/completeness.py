@@ -268,8 +268,8 @@ def one_sided(theta: BallArray) -> Mask:
 
 
 def parted(theta: BallArray) -> list[BallArray]:
-    """Balls of parameters with midpoints reduced to `[-pi, pi]`; and the same, shifted by a turn where they may pass an
-    end.
+    """Balls of parameters with midpoints reduced to `[-pi, pi]`; and a copy, in which those that may pass an end are
+    shifted by a full turn.
 
     >>> [x.m.round(2).tolist() for x in parted(BallArray(np.array([0.0, 3.0, 3.1, 6.3]), 0.1))]
     [[0.0, 3.0, 3.1, 0.02], [0.0, 3.0, -3.18, 0.02]]

@@ -133,7 +133,7 @@ class Rotation:
         return self.closure.turn * (w[-1] * upper[-1] * v[0] - back * back * w[0] * lower[0] * v[-1])
 
     def speeds(self, names: Sequence[str]) -> tuple[Vector, list[tuple[Vector, Any]]]:
-        """Derivatives of the bordering function: by the bounces; and by each parameter, with the cycle's motion."""
+        """Derivatives of the bordering function by the bounces; for each name, motion of the cycle and derivative."""
         by_bounce, by = bordering_slopes(self.terms, self.closure, self.critical.right, self.critical.left, self.mu)
         found = []
         for name in names:
@@ -273,8 +273,8 @@ def torus(problem: Rotating, start: Sequence[Any], parameter: str, digits: int =
 
 
 def on_the_table(ring: Chords, at: Rotation) -> dict[str, bool | None]:
-    """Further items of the checklist: the cycle is an orbit of a convex table of one smooth curve, with this minimal
-    period.
+    """Further items of the checklist: the cycle is an orbit of a convex table of one smooth curve, and its minimal
+    period is that of the `ring`.
 
     The contraction must lie between 0 and 1, so that the map has a smooth inverse.
     """

@@ -195,7 +195,7 @@ class Labels:
     def crossed(
         self, source: Indices, chart: Indices, column: Indices, phi: Range, way: Range, slopes: Range, hulls: Range
     ) -> Targets:
-        """Rows in which a curve crosses the middle of a column, from `phi` at the distance `way` from the middle."""
+        """Rows in which curves cross the middles of columns, from their `phi` at the distances `way` from there."""
         column = column % self.columns[chart]
         low = np.minimum(hulls[0][chart, column], slopes[0])
         high = np.maximum(hulls[1][chart, column], slopes[1])

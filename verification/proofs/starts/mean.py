@@ -88,7 +88,7 @@ def stable(trace: Expr, det: Expr, low: Fraction, high: Fraction) -> SignFinding
 
 @cache
 def average(low: Fraction = LOW, high: Fraction = HIGH) -> Average:
-    """The bound for every contraction of a range around `lambda*`; infinite if a step of the proof fails."""
+    """A bound of the mean for every contraction of a range around `lambda*`; infinite if a step of the proof fails."""
     map = PinballImages(Scene("cuspless", lam=str(high)), (low, high))
     trace, det = trace_and_determinant(cuspless_horizontal())
     checks = attracts(map, CORE)

@@ -154,7 +154,7 @@ def _leaning(map: PinballMap, chart: int, theta: Array, eta: Array) -> Array:
 
 
 def seems_to_enter_tube(map: PinballMap, core: AbsorbingTube, given: Strips) -> tuple[Mask, Mask]:
-    """Masks of the strips that seem to enter the tube, and of those to cut across, from float64 orbits of corners."""
+    """Masks of strips that seem to enter the tube, and of those to cut across, from float64 orbits of their corners."""
     lam, count, corners = float(np.max(map.lam)), given.left.size, len(CORNERS[0])
     across, along = (np.array(side)[:, None] for side in CORNERS)
     u = along * given.half

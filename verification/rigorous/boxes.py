@@ -45,7 +45,7 @@ class Boxes(NamedTuple):
 
 
 class Images(NamedTuple):
-    """Rectangles `boxes` that hold images, the index `source` of each one's mapped box, and indices of `lost` boxes."""
+    """Rectangles that hold images: `source` has indices of the mapped boxes, `lost` those of boxes without an image."""
 
     source: Indices
     boxes: Boxes

@@ -339,7 +339,7 @@ def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None
 
 
 def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> NDArray[np.bool_]:
-    """A matrix of which cluster (column) holds which point (row); `below` compares, strictly or not."""
+    """A matrix that says which cluster (column) holds which point (row); `below` is `np.less` or `np.less_equal`."""
     (left, right), (bottom, top) = part.boxes.x, part.boxes.y
     rows = [
         (part.boxes.chart == chart) & below(left, x) & below(x, right) & below(bottom, y) & below(y, top)

@@ -197,7 +197,7 @@ class Enclosed:
         return neighbours(self.saddle, [list(c) for c in self.coefficients], powers)
 
     def pair(self) -> tuple[Jet, Jet]:
-        """Polynomials of two successive bounces, with arguments in the disc: -1 and 0 if unstable, else 0 and 1."""
+        """Polynomials of the bounces -1 and 0 if unstable, else 0 and 1, whose arguments stay in the disc."""
         ring = self.ring()
         return (ring[0], ring[1]) if self.unstable else (ring[1], ring[2])
 

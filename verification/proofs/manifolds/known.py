@@ -292,7 +292,7 @@ class KnownCrisis:
 
     @property
     def agrees(self) -> bool:
-        """True if the two parameters differ by at most `error` plus ten times the error of the tangency."""
+        """True if `apart` is at most `error` plus ten times the tangency's error."""
         return self.apart <= 10 * self.touch.error + float(self.error)
 
     @property

@@ -297,7 +297,7 @@ def _elastic(table: Table) -> PinballMap:
 
 
 def first_landing(table: Table, here: Any, phi: Any, turns: int = 0) -> Any:
-    """The first hit on any table of one component, after `here` at exit angle `phi`, in float64; NaN if there is none.
+    """The first hit from `here` at the exit angle `phi`, on any table of one component, in float64; NaN if none.
 
     >>> from symbolic.tables import circle
     >>> round(first_landing(circle, 0.0, 0.5), 12)

@@ -225,7 +225,7 @@ class Touching:
         return made
 
     def clear(self, at: OrbitPoint) -> bool:
-        """True if chords of the orbit, and of orbits near both saddles, are proved to miss the boundary on the way."""
+        """True if all chords of the orbit, and of orbits near both saddles, are proved to miss the boundary between."""
         turn, runs = 2 * self.map.words.pi, [at.orbit[1:-1], *(made.tube for made in self.pairs)]
         placed = [[(0, x - turn * round(float(x.mid()) / (2 * math.pi))) for x in run] for run in runs]
         return isinstance(self.map, Pinball) and all(unobstructed(self.map.table, run) for run in placed)

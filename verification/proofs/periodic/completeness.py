@@ -372,10 +372,7 @@ class Cover:
             return cls(angle, reflected, least_gap(angle, float(largest)), law, chart)
 
     def empty(self, boxes: Cuboids, turns: int, known: Sequence[tuple[Array, float]] = ()) -> Mask:
-        """A mask of the boxes that hold no cycle with this number of `turns`, or that lie in a box of `known`.
-
-        The first gap of a cycle is assumed to be its largest.
-        """
+        """A mask of boxes in a box of `known`, or without a cycle of `turns` turns whose first gap is the largest."""
         n = boxes.middle.shape[1]
         wide = [BallArray(boxes.middle[:, k], boxes.half[:, k]) for k in range(n)]
         last = 2 * turns * WIDE.pi - total(wide[1:])

@@ -127,13 +127,13 @@ class Rotation:
 
     @property
     def turn(self) -> Any:
-        """The derivative of the bordering function by the multiplier, not 0 exactly if the multiplier is simple."""
+        """The derivative of the bordering function by the multiplier; 0 if and only if the multiplier is multiple."""
         lower, _, upper = self.terms.slope
         v, w, back = self.critical.right, self.critical.left, self.mu.conjugate()
         return self.closure.turn * (w[-1] * upper[-1] * v[0] - back * back * w[0] * lower[0] * v[-1])
 
     def speeds(self, names: Sequence[str]) -> tuple[Vector, list[tuple[Vector, Any]]]:
-        """Derivatives of the bordering function by the bounces; for each name, motion of the cycle and derivative."""
+        """Derivatives of the bordering function by the bounces; and by each parameter, with the motion of the cycle."""
         by_bounce, by = bordering_slopes(self.terms, self.closure, self.critical.right, self.critical.left, self.mu)
         found = []
         for name in names:

@@ -131,9 +131,8 @@ class Division(RangeTheorem):
 
     @cached_property
     def region(self) -> Mask | None:
-        """A mask of the leaves reached from the attracting Morse sets that have leaves outside of `entering`.
-
-        None if there are no such sets, or if the leaves form no trapping region or may hold the cycle.
+        """The leaves reached from attracting Morse sets that are not within `entering`; None if there are none, if the
+        leaves form no trapping region, or if they may hold the cycle.
         """
         graph = self.graph.transitions
         beside = [i for i in self.graph.attracting if not np.all(self.entering[self.graph.sets[i]])]

@@ -101,7 +101,7 @@ class NoTwoAttractors(Theorem):
 
     @hypothesis(name="saddle")
     def saddle_crossed(self) -> bool:
-        """Unstable curves that cross the saddle's rectangle meet its stable set, and have images that do so too."""
+        """Every unstable curve that crosses the rectangle meets the stable set of the saddle."""
         return self.anchor is not None
 
     @hypothesis

@@ -66,7 +66,7 @@ class Corner:
 
     @property
     def robust(self) -> bool | None:
-        """Robust chaos of the piecewise linear half return for `lam` above `lambda-star`; None where undecided."""
+        """The verdict on robust chaos of the piecewise linear half return for `lam` above `lambda-star`."""
         return robust({ARC: self.arc, WALL: self.wall})
 
     @property

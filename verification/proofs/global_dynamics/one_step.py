@@ -31,9 +31,10 @@ class OneStepExpansion(Theorem):
     """A short curve is cut by the cusp in at most two pieces, and `1/passing + 1/landing` is below `1/expansion`.
 
     The statement holds for each `0 <= lam < 1` and each curve in the strip `abs(phi) <= lam*pi/2` of the cardioid with
-    tangents in the cone and a length of at most `share*(1 - lam)**3` in `|K|*ds`. `passing` and `landing` are the least
-    stretches of the piece that passes the cusp, where `C <= turn`, and of the piece that lands at it, where `x >=
-    near`; a flight from `theta0` to `theta1` has `C = cos((theta1 - theta0)/2)` and `x = cos(theta0/2)/cos(theta1/2)`.
+    tangents in the cone and a length of at most `share*(1 - lam)**3` in `|K|*ds`, with the curvature `K`. `passing` and
+    `landing` are the least stretches of the piece that passes the cusp, where `C <= turn`, and of the piece that lands
+    at it, where `x >= near`; a flight from `theta0` to `theta1` has `C = cos((theta1 - theta0)/2)` and `x =
+    cos(theta0/2)/cos(theta1/2)`.
 
     >>> OneStepExpansion(Rational(1, 48000), Rational(7, 5), 5, Rational(1, 5), 19).proved
     True

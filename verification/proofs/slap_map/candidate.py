@@ -284,7 +284,7 @@ class Judge:
         return inside
 
     def _sides(self, low: arb, high: arb) -> tuple[dict[int, range], bool]:
-        """The pieces met by each summand of `L` on a stretch; and whether each summand meets one piece only."""
+        """The pieces met by each summand of `L` on a stretch; True if one each, and `pi/4` is not in the stretch."""
         quarter = arb.pi() / 4
         beyond = low > quarter
         met = {side: self._met(side, low, high) for side in ((BELOW,) if beyond else (BELOW, ABOVE))}

@@ -127,7 +127,7 @@ class Alternating(Theorem):
         return False
 
     def _comes(self, start: float, inside: Callable[[Bounce, Bounce], bool]) -> bool:
-        """True if the orbit from a start is proved to come `inside`, by first hits off the joins only."""
+        """True if the orbit from a start is proved to come `inside`, with all landings first hits off the joins."""
         if self.branch is None or not self.saddle:
             return False
         (point,) = self.branch.points(self.side, [start], [start])

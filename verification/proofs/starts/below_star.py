@@ -221,7 +221,7 @@ class AlmostEveryOrbitBesideLambdaStar(AlmostEveryOrbit):
 
     @cached_property
     def beside(self) -> Mask:
-        """Vertices of components whose leaves all lie next to the corner orbit, in the cyclic order of its bounces."""
+        """Vertices of components whose leaves lie next to the corner orbit, and whose edges follow its cyclic order."""
         graph, found = self.graph, np.zeros_like(self.graph.recurrent)
         chosen = np.flatnonzero(graph.recurrent[:-1] & graph.leaf)
         boxes = graph.grid.boxes(Cells(*(field[chosen] for field in graph.cells)))

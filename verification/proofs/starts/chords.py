@@ -55,7 +55,7 @@ class ChordFlights(Flights):
         return np.asarray(at)
 
     def exits(self, on: Indices, chart: Indices, arc: BallArray) -> tuple[Mask, Array, Array]:
-        """A mask of the boxes whose exit angles are enclosed, and bounds of the angles, cut off at the strip."""
+        """A mask of boxes whose exit angles are enclosed, and bounds of these, cut off at the border of the strip."""
         exit, top = self.map.exit(self.over(on, chart, arc)[1], arc), self.map.top
         return np.isfinite(exit.r), np.maximum(exit.lower(), -top), np.minimum(exit.upper(), top)
 

@@ -164,7 +164,7 @@ class Balance:
         return found
 
     def charged(self, v: Array) -> tuple[Array, Array]:
-        """The cost of cuts for each unit of mass and for each end, if `v` are the potentials of ends on joins."""
+        """The terms `cuts` of the inequalities, per unit of mass and per end, from potentials `v` of ends on joins."""
         mass, end = np.zeros(self.count), np.zeros(self.count)
         for cut in self.cuts:
             top = float(v[cut.new].max())

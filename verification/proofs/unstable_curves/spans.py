@@ -25,7 +25,7 @@ WIDEST = 1e300
 
 
 class Spans(NamedTuple):
-    """An array of spans: for each its `origin`, its chart, its ends in `theta`, and the ranges of `phi` at the ends."""
+    """An array of spans: for each its cell of `origin`, its chart, its ends in `theta`, and ranges of `phi` there."""
 
     origin: Indices
     chart: Indices

@@ -144,7 +144,7 @@ def situated(found: "Sequence[Located]", number: str | None = None) -> "Figure":
 
 
 def _diameter() -> Chords:
-    """The diameter of the egg as a chord system, for alpha-hat, where its multipliers become complex."""
+    """The egg's diameter, as chord rules with `alpha` free, for the figure of alpha-hat (complex multipliers)."""
     return Chords(egg(3), (0, 0))
 
 
@@ -298,7 +298,7 @@ COLOURS = {"unstable": "#c1272d", "stable": "#1f4e99", "attractor": "0.55"}
 
 
 def portrait(kind: str, alpha: Expr, below: float = 0.0, share: float = 1.0, law: Law = PAPERS_LAW) -> "Figure":
-    """Figure of a crisis of the egg in `theta` modulo 2*pi/3 and `phi`; `kind` is a key of `CONTACTS`.
+    """Figure of a crisis of the egg in `theta` modulo 2*pi/3 and `phi`; `kind` names the crisis.
 
     `below` is subtracted from the contraction of the tangency; `share` scales the lengths of the manifolds.
     """

@@ -71,7 +71,7 @@ def shown(kind: str, results: Sequence[Any], axes: Any = None) -> "Figure":
     """
     if isinstance(axes, str | Path):
         path = repr(str(axes))
-        raise ValueError(f"plot: {path} is no pair of axes; plot() gives a Matplotlib figure: plot().savefig({path})")
+        raise ValueError(f"plot: {path} is no Matplotlib axes; plot() gives a figure, saved by plot().savefig({path})")
     module, _, name = kind.rpartition(".")
     where = module if "." in module else f"verification.plots.{module}"
     with styled():
@@ -261,7 +261,7 @@ def attractors(map: PinballMap, found: "Sequence[Attractor]", axes: "Axes | None
 
 
 def beside(made: "Figure", axes: "Axes", own: bool, columns: int) -> None:
-    """Puts the legend below a figure of its own, or to the right of given axes."""
+    """Puts the legend below the figure if `own` is true, else to the right of the axes."""
     if own:
         made.legend(loc="outside lower center", ncols=columns)
     else:

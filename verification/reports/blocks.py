@@ -105,7 +105,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Certificate:
-    """The content of a certificate file, which `pinball check` reads; `words` say what it proves, or its name does."""
+    """The content of a certificate file, for `pinball check`; `words` or else its name say what it proves."""
 
     name: str
     document: Mapping[str, Any]

@@ -1,4 +1,7 @@
-"""Sections on sampled orbits: slap map, phase portraits, bifurcation diagram with exponents, attractors."""
+"""Sections on sampled orbits: slap map, phase portraits, bifurcation diagram with exponents, attractors.
+
+`level` counts the refinements of a section, from 0.
+"""
 
 from collections.abc import Sequence
 from typing import Any

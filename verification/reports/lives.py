@@ -1,4 +1,7 @@
-"""Families of cycles from birth to death: their table, their events with proofs, and pictures of large families."""
+"""Families of cycles from birth to death: their table, their events with proofs, and pictures of large families.
+
+`level` counts the refinements, from 0. `heard` is called with a text about each step, and may raise `TimeoutError`.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -100,7 +103,7 @@ def families(asked: Asked, parts: Parts, level: int, heard: Tick) -> Made:
 
 
 def _shares(found: Continuation) -> dict[str, Any]:
-    """The number of starts that end on each family, and on each of the `OTHER` kinds, at each sampled value."""
+    """The number of starts that end on each family, or are chaotic, neutral, stopped or other, at each value."""
     n = len(found.families)
     counts = np.zeros((len(found.seen), n + len(OTHER)), dtype=np.int32)
     for row, seen, label in zip(counts, found.seen, found.labels, strict=True):
@@ -310,7 +313,7 @@ def kind_of(event: Document) -> str:
 
 
 def named_certificates(said: Document, proved: Mapping[str, Document], blocks: Sequence[Block]) -> list[Block]:
-    """The blocks with the certificates first, in the order of the table of events, by kind, period and value."""
+    """The blocks, the events' certificates first: in the order of their table, titled by kind, period and value."""
     words: dict[str, str] = {}
     for event in said["events"]:
         file = proved.get(event["key"], {}).get("file")

@@ -30,7 +30,7 @@ class Verdict(Enum):
 
 
 class Costing(Protocol):
-    """A claim or a picture, which has an estimate of its computing time."""
+    """Anything with an estimate of its computing time: a claim or a picture."""
 
     @property
     def seconds(self) -> float:

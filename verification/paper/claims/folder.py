@@ -66,7 +66,7 @@ class Paper:
         return "; ".join(filter(None, (", ".join(self.authors), self.citation)))
 
     def certificates(self) -> dict[str, tuple[Path, ...]]:
-        """The certificates of each claim, by the claim's id, if all their files exist.
+        """The certificates, by claim id, of each claim whose certificate files all exist.
 
         >>> [path.name for path in paper().certificates()["egg.doubling.3"]]
         ['doubling-3.json']
@@ -241,7 +241,7 @@ def _with_judges(found: Paper) -> Paper:
 
 
 def recorded(found: Paper) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
-    """The recorded seconds of each claim, and those that its results save each other claim; empty if not recorded."""
+    """The recorded seconds of each claim, and the seconds that its results save others; empty without a record."""
     if not found.seconds:
         return {}, {}
     record = json.loads(Path(found.seconds).read_text(encoding="utf-8"))

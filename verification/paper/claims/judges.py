@@ -45,7 +45,7 @@ def identity(claim: Claim, derived: Expr | Matrix, mend: tuple[str, str] | None 
 
 
 def mended(claim: Claim, wrong: str, right: str) -> Claim:
-    """The claim after a replacement of `wrong` by `right`, in each printed formula that contains it once.
+    """The claim, with `wrong` replaced by `right` in each printed formula that contains `wrong` exactly once.
 
     >>> mended(Claim("t.x", "1", "", "identity", "a + 2"), "2", "3").printed
     'a + 3'

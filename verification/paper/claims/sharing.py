@@ -1,6 +1,7 @@
 """The division of claims among processes: claims that share results stay together, and the load is balanced.
 
-The bounds on groups are relative to the work of one process: with fewer processes, claims can be grouped more.
+A group may take at most a given part of the time of one process. With fewer processes that time is longer, so the
+groups may be larger.
 """
 
 from collections.abc import Mapping, Sequence

@@ -49,7 +49,7 @@ EVEN, ODD = (4, 6), (5, 7)
 
 @judges("map.mixture")
 def mixture(claim: Claim) -> Judgement:
-    """The two statements with "only" are proved; the mixture in the egg and the cuspless cardioid is sampled."""
+    """Only cycles attract in ellipses and none in the cardioid (proved); both kinds coexist in two tables (sampled)."""
     periodic = by(LIMIT, *lyapunov())
     kinds = {x: (bool(chaotic(egg(x))), bool(cycles(egg(x)))) for x in MIXED}
     cuspless = found("cuspless", "0.09")
@@ -211,7 +211,7 @@ def weak_chaos(claim: Claim) -> Judgement:
 
 @judges("map.other_K")
 def other_K(claim: Claim) -> Judgement:
-    """For K = 4, 6 the diameters never double their period; for K = 5, 7 they do, supercritically."""
+    """In the eggs with K = 4, 6 vertices no diameter doubles its period; with K = 5, 7 they do, supercritically."""
     even = [even_stability_numbers(K) for K in EVEN]
     squares = [
         zero("", P - root**2)

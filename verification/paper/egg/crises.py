@@ -38,13 +38,13 @@ BELOW = (0.64, 0.65, 0.66, 0.662)  # contractions where the attractor's distance
 
 @cache
 def located(kind: str) -> KnownCrisis:
-    """A crisis: its parameter to ten digits, by both methods of `manifolds.known`."""
+    """The crisis named `kind`: its parameter to ten digits, as a tangency of manifolds and by a cycle near it."""
     return crisis(kind, EXACT_SHAPE, 10)
 
 
 @cache
 def seen(kind: str) -> crises.Crisis:
-    """A crisis: its parameter to about 3e-4, from particles that escape (few do close to the crisis)."""
+    """The crisis named `kind`: its parameter to about 3e-4, from particles that escape (few do close to the crisis)."""
     return crises.crisis(kind, str(EXACT_SHAPE), tolerance=1e-4, budget=10**7)
 
 

@@ -112,7 +112,7 @@ def elastic_chaos(claim: Claim) -> Judgement:
 
 
 def layer(shape: str) -> tuple[float, float, bool]:
-    """The largest exponent of orbits next to the triangle through the vertices, its error, True if it is positive."""
+    """The largest exponent next to the triangle through the vertices, its error, and whether it is positive."""
     map = PinballMap("egg", lam=1, alpha=shape)
     near = phase_points(1e-4 * np.linspace(-1, 1, 16), np.pi / 6)
     x, y = map.states.point(near.component, near.theta)
@@ -172,7 +172,7 @@ def alternating(claim: Claim) -> Judgement:
 
 @judges("egg.period3_bias")
 def bias(claim: Claim) -> Judgement:
-    """To first order in alpha, the length of a polygon depends on its position only if it has three corners."""
+    """To first order in alpha, turning a cycle of the circle changes its length only for triangles."""
     delta, c0, c1, z, n = (Symbol(name, real=True) for name in ("delta", "c0", "c1", "z", "n"))
     square = (1 + alpha * c0) ** 2 + (1 + alpha * c1) ** 2 - 2 * (1 + alpha * c0) * (1 + alpha * c1) * cos(delta)
     slope = square.diff(alpha).subs(alpha, 0) - (c0 + c1) * square.subs(alpha, 0)

@@ -88,7 +88,7 @@ def ceiling(low: str, high: str) -> float:
 
 
 def before(lam: str) -> tuple[str, float]:
-    """The last contraction in `STOPS` below `lam`, and an upper bound of the extent between `FIRST` and it."""
+    """The upper end of the last range of a barrier below `lam`, and an upper bound of the extent from 0.43 to there."""
     ranges = [(low, high) for low, high in pairwise(STOPS) if Fraction(high) < Fraction(lam)]
     return ranges[-1][1], max(ceiling(low, high) for low, high in ranges)
 

@@ -85,8 +85,8 @@ def in_window(lam: str, period: int) -> Boxes | None:
 def region(lam: Range, grid: tuple[int, int, int], more: bool = False) -> SignFinding:
     """The finding of a trapping region around one diameter, disjoint from its rotated copies, for a range of `lam`.
 
-    The region contains all starts near the end at `theta = 0`; with `more` also the saddle of a tangency and the cycles
-    `ALONG`.
+    The region contains all starts near the end at `theta = 0`; with `more` also the saddle of a tangency and
+    attracting cycles in two windows.
     """
     places = [saddle_point(), *(in_window(*one) for one in ALONG)] if more else []
     known = [place for place in places if place is not None]

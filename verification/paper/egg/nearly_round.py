@@ -63,8 +63,8 @@ def invariant_curve(cone: Expr = (1 - MOST) / 4) -> SignFinding:
 def double_normals(sixth: Expr = 9 * alpha**2) -> SignFinding:
     """The finding on the egg's double normals, from its width in the direction `psi` to second order in `alpha`.
 
-    The width is even in `alpha`. The farthest boundary point in that direction is `shift` away; an error of `alpha^2`
-    in `shift` changes the width by `alpha^4`, since the width is stationary in `shift`.
+    The width is even in `alpha`. The farthest boundary point in that direction is at the angle `psi + shift`; an error
+    of `alpha^2` in `shift` changes the width by `alpha^4`, since the width is stationary in `shift`.
     """
     x, y = egg(3).components[0].point
     radius = simplify(x * cos(theta) + y * sin(theta))

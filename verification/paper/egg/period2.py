@@ -1,4 +1,8 @@
-"""Judges of claims on the egg's slap map and period-2 orbits for ranges of parameters. Paper: sections 6.1 to 6.3."""
+"""Judges of claims on the egg's slap map and period-2 orbits for ranges of parameters. Paper: sections 6.1 to 6.3.
+
+A double normal of length `L` has the *stability number* `P = (1 + L*kappa)*(1 + L*kappa')`, from the curvatures at its
+ends. The *tilt* of the egg's diameters is `W = sqrt(1 - P)`.
+"""
 
 from functools import cache
 from typing import TYPE_CHECKING

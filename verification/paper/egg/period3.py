@@ -60,7 +60,7 @@ def vertex_angle(claim: Claim) -> Judgement:
 
 
 def limit_positive() -> SignFinding:
-    """The finding that `0 < lambda_c(alpha) < 1`, since the largest tilt lies between 0 and `tan(pi/6)`."""
+    """The finding that `0 < lambda_c(alpha) < 1`, since `|rho'/rho|` has a maximum between 0 and `tan(pi/6)`."""
     squared = simplify(largest_tilt() ** 2)
     return conjunction(positive(Rational(1, 3) - squared, {alpha: ROUND}), positive(squared, {alpha: ROUND}))
 
@@ -152,7 +152,7 @@ def period3_elliptic(claim: Claim) -> Judgement:
 
 
 def polygon_facts() -> list[SignFinding]:
-    """The findings on rotating triangles: the tilt of the normal, its largest value, and that the law holds."""
+    """The findings on rotating triangles: the angle from radius to normal, its maximum, and that the law holds."""
     slope = simplify(tilt_tangent() * (1 + alpha * cos(3 * theta)) / (3 * alpha)) - sin(3 * theta)
     squared = 9 * alpha**2 * (1 - COSINE**2) / (1 + alpha * COSINE) ** 2
     best = 9 * alpha**2 * (COSINE + alpha) ** 2 / ((1 - alpha**2) * (1 + alpha * COSINE) ** 2)
@@ -216,7 +216,7 @@ def stay(claim: Claim) -> Judgement:
 
 @judges("egg.period3_rotate")
 def rotate(claim: Claim) -> Judgement:
-    """The triangles rotate: the tilt is not 0 for `lam < 1`, so `sin(3*theta) != 0`."""
+    """The triangles rotate: for `lam < 1` their normals are not radial, so `sin(3*theta) != 0`."""
     return Judgement(
         by(
             "delta = pi/6*(1-lam)/(1+lam) > 0 needs sin(3*theta) != 0",
@@ -264,7 +264,7 @@ def converse(claim: Claim) -> Judgement:
 
 @judges("egg.saddle_node")
 def fold(claim: Claim) -> Judgement:
-    """The branches from the flat points and the vertices meet where the tilt is largest; a multiplier is 1 there."""
+    """The branches from flat points and vertices meet where `|rho'/rho|` is largest; a multiplier is 1 there."""
     return Judgement(
         by(
             "for each lam in (lambda_c, 1) the equation for the tilt has one root on the side of the "

@@ -207,7 +207,7 @@ def chaos_at(shape: str, lam: str) -> tuple[float, float, float]:
 
 @cache
 def cut() -> tuple[np.ndarray, np.ndarray]:
-    """The contractions of a cut at `alpha = 0.08`, and at each the number of chaotic particles out of 40."""
+    """A grid of contractions, and for each the number of chaotic particles out of 40 at `alpha = 0.08`."""
     pairs = parameter_space(np.array([0.08]), CUT, starts=40, bounces=2000, transient=4000, seed=SEED)
     return CUT, in_memory(pairs, 1)["chaotic"][0]
 

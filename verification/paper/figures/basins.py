@@ -1,4 +1,7 @@
-"""Figures of basins of attraction in phase space. Paper: sections 5.2 and 6.7, appendix A.3."""
+"""Figures of basins of attraction in phase space. Paper: sections 5.2 and 6.7, appendix A.3.
+
+`fine` is the resolution: 1 for a draft, more for more points.
+"""
 
 from typing import TYPE_CHECKING, Any
 

@@ -1,7 +1,7 @@
 """Figures on the cardioid and the cuspless cardioid. Paper: sections 4 and 5, appendix A.2.
 
 They show Lyapunov exponents against the contraction, and attractors: cycles as closed polygons or marks, chaotic
-attractors as one long orbit.
+attractors as one long orbit. `fine` is the resolution: 1 for a draft, more for more points.
 """
 
 from typing import TYPE_CHECKING, Any

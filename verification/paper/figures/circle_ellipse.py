@@ -1,4 +1,7 @@
-"""Figures on the circle and the ellipse (section 3), and the evolutes of all tables, which the paper does not show."""
+"""Figures on the circle and the ellipse (section 3), and the evolutes of all tables, which the paper does not show.
+
+`fine` is the resolution: 1 for a draft, more for more points.
+"""
 
 from typing import TYPE_CHECKING, Any
 

@@ -1,7 +1,7 @@
 """Figures on the egg with three vertices. Paper: section 6.
 
 They show elastic collisions, the slap map, cycles of period 3, the parameter plane, and the attractors, also as
-functions of the contraction.
+functions of the contraction. `fine` is the resolution: 1 for a draft, more for more points.
 """
 
 from typing import TYPE_CHECKING

@@ -90,7 +90,7 @@ def proved_at(
 def strange(alpha: str, kind: str = "boundary") -> tuple[SignFinding, arb]:
     """The finding that the egg has strange attractors near a tangency, and the contraction of the tangency.
 
-    The shape is `SHAPE`, except for the tangencies `boundary`, known at further shapes, and `bands`, at 1/10.
+    Tangencies are known at the shape `SHAPE`; but `bands` at 1/10 instead, and `boundary` at more shapes too.
     """
     alone = {"boundary": lambda: boundary(Rational(alpha)), "bands": bands, "earliest": earliest}
     found = alone[kind]() if kind in alone else touching(kind)

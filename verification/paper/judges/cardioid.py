@@ -124,7 +124,7 @@ def exponent_sum(claim: Claim) -> Judgement:
 
 
 def slap_facts() -> tuple[SignFinding, SignFinding]:
-    """The findings that the parametrisation of the slap map is correct and covers each landing point once."""
+    """The findings that the algebraic parametrisation of the slap map is correct and meets each landing point once."""
     return parametrised(), forward_once()
 
 
@@ -157,7 +157,7 @@ def slow_caption(claim: Claim) -> Judgement:
 
 
 def expansion() -> SignFinding:
-    """The finding that `|(T0**2)'| > 3/2` everywhere for the slap map `T0`; the minimum is `expansion_infimum`."""
+    """The finding that `|(T0**2)'| > 3/2` everywhere for the slap map `T0`, and that the minimum is attained."""
     return by(
         "(T0^2)' > 3/2 at every point whose two flights are defined, and its infimum is attained",
         *slap_facts(),
@@ -191,7 +191,7 @@ def expanding(claim: Claim) -> Judgement:
 
 
 def q_landing(cycle: Cycle) -> Expr:
-    """The coordinate `q` of the second bounce of a cycle, used in the parametrisation of the slap map."""
+    """The coordinate `q = sin(t)/sqrt(1 + 7*cos(t)**2)` of the second bounce `theta = 2*t` of a cycle."""
     half = cycle.bounces[1][1] / 2
     return sin(half) / sqrt(1 + 7 * cos(half) ** 2)
 

@@ -1,4 +1,8 @@
-"""Judges of claims on the cuspless cardioid, and on the domain of the map. Paper: sections 2 and 5."""
+"""Judges of claims on the cuspless cardioid, and on the domain of the map. Paper: sections 2 and 5.
+
+A double normal of length `L` has the *stability number* `P = (1 + L*kappa)*(1 + L*kappa')`, from the curvatures at its
+ends.
+"""
 
 from sympy import Expr, Interval, Matrix, Rational, S, Symbol, cos, diff, pi, simplify
 

@@ -1,4 +1,8 @@
-"""Judges of claims on the circle and the ellipse: orbits, limits and slap maps. Paper: sections 3.1, 3.2 and 3.4."""
+"""Judges of claims on the circle and the ellipse: orbits, limits and slap maps. Paper: sections 3.1, 3.2 and 3.4.
+
+A double normal of length `L` has the *stability number* `P = (1 + L*kappa)*(1 + L*kappa')`, from the curvatures at its
+ends.
+"""
 
 from sympy import (
     Expr,
@@ -199,7 +203,10 @@ def major_axis_invariant(claim: Claim) -> Judgement:
 
 
 def lyapunov() -> list[SignFinding]:
-    """The findings that `J = abs(gradient)*cos(phi)` never decreases, and is larger on the minor axis."""
+    """The findings that `J = g*cos(phi)` never decreases, and is larger on the minor axis than on the major one.
+
+    `g` is the modulus of the gradient of `(x/a)**2 + y**2`, up to a factor.
+    """
     ends = [gradient(*ellipse.components[0].at(angle)).norm() for angle in (S.Zero, pi / 2)]
     return [
         zero("J survives the flight (Joachimsthal)", joachimsthal_defect()),

@@ -239,7 +239,7 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
 
 @cache
 def proved_doublings() -> list:  # type: ignore[type-arg]
-    """The period doublings `lambda_3` to `lambda_6` of the egg's cascade, in float64."""
+    """The period doublings `lambda_3` to `lambda_6` of the egg's cascade, computed in float64 and not proved here."""
     return list(islice(cascade(SHAPE), 4))
 
 

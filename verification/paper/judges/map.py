@@ -39,7 +39,7 @@ def dissipative(claim: Claim) -> Judgement:
 
 @judges("map.focusing_beam")
 def focusing_beam(claim: Claim) -> Judgement:
-    """Parallel incoming rays leave in directions that turn at the rate `-(1+lam)*K1` per arc length."""
+    """Parallel rays leave in directions that turn by `-(1+lam)*K1` per arc length; `K1` is the curvature at landing."""
     landing_rate = -K1  # d eta1/ds1 = psi1' for a fixed direction
     outgoing_rate = -K1 - exit_angle().coeff(eta) * landing_rate  # d(psi1 + pi/2 - phi1)/ds1
     focusing = positive(outgoing_rate.subs(K1, -S.One), {lam: Interval(0, 1)})

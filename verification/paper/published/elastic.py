@@ -1,4 +1,8 @@
-"""Judges of claims on elastic tables: mean free path, the stadium, Sinai's square with a disc."""
+"""Judges of claims on elastic tables: mean free path, the stadium, Sinai's square with a disc.
+
+The *constant* of the square is the limit, for small radii `R` of its disc, of the exponent per return to the disc plus
+`2*log(R)`.
+"""
 
 from functools import cache
 
@@ -124,7 +128,7 @@ def from_disc_to_disc(radius: str) -> tuple[float, float]:
 
 
 def measured() -> tuple[str, list[tuple[float, float, float]]]:
-    """The sampled constant for each radius `R`: as text, and as numbers (value, error, `R*log(R)^2`)."""
+    """The sampled value of the constant for each radius `R`: as text, and as numbers (value, error, `R*log(R)^2`)."""
     found = {radius: from_disc_to_disc(radius) for radius in ("1/25", "1/50", "1/100")}
     said = ", ".join(f"{value:.3f} +- {error:.3f} at R = {radius}" for radius, (value, error) in found.items())
     sizes = [float(Rational(radius)) for radius in found]

@@ -243,7 +243,7 @@ def implicit(off, near, degree):
 def evaluate(node, names, p):
     """A formula and its derivative by theta; `Unproved` where a value, or the number of steps, is too large."""
     left[0] -= 1 + (p >> 9) ** 2
-    need(left[0] > 0, "a file takes more steps than this reader gives to one")
+    need(left[0] > 0, "the file takes more steps than this reader allows")
     found = meaning(node, names, p)
     need(not isinstance(x := value(found[0]), I) or max(-x.lo, x.hi) >> p + VALUES == 0, "a value is too large")
     return found
@@ -348,7 +348,7 @@ class Table:
                 state = self.flight(way[k - 1][0], way[k], state, names) if k < len(way) else view(*state, letters[2])
                 states.append(state)
                 for x, m in zip(state, middle[k] if middle else ()):
-                    need(x.c[0].lo <= m.c[0].lo and m.c[0].hi <= x.c[0].hi, "exists: no middle orbit")
+                    need(x.c[0].lo <= m.c[0].lo and m.c[0].hi <= x.c[0].hi, "exists: the middle orbit is not inside")
                     x.tighten(m, off, p)
             middle = states
         return states
@@ -480,7 +480,7 @@ def exact(pair):
 def within(name, x, table=None):
     spans = {("ellipse", "a"): (1, 10**6), ("egg", "alpha"): (0, Fraction(1, 2)), (table, "lam"): (0, 1)}
     low, high = spans.get((table, name), (-(10**6), 10**6))
-    need(x.lo >= I.of(low, x.p).hi and x.hi <= I.of(high, x.p).lo, f"{name} is out of range", Wrong)
+    need(x.lo >= I.of(low, x.p).hi and x.hi <= I.of(high, x.p).lo, f"{name} is out of range {low} to {high}", Wrong)
     return x
 
 
@@ -497,16 +497,16 @@ def read_scene(scene, free, p):
     given, own = {*shape, free} - {"", "lam"}, {*re.findall(r"\w+", scene.get("law", ""))} - {"theta", "eta", "pi", "E"}
     fit = fit and letter in ("", *given) and (title is None or not given - {letter} - own)
     fit = fit and free in ("", "lam", letter, *spans, *own) and {*spans} == {free} & {*shape} and not (title and spans)
-    need(fit, "scene: the table has other letters, or one with a range that is not free, or no such name", Wrong)
+    need(fit, "scene: the table has other letters, or a range of one that is not free, or no such name", Wrong)
     number = lambda name, text: within(name, I.of(evaluate(parse(text), {}, p)[0], p), title)
     letters = {name: number(name, at[0]).hull(number(name, at[2] or at[0])) for name, at in ends.items()}
     forward = all((number(name, ends[name][2]) - number(name, ends[name][0])).lo > 0 for name in spans)
-    need(forward, "scene: the range of a letter does not run from less to more", Wrong)
+    need(forward, "scene: a letter's range must run from the smaller end to the larger", Wrong)
     parts = [[text.replace("K", str(K)) for text in part] for part in parts] if title else parts
     table = Table(parts, letters, scene.get("law"), p)
     if title is None or table.law:
         beside("boundaries").own(table, way[0], scene, free if spans else None)
-    need((free == "lam") == (lam is None), "scene: lam is told where it is not the free letter, and only there", Wrong)
+    need((free == "lam") == (lam is None), "scene: lam must have a number unless it is the free letter", Wrong)
     said = [("phi", scene.get("law")), *shape.items(), ("lam", lam)]
     title = (title or beside("boundaries").called_by(way[0], scene[way[0]])) + f" of {K} points" * (K != 3)
     return table, lam and number("lam", lam), title + "".join(f", {k} = {v}" for k, v in said if v and k not in spans)
@@ -548,7 +548,7 @@ def checked(given):
     fit = all(k < len(table.parts) for k in parts)
     fit = fit and (sign == 1 or ("table" in scene and not table.law) or beside("boundaries").symmetric(table, parts))
     fit = fit and (kind != "corner" or (scene == {"table": "cuspless"} and parts == [0, 0] and sign == -1))
-    need(fit and len(centre) == wanted, "scene, components, centre or mirror do not fit", Wrong)
+    need(fit and len(centre) == wanted, "scene, components, centre or mirror do not fit together", Wrong)
     n = f"its {len(parts)} bounces" if sign == 1 else f"{len(parts)} bounces, and then their mirror images,"
     said = SAYS[kind].format(scene=title, n=n, free=free, what=WHAT.get(kind))
     need(words == said, f"the statement must be: {said!a}", Wrong)

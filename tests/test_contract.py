@@ -180,7 +180,7 @@ def test_a_report_of_ones_own_table_is_one_page(tmp_path):
         (lambda: certify(PEA), "certify: Table given; accepted: a cycle"),
         (lambda: work_precision(PEA, "leap", **AT), "question = 'leap'; accepted: step, jacobian, orbit, cycle, fold"),
         (lambda: laws.jacobian(["egg", "eg"]), "no table is called 'eg'; accepted: circle"),
-        (lambda: Scene(tables.polar), "polar: no table comes back"),
+        (lambda: Scene(tables.polar), "polar: a call of it makes no table"),
         (lambda: HERE.save("/no/such/folder/pea.toml"), "cannot be written"),
         (lambda: PinballMap("circle", lam=[0.1, 0.2]).scene, "lam has 2 values; a scene has one contraction"),
     ],

@@ -432,8 +432,8 @@ def cells(boundary: Boundary, index: int) -> tuple[Array, Array]:
         if count > limit or np.any((middle <= low) | (high <= middle)):
             place = f"near theta = {float(low[low.size // 2]):.9g} of {part.name}"
             raise ValueError(
-                f"{boundary.ir.table}: how its boundary turns {place} is not proved with {limit} intervals, so that "
-                "a first hit could be missed; accepted: a boundary with wider features and a speed that is not 0"
+                f"{boundary.ir.table}: which way its boundary turns {place} is not proved with {limit} intervals, so "
+                "that a first hit could be missed; accepted: a boundary with wider features and a speed that is not 0"
             )
         with np.errstate(all="ignore"):
             ops = CentredIntervals(low, high)
@@ -463,7 +463,7 @@ def refuse_long(boundary: Boundary) -> None:
     for part, (low, high) in zip(boundary.ir.parts, boundary.ends, strict=True):
         if max(abs(low), abs(high)) > LONG:
             runs = f"the parameter of {part.name} runs to {max(abs(low), abs(high)):.6g}"
-            raise ValueError(f"{boundary.ir.table}: {runs}, where its rounding shows; start it within {LONG:.6g}")
+            raise ValueError(f"{boundary.ir.table}: {runs}, where rounding moves the point; accepted: up to {LONG:.6g}")
 
 
 def _passed(boundary: Boundary, index: int, low: Array, high: Array, turn: Array) -> Array:

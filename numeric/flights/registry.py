@@ -31,4 +31,4 @@ def family_of(boundary: Boundary) -> Family:
         family: type[Family] = getattr(import_module(f"numeric.flights.{module}"), name)
         if family.matches(boundary):
             return family(boundary)
-    raise ValueError(f"{boundary.ir.table}: no flight serves this table")
+    raise ValueError(f"{boundary.ir.table}: no method to compute flights applies to this table")

@@ -157,7 +157,7 @@ def converted(builder: Builder, expression: Expr, nodes: dict[Symbol, Node]) -> 
     if isinstance(expression, WORDS):
         return builder.node(expression.func.__name__, converted(builder, expression.args[0], nodes).number())
     raise ValueError(
-        f"{expression} is beyond the kernels' words: + - * /, powers by rationals, pi, rationals, sin, cos, tan, "
+        f"{expression} has no code in kernels; accepted: + - * /, powers by rationals, pi, rationals, sin, cos, tan, "
         f"{', '.join(function.__name__ for function in WORDS)}"
     )
 

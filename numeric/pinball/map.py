@@ -125,7 +125,7 @@ class PinballMap:
         numbers: dict[str, Any] = {}
         for entry, value in zip(self.ir.shape, self.exact_shape, strict=True):
             if isinstance(value, float):
-                raise ValueError(f"{self.ir.table}: {entry.name} = {value} is rounded; make the map of a Scene")
+                raise ValueError(f"{self.ir.table}: {entry.name} = {value} is not exact; make the map of a Scene")
             numbers[entry.name] = value
         if isinstance(table, Scene):
             return table.at(lam=lam, law=None if self.reflection == table.law else self.reflection, **numbers)
@@ -441,7 +441,7 @@ class PinballMap:
         for index, low, high in self.family.standing:
             if np.any(still := (where == index) & (low <= theta) & (theta <= high)):
                 raise ValueError(
-                    f"theta = {theta[still].flat[0]} has no tangent: from {low:.9g} to {high:.9g} the parameter of "
+                    f"theta = {theta[still].flat[0]} has no tangent: from {low:.9g} to {high:.9g} the point of "
                     f"{self.ir.parts[index].name} moves by less than rounding; start elsewhere"
                 )
         if self.lam.size > 1 and self.lam.shape != theta.shape:

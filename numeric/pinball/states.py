@@ -260,7 +260,7 @@ class Orbit(Labelled, OrbitFields):
 
     def _flights(self) -> tuple[Array, Array]:
         if self.map is None:
-            raise ValueError("flight: one step has no start to measure from; take it from PinballMap.orbit")
+            raise ValueError("flight: the result of one step does not contain its start; take it from PinballMap.orbit")
         return flights(self.x, self.y, self.code)
 
     def plot(self, axes: Any = None) -> Any:
@@ -269,7 +269,9 @@ class Orbit(Labelled, OrbitFields):
         `orbit.plot().savefig("orbit.png")` writes it.
         """
         if self.map is None:
-            raise ValueError("orbit.plot: only an orbit that PinballMap.orbit gave has its table; it draws itself")
+            raise ValueError(
+                "orbit.plot: this orbit does not contain its table; accepted: orbits from PinballMap.orbit"
+            )
         return plotted("results.flights", self, axes=axes)
 
     def __repr__(self) -> str:

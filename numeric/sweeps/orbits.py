@@ -177,7 +177,7 @@ def _label(given: NDArray[np.float64]) -> float | str:
 
 
 def _in_order(part: SweepPart) -> dict[str, Any]:
-    raise NotImplementedError(f"the piece at {part.at} follows from the one before; record makes them in order")
+    raise NotImplementedError(f"the piece at {part.at} needs the one before it; record computes them in order")
 
 
 @undisturbed()

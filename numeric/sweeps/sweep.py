@@ -98,7 +98,7 @@ class Sweep:
         cut = [axis.name for axis in self.axes if axis.length < axis.size]
         for field in self.fields:
             if not set(cut) <= set(field.dims):
-                raise ValueError(f"{field.name} lies on {field.dims}; it must lie on every axis that is cut: {cut}")
+                raise ValueError(f"{field.name} has the axes {field.dims}; accepted: all axes cut into parts, {cut}")
 
     @cached_property
     def axis(self) -> dict[str, Axis]:

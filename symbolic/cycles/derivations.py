@@ -223,7 +223,7 @@ def double_normals(table: Tabled) -> tuple[Cycle, ...]:
             found.append(cycle)
     if not found:
         raise ValueError(
-            f"{whole.name}: no axis of symmetry with a chord along it is proved; accepted: a table with one"
+            f"{whole.name}: no axis of symmetry is proved to have a chord along it; accepted: tables with such an axis"
         )
     middle = {
         p.symbol: (p.range.start + (p.range.end if p.range.end.is_finite else p.range.start + 2)) / 2
@@ -304,7 +304,7 @@ def _kernel(letters: tuple[Symbol, ...], names: tuple[str, ...], entries: tuple[
     for entry in entries:
         if entry.has(Integral, elliptic_e):
             raise ValueError(
-                "generate: there is no code of integrals and elliptic functions; for their numbers take "
+                "generate: an expression with an integral or an elliptic function has no code; for its value use "
                 "expression.subs(letter, number).evalf(digits), or numeric.PinballMap(table, ...).arclength in float64"
             )
         checked("generate", entry, set(letters))
@@ -343,7 +343,9 @@ def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int =
     names = ["value"] if len(entries) == 1 else [f"value{i}" for i in range(len(entries))]
     for one, other in pairwise(letters):
         if str(one) == str(other):
-            raise ValueError(f"generate: two symbols are called {one}; accepted: one, such as symbolic.{one}")
+            raise ValueError(
+                f"generate: two different symbols are called {one}; use one throughout, such as symbolic.{one}"
+            )
     called = Signature([Parameter(str(letter), Parameter.POSITIONAL_OR_KEYWORD) for letter in letters])
     made = _kernel(tuple(letters), tuple(names), tuple(entries))
     if arithmetic == "text":

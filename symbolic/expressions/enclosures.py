@@ -131,7 +131,7 @@ def root_integral(square: Expr, x: Symbol, low: Expr, high: Expr) -> Rational:
     for k in range(PARTS):
         upper = _value(steps, (k * ONE // PARTS, -(-(k + 1) * ONE // PARTS)))[1]
         if upper >= EVERYTHING[1]:
-            raise UnboundedError(f"{square} has no bound")
+            raise UnboundedError(f"{square} is not proved to be bounded")
         total += isqrt(max(upper, 0) << BITS) + 1
     length = _value(_steps(high - low))[1]
     return Rational(total * length, PARTS * ONE * ONE)
@@ -198,7 +198,7 @@ def _reading(e: Expr) -> tuple[tuple[Expr, ...], Callable[..., Bounds]]:
         return (e.base,), lambda value: _power(value, p, q)
     if e.func in FUNCTIONS:
         return e.args, FUNCTIONS[e.func]
-    raise UnboundedError(f"{e.func.__name__} is not known")
+    raise UnboundedError(f"no bounds are known for the function {e.func.__name__}")
 
 
 def _value(steps: list[Step], *here: Bounds) -> Bounds:
@@ -252,7 +252,7 @@ def _power(a: Bounds, p: int, q: int) -> Bounds:
     """Bounds of `a**(p/q)`: by a power of a square root for `q = 2`, else by the exponential of a logarithm."""
     if q == 2:
         if a[0] < 0:
-            raise UnboundedError("a root of what may be negative")
+            raise UnboundedError("the number under a root may be negative")
         a = isqrt(a[0] << BITS), isqrt(a[1] << BITS) + 1
     elif q != 1:
         low, high = _log(a)
@@ -308,7 +308,7 @@ def _series(x: int, first: int) -> int:
 def _exp(a: Bounds) -> Bounds:
     """Bounds of `exp(x)`, from the ends of `a`: `2**k` times Taylor's sum for the remainder, with positive terms."""
     if a[1] > LARGEST * ONE:
-        raise UnboundedError("the exponential of a large number")
+        raise UnboundedError("the argument of an exponential may be too large")
 
     def at(x: int, upwards: bool) -> int:
         if x < -LARGEST * ONE:
@@ -328,7 +328,7 @@ def _exp(a: Bounds) -> Bounds:
 
 def _log(a: Bounds) -> Bounds:
     if a[0] <= 0:
-        raise UnboundedError("a logarithm of what may be 0")
+        raise UnboundedError("the argument of a logarithm may be 0 or negative")
 
     def at(x: int, upwards: bool) -> int:
         k = x.bit_length() - BITS

@@ -64,7 +64,7 @@ def checked(label: str, expression: Expr, known: set[Symbol]) -> None:
         if not _in_vocabulary(node):
             kind = node.func.__name__ if not isinstance(node, AppliedUndef) else str(node.func)
             if kind == "Piecewise":
-                raise ValueError(f"{label}: a Piecewise has no code; take a formula in it, the first by .args[0][0]")
+                raise ValueError(f"{label}: a Piecewise has no code; take one of its formulas, such as .args[0][0]")
             raise ValueError(
                 f"{label}: {kind} in {node} is outside the vocabulary; it has + - * /, rationals, pi, "
                 f"powers by rationals, tan, {', '.join(sorted(FUNCTIONS.values()))}"

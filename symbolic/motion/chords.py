@@ -208,7 +208,7 @@ def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
     """
     radius = table.components[0].radius
     if len(table.components) > 1 or radius is None:
-        raise ValueError(f"polar_polygon_kernel: {table.name} is not one polar curve")
+        raise ValueError(f"polar_polygon_kernel: {table.name} is not a single polar curve; accepted: tables rho(theta)")
     at = [Symbol(f"theta{i}", real=True) for i in range(corners)]
     gaps = [Symbol(f"gap{i}", real=True) for i in range(corners)]
     rho, tilt = ([Symbol(f"{name}{i}", real=True) for i in range(corners)] for name in ("rho", "tilt"))

@@ -285,7 +285,7 @@ def flight_residual(component: Component) -> Expr:
     """
     h = harmonics(component)
     if h is None:
-        raise ValueError(f"{component.name}: the boundary is no finite Fourier sum, it has no chord polynomial")
+        raise ValueError(f"{component.name}: the boundary is no finite Fourier sum, so it has no chord polynomial")
     start, direction, delta = symbols("theta0 psi delta", real=True)
     m0 = direction - pi / 2
     E, B = (cos(m0), sin(m0)), (cos(m0 - start), sin(m0 - start))

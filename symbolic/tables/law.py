@@ -162,7 +162,9 @@ class Law:
         ('PROVED', 'REFUTED')
         """
         if self.measured and s is None:
-            raise ValueError(f"law = {self}: s is arc length, which has a range on a table only")
+            raise ValueError(
+                f"law = {self}: the range of the arc length s is not given; accepted: s=(LOW, HIGH) on a table"
+            )
         return _proof(self._as_written, self._ranges(lam, theta, s, own))
 
     def _ranges(self, lam: Range, theta: Range | None, s: Range | None, own: Mapping[str, Range]) -> Ranges:

@@ -64,7 +64,7 @@ def from_points(
         if point == given[i - 1]:
             raise ValueError(f"{name}: points {i or len(given)} and {i + 1} are the same; leave one of them out")
     if degree is not None and smoothness is not None:
-        raise ValueError(f"{name}: smoothness = {smoothness} and degree = {degree}; a fit has one of them")
+        raise ValueError(f"{name}: smoothness = {smoothness} and degree = {degree} are given; give only one")
     if by not in ("chord", "index"):
         raise ValueError(f"{name}: by = {by!r} is no parameter of a fit; accepted: 'chord', 'index'")
     margin = _exact(f"{name}: uncertainty", uncertainty)

@@ -161,7 +161,8 @@ def from_path(curves: Iterable[Sequence[Any]], name: str = "outline") -> Table:
         for j, side in enumerate(sides):
             if _ends(sides[j - 1])[1] != _ends(side)[0]:
                 x, y = map(float, _ends(side)[0])
-                raise ValueError(f"{name}: curve {i} is not closed: no piece before ({x:.12g}, {y:.12g}) ends there")
+                wrong = f"a piece starts at ({x:.12g}, {y:.12g}), where the piece before it does not end"
+                raise ValueError(f"{name}: curve {i} is not closed: {wrong}")
     found.sort(key=lambda sides: -abs(area(sides)))
     for i, sides in enumerate(found):
         swept = area(sides)

@@ -284,7 +284,7 @@ def meets(curves: Sequence[Sequence[Piece]]) -> tuple[float, float] | None:
             looked += 1
             if looked > MOST:
                 raise ValueError(
-                    f"more than {MOST} pairs of pieces lie side by side: not proved that they do not cross"
+                    f"more than {MOST} pairs of pieces are close: not proved that they do not cross; accepted: fewer"
                 )
             if _touch(part, piece, 0):
                 return _shown(part)

@@ -269,11 +269,11 @@ class Scene:
         if len(text) > LONGEST or DOTTED.search(QUOTED.sub("q", text)):
             if len(text) > LONGEST:
                 raise ValueError(f"scene: the text is too long; accepted: at most {LONGEST} characters")
-            raise ValueError("scene: the text holds a key of more than 16 words; accepted: keys such as shape.a")
+            raise ValueError("scene: the text has a key of more than 16 parts; accepted: keys such as shape.a")
         try:
             said = tomllib.loads(text)
         except RecursionError:
-            raise ValueError("scene: lists or tables stand too deep in one another; accepted: a few levels") from None
+            raise ValueError("scene: lists or tables are nested too deeply; accepted: a few levels") from None
         except tomllib.TOMLDecodeError as error:
             raise ValueError(f"scene: {error}") from None
         return cls.of(said["scene"] if set(said) == {"scene"} and isinstance(said["scene"], dict) else said)
@@ -373,7 +373,7 @@ def given_table(table: Any, K: int, shape: Mapping[str, Any]) -> "tuple[Any, dic
         try:
             table = table(**own)
         except TypeError as why:
-            raise ValueError(f"{name}: no table comes back ({why}); give the table itself") from None
+            raise ValueError(f"{name}: a call of it makes no table ({why}); give the table itself") from None
     if not isinstance(table, str) and not hasattr(table, "components"):
         raise ValueError(f"{table!r} is no table; accepted: a table, a scene, a map, or the name of a table")
     return table, numbers

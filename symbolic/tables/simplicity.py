@@ -138,7 +138,7 @@ class _Boundary:
         for i, hole in enumerate(rings[1:], 1):
             for j, ring in enumerate(rings):
                 if i != j and (not disjoint(hole[0].start, boxes[j]) and _surrounds(ring, hole)) != (j == 0):
-                    raise self._error(f"the hole through {hole[0].place} does not lie in it, outside of other holes")
+                    raise self._error(f"the hole through {hole[0].place} is not inside the table, outside other holes")
 
     def _error(self, why: str) -> NotProvedError:
         return NotProvedError(f"{self.name} is not proved to be a table: {why}")
@@ -148,7 +148,7 @@ class _Boundary:
         places = " and ".join(dict.fromkeys(arc.place for arc in near or arcs))
         if max(arc.depth for arc in arcs) >= self._deepest:
             lost = "the boundary is thinner than 1e-20 of its size, stops, turns back or has no tangent"
-            raise self._error(f"{'the boundary meets itself, or may,' if near else lost} near {places}")
+            raise self._error(f"{'the boundary meets itself, or may do so,' if near else lost} near {places}")
         if self._budget[0] < 0:
             raise self._error(f"the proof takes too many steps near {places}")
         return [half for arc in arcs for half in arc.halves()]
@@ -175,7 +175,7 @@ class _Boundary:
         for a, b in zip(ring, [*ring[1:], ring[0]], strict=True):
             between = turn(a, b)
             if between is None:
-                raise self._error(f"the boundary meets itself, or may, near {a.place} and {b.place}")
+                raise self._error(f"the boundary meets itself, or may do so, near {a.place} and {b.place}")
             directions += [a.direction, *between]
         count = 0
         for v, w in zip(directions, [*directions[1:], directions[0]], strict=True):

@@ -160,7 +160,7 @@ class Table:
                 raise no_parameter(self.name, name, sorted(known))
             value = exact_number(f"{self.name}: {name}", given)
             if value.has(theta):
-                raise ValueError(f"{self.name}: {name} = {value} changes along the boundary; a shape is one number")
+                raise ValueError(f"{self.name}: {name} = {value} depends on theta; a shape parameter is one number")
             if value.is_number and known[name].range.contains(value) == S.false:
                 raise ValueError(
                     f"{self.name}: {name} = {value} {known[name].otherwise}; "

@@ -36,8 +36,8 @@ SQUARE = [
         (WAVES | {"shape": {"b": "0..1"}, "lam": "1"}, "", "other letters"),  # a range, and not free
         (WAVES | {"shape": {"b": "0..1"}}, "lam", "other letters"),
         (WAVES | {"shape": {"b": "0..1", "c": "0..1"}, "lam": "1"}, "b", "other letters"),
-        ({"table": "circle"}, "", "lam is told where it is not the free letter"),
-        ({"table": "circle", "lam": "1"}, "lam", "lam is told where it is not the free letter"),
+        ({"table": "circle"}, "", "lam must have a number unless it is the free letter"),
+        ({"table": "circle", "lam": "1"}, "lam", "lam must have a number unless it is the free letter"),
         ({"table": "circle", "lam": "-1/9"}, "", "lam is out of range"),
         ({"table": "circle", "lam": "10/9"}, "", "lam is out of range"),
         ({"table": "ellipse", "shape": {"a": "9/10"}, "lam": "1"}, "", "a is out of range"),

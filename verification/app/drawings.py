@@ -134,7 +134,7 @@ def _page_scale(path: str, root: ElementTree.Element, box: list[float]) -> Fract
     ]
     kept = root.get("preserveAspectRatio", "")
     if "none" in kept and max(scales) - min(scales) > max(scales) / 1000:
-        raise ValueError(f"--data {path!r} stretches its drawing; accepted: one scale for width and height")
+        raise ValueError(f"--data {path!r} scales width and height differently; accepted: one scale for both")
     return max(scales) if "slice" in kept else min(scales)
 
 
@@ -228,7 +228,8 @@ def straightened(points: list[Point]) -> list[Point]:
         if end == handle:
             x, y = map(float, end)
             raise ValueError(
-                f"a curve has no direction at ({x:.12g}, {y:.12g}), where its handle lies; accepted: handles apart"
+                f"a Bezier curve has no direction at its end ({x:.12g}, {y:.12g}), which is also a control point; "
+                "accepted: control points away from the ends"
             )
     return points
 

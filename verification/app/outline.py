@@ -58,7 +58,7 @@ def read(data: Data) -> Outline:
             raise ValueError(f"{option} = {value} says how points are fitted; give a file of them with --data FILE.csv")
     for option, given in (("--units", data.units), ("--layer", data.layers), ("--curve", data.curves)):
         if given and not drawing:
-            raise ValueError(f"{option} chooses in drawings, .svg or .dxf, and {data.path!r} is none; leave it out")
+            raise ValueError(f"{option} is for drawings, .svg or .dxf, and {data.path!r} is none; leave it out")
     try:
         return _of_drawing(data, ending, text) if drawing else _of_text(data, text)
     except OverflowError:
@@ -152,7 +152,7 @@ def _scale(wanted: str, unit: str | None) -> Fraction:
     from verification.app.drawings import MM
 
     if unit is None:
-        raise ValueError(f"--units {wanted}: the file says no unit; leave --units out")
+        raise ValueError(f"--units {wanted}: the file names no unit; leave --units out")
     if wanted not in MM:
         raise ValueError(f"--units {wanted!r} is no unit; accepted: {', '.join(MM)}")
     return MM[unit] / MM[wanted]
@@ -192,7 +192,7 @@ def _bounded(data: Data, curves: "list[Run]", unit: str | None, notes: list[str]
     try:
         table = tables.from_path(chosen)
     except ValueError as error:
-        more = f"; read were {listed}; --curve N chooses" if len(curves) > 1 else ""
+        more = f"; the file has {listed}; --curve N chooses one" if len(curves) > 1 else ""
         raise ValueError(f"{error}{more}") from None
     return Outline(table, [listed, *(["; ".join(notes)] if notes else [])])
 

@@ -191,7 +191,7 @@ def _from_file(
     """The scene in a file; a law, contraction or shape parameter on the command line replaces the file's."""
     for key, text in {"K": K, **shape}.items():
         if text is not None:
-            raise ValueError(f"--{key} = {text} says what the file of --scene says; leave it out, or use --shape")
+            raise ValueError(f"--{key} = {text} is already in the file of --scene; leave it out, or use --shape")
     try:
         found = Scene.load(file)
     except (OSError, UnicodeDecodeError) as error:
@@ -409,7 +409,7 @@ def span(label: str, text: str, low: Fraction | None = Fraction(0), high: Fracti
     if first > last:
         raise ValueError(f"{label} {text!r} is no range; accepted: LOW:HIGH:N with LOW <= HIGH, or one number")
     if (low is not None and first < low) or (high is not None and last > high):
-        raise ValueError(f"{label} {text!r} does not lie in order in [{low}, {high}]; accepted: numbers that do")
+        raise ValueError(f"{label} {text!r} is not within [{low}, {high}]; accepted: numbers in this range")
     steps = int(parts[2]) - 1
     return [float(first + (last - first) * Fraction(i, max(steps, 1))) for i in range(steps + 1)]
 

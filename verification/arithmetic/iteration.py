@@ -103,7 +103,7 @@ def bracketed(f: Callable[[float], float], start: float, end: float, small: floa
     if 0 in (f_old, f_here):
         return old if f_old == 0 else here
     if (f_old < 0) == (f_here < 0):
-        raise ValueError(f"no change of sign between {start:.9g} and {end:.9g}")
+        raise ValueError(f"the function does not change sign between {start:.9g} and {end:.9g}")
     other, f_other, before, step = old, f_old, here - old, here - old
     for _ in range(100):
         if f_old and f_here and (f_old < 0) != (f_here < 0):

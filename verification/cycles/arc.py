@@ -123,7 +123,7 @@ def tangent_at(system: CurveSystem, z: Array, along: Array) -> Array:
     found = solved(above(matrix, along * system.weights), np.append(np.zeros(len(z) - 1), 1.0))
     length = float(np.sqrt(found @ (system.weights * found)))
     if not np.isfinite(length) or length == 0:
-        raise LostError(f"{system.label}: the curve has no tangent there")
+        raise LostError(f"{system.label}: the curve has no tangent at this point")
     return found / length
 
 
@@ -162,9 +162,9 @@ def follow(
             z, count = arc(system, here, step)
             tangent = tangent_at(system, z, here.tangent)
             if tangent @ (system.weights * here.tangent) < TURNED:
-                raise LostError(f"{system.label}: the curve turns faster than the step")
+                raise LostError(f"{system.label}: the curve turns too far within one step")
             if other is not None and other(z):
-                raise LostError(f"{system.label}: the step came down on another branch")
+                raise LostError(f"{system.label}: the step ended on another branch")
             if sides := _beyond(here.z, z, limits):
                 last = _landed(system, here, z, sides, limits)
                 return Path(system, (*points, last), End.INTERVAL, "the end of the interval was reached")
@@ -257,7 +257,7 @@ def _landed(
         last = _at_side(system, here, z, index, side)
         if not _beyond(here.z, last.z, limits):
             return last
-    raise LostError(f"{system.label}: the side of the box was missed")
+    raise LostError(f"{system.label}: the point where the curve leaves its box was not found")
 
 
 def _at_side(system: CurveSystem, here: CurvePoint, beyond: Array, index: int, side: float) -> CurvePoint:

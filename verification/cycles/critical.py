@@ -143,7 +143,9 @@ def critical(
     """
     n, closure = recurrence.period, recurrence.closure
     if len(kinds) != len(parameters):
-        raise ValueError(f"{recurrence.label}: {len(kinds)} conditions for {len(parameters)} free parameters")
+        raise ValueError(
+            f"{recurrence.label}: {len(kinds)} conditions, {len(parameters)} free parameters; accepted: as many"
+        )
 
     def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
         rule = recurrence.over(arithmetic)

@@ -167,7 +167,7 @@ def closing(part: Chords, x: Array) -> int:
     for rounds in range(2, 2 * ROUND + 1):
         if np.max(np.abs(np.sin((part.closure.carried(x, part.closure.radians, rounds) - x) / 2))) < ALIKE:
             return rounds * part.period
-    raise LostError(f"{part.label}: the part does not close")
+    raise LostError(f"{part.label}: the part and its images under the symmetry do not close to a cycle")
 
 
 def left(period: int) -> Callable[[CurvePoint], bool]:

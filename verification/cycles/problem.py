@@ -61,14 +61,18 @@ class Problem:
             object.__setattr__(self, "law", self.law.on(self.table))  # in `theta` alone, as files have no arc length
         shapes = {*(p.symbol.name for p in self.table.shapes), *self.law.parameters}
         if shapes != {self.free} - {"lam", ""} or (self.lam is None) != (self.free == "lam"):
-            raise ValueError(f"{self.table.name}: free parameters must be just {self.free or 'none'}; lam = {self.lam}")
+            given = f"without a number are {', '.join(sorted(shapes)) or 'no parameters'}, and lam = {self.lam}"
+            raise ValueError(f"{self.table.name}: {given}; accepted: just {self.free or 'none'} without a number")
         if self.kind not in (None, BifurcationKind.FOLD, BifurcationKind.FLIP):
             raise ValueError(f"{self.table.name}: a {self.kind.value} is no problem of one cycle; accepted: fold, flip")
         if (self.kind is None) != (not self.free):
             kind = self.kind.name if self.kind else "CYCLE"
-            raise ValueError(f"{self.table.name}: {kind} with {self.free or 'no parameter'} free is not square")
+            given = f"{kind} with {self.free or 'no parameter'} free has not as many equations as unknowns"
+            raise ValueError(f"{self.table.name}: {given}; accepted: a parameter for a fold or flip only")
         if self.mirror and not all(mirrored(component) for component in self.table.components):
-            raise ValueError(f"{self.table.name}: theta -> -theta is no mirror image of a component")
+            raise ValueError(
+                f"{self.table.name}: theta -> -theta is no reflection of each component; accepted: mirror=False"
+            )
         if self.law.placed and self.closure.shift[0] % self.closure.shift[1]:
             raise ValueError(f"law = {self.law}: a turn of the table changes the law, so no cycle closes by a turn")
         if self.mirror and not self.law.odd:

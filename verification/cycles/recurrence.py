@@ -75,7 +75,7 @@ class BifurcationKind(Enum):
         if self in (BifurcationKind.TORUS, BifurcationKind.NEUTRAL_SADDLE):
             return trace_and_determinant(rows, turn)[1] - 1
         if self.solved is None:
-            raise ValueError(f"a {self.value} is no zero of one equation in the multipliers")
+            raise ValueError(f"a {self.value} is not given by one equation for the multipliers")
         lower, diagonal, upper = zip(*rows, strict=True)
         return Elimination(Chain(lower, diagonal, upper, turn * self.multiplier)).bordering
 

@@ -218,7 +218,9 @@ def curve(
     try:
         z, _ = arc.corrected(system, z, row, near[0])
     except LostError:
-        raise ValueError(f"{system.label}: there is none near {two[0]} = {near[0]}, {two[1]} = {near[1]}") from None
+        raise ValueError(
+            f"{system.label}: no such cycle is found near {two[0]} = {near[0]}, {two[1]} = {near[1]}"
+        ) from None
     system = system.renewed(z)
     tangent = arc.tangent_at(system, z, row)
     paths: list[Path] = []

@@ -35,7 +35,7 @@ class Lengths:
         (whole,) = table.components
         if (whole.start, whole.end) != (-pi, pi):
             raise ValueError(
-                f"{table.name}: the parameter of a closed curve runs from -pi to pi, where s is integrated"
+                f"{table.name}: theta runs from {whole.start} to {whole.end}; s is integrated over -pi to pi only"
             )
         self.rate = kernel("speed", [theta], {"speed": speed(whole)})
 

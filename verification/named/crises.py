@@ -91,7 +91,9 @@ def crisis(kind: str, alpha: str, tolerance: float = 2e-6, budget: int = 10**8) 
         else:
             low = lam
     if not known or (low == least and np.isfinite(stay(left, alpha, low, budget, 1))):
-        raise ValueError(f"{kind} crisis: none between lam = {least} and {top} at alpha = {alpha}; it is known at 0.08")
+        raise ValueError(
+            f"{kind} crisis: none found for lam in [{least}, {top}] at alpha = {alpha}; one is known at 0.08"
+        )
     return Crisis((low + high) / 2, spread(stays, low, high, budget), tuple(stays), spent)
 
 

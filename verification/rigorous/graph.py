@@ -87,7 +87,9 @@ class Grid:
     def whole(self, size: int = 1) -> Cells:
         """Blocks of `size` by `size` cells that cover all charts."""
         if self.columns % size or self.rows % size:
-            raise ValueError(f"grid: blocks of {size} do not fit {self.columns} by {self.rows} cells")
+            raise ValueError(
+                f"grid: {self.columns} by {self.rows} cells cannot be divided into blocks of {size} by {size}"
+            )
         shape = len(self.charts), self.columns // size, self.rows // size
         chart, column, row = (index.ravel() for index in np.indices(shape))
         return Cells(chart, column * size, row * size, np.full(chart.size, size))
@@ -273,7 +275,7 @@ def transitions(map: BoxMap, grid: Grid, cells: Cells, parts: int = 1, told: Tol
     """
     ends = ((cells.column, grid.columns), (cells.row, grid.rows))
     if any(np.any((count % cells.size != 0) | (at % cells.size != 0) | (at < 0) | (at >= count)) for at, count in ends):
-        raise ValueError("grid: a block lies across others of its size; accepted: blocks of Grid.whole")
+        raise ValueError("grid: a block overlaps blocks of Grid.whole of its size; accepted: blocks of Grid.whole")
     everywhere = np.arange(cells.chart.size)
     return joined(grid, cells, everywhere >= 0, arrows(map, grid, cells, everywhere, everywhere, parts, told))
 

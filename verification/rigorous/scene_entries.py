@@ -68,7 +68,7 @@ def _law_said(table: Table, law: Law, scene: dict[str, Any]) -> dict[str, Any]:
     shape, own = scene.get("shape", {}), dict(law.numbers)
     twice = [name for name in own if shape.get(name, own[name]) != own[name]]
     if twice:
-        raise ValueError(f"certificate: {twice[0]} is a number of the table, and another one of the law; rename one")
+        raise ValueError(f"certificate: {twice[0]} is a parameter of the table, and another one of the law; rename one")
     return {"shape": {**shape, **own}, "law": law.formula}
 
 
@@ -100,10 +100,10 @@ def scene_of(scene: Mapping[str, Any], free: str, box: arb) -> tuple[Table, Law]
     texts = scene.get("shape", {})
     for parameter in texts:
         if not PARAMETER.fullmatch(parameter) or parameter in (*LAW_NAMES, *RESERVED):
-            raise ValueError(f"certificate: shape: {ascii(parameter)[:60]} is no letter of a formula")
+            raise ValueError(f"certificate: shape: {ascii(parameter)[:60]} cannot be the name of a parameter")
     ranges = {parameter: text for parameter, text in texts.items() if isinstance(text, str) and ".." in text}
     if set(ranges) - {free}:
-        raise ValueError(f"certificate: {', '.join(ranges)} has a range; accepted: for the free parameter alone")
+        raise ValueError(f"certificate: {', '.join(ranges)} has a range; only the free parameter may have one")
     numbers = {parameter: number(text, parameter) for parameter, text in texts.items() if parameter not in ranges}
     law = law.at(**{parameter: numbers[parameter] for parameter in law.parameters if parameter in numbers})
     if "table" in scene:

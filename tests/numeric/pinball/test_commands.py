@@ -111,7 +111,7 @@ def test_what_cannot_be_proved_is_not_given(capsys):
     assert status == main(question) == 1
     assert [bounce["status"] for bounce in document["bounces"]] == ["regular", "unproved"]
     assert document["bounces"][1]["theta"] == document["bounces"][0]["theta"]
-    assert "no proof that the next flight meets nothing before it lands" in capsys.readouterr().out
+    assert "no proof that its flight meets nothing before it lands" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("arithmetic", ["float64", "mpmath", "arb"])

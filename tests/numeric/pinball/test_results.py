@@ -41,7 +41,7 @@ def test_time_is_the_length_of_the_flights_so_far_and_nan_after_the_last():
     assert np.allclose(np.diff(orbit.time, axis=0)[:, 0], orbit.flight[1:, 0])
     assert np.allclose(orbit.flight[1:, 0], np.hypot(np.diff(orbit.x[:, 0]), np.diff(orbit.y[:, 0])))
     assert np.isnan(orbit.flight[:, 1]).all()
-    with pytest.raises(ValueError, match="one step has no start"):
+    with pytest.raises(ValueError, match="one step does not contain its start"):
         _ = EGG.step(0.3, 0.1).flight
 
 

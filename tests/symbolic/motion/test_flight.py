@@ -66,5 +66,7 @@ def test_the_known_root_divides_out_of_any_fourier_sum(c):
 
 
 def test_a_boundary_that_is_no_finite_sum_is_refused():
-    with pytest.raises(ValueError, match=r"^wall: the boundary is no finite Fourier sum, it has no chord polynomial$"):
+    with pytest.raises(
+        ValueError, match=r"^wall: the boundary is no finite Fourier sum, so it has no chord polynomial$"
+    ):
         flight_residual(cuspless.component("wall"))

@@ -96,7 +96,7 @@ def test_a_law_of_arc_length_is_proved_over_the_whole_boundary():
     Scene("cardioid", lam="1/2", law="-lam*eta + s/10")
     with pytest.raises(ValueError, match="s = -4"):
         Scene("cardioid", lam="1/2", law="-lam*eta + s/4")
-    with pytest.raises(ValueError, match="which has a range on a table only"):
+    with pytest.raises(ValueError, match="the range of the arc length s is not given"):
         wave.check()
 
 

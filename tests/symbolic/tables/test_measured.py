@@ -115,7 +115,7 @@ def test_a_thin_table_is_none_that_meets_itself():
         ([(0, 0), (0, 0), (1, 1)], {}, "points 1 and 2 are the same"),
         (OVAL, {"smoothness": 3}, "smoothness = 3"),
         (OVAL, {"degree": 5}, "accepted: from 11"),
-        (OVAL, {"degree": 2, "smoothness": 1}, "a fit has one of them"),
+        (OVAL, {"degree": 2, "smoothness": 1}, "smoothness = 1 and degree = 2 are given; give only one"),
         ([("x", 0), (1, 0), (0, 1)], {}, "x of point 1"),
         ([(0, 0), (1, 0), (0, float("nan"))], {}, "y of point 3"),
         (OVAL, {"uncertainty": "-1"}, "is no distance"),

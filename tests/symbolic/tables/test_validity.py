@@ -58,7 +58,7 @@ BAD = {
     "an uneven eight": (lambda: parametric(cos(theta), sin(2 * theta) + sin(theta) / 2), "meets itself, or may"),
     "a limacon": (lambda: polar(1 + 2 * cos(theta)), "is not positive for every theta"),
     "a limacon by coordinates": (lambda: parametric(*limacon(2)), "near .* theta = -2.094.* and .* theta = 2.094"),
-    "a limacon with a cusp": (lambda: polar(1 + 2 * cos(theta), undefined=cardioid.undefined), "itself, or may, near"),
+    "a limacon with a cusp": (lambda: polar(1 + 2 * cos(theta), undefined=cardioid.undefined), "may do so, near"),
     "a cusp not named": (lambda: polar(1 + cos(theta)), "or its cusp named"),
     "a point": (lambda: polar(0), "polar is the single point .0, 0., of length 0"),
     "a circle run twice": (lambda: parametric(cos(2 * theta), sin(2 * theta)), "meets itself"),

@@ -164,7 +164,7 @@ def test_curves_layers_and_units_can_be_chosen(tmp_path, capsys):
     both, inch = written(tmp_path, "two.svg", svg(body)), written(tmp_path, "i.svg", svg('<path d="M0 0H96V48H0Z"/>'))
     status, _, told = asked(capsys, *both)
     assert status == 2
-    assert "--curve N chooses" in told
+    assert "--curve N chooses one" in told
     assert "4 by 2 px, area 8" in asked(capsys, *both, "--layer", "b")[2]
     assert "chosen: curve 2" in asked(capsys, *both, "--curve", "2")[2]
     assert "96 by 48 px" not in told

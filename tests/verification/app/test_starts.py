@@ -118,7 +118,7 @@ def test_keys_are_those_of_the_contract_where_nothing_else_is_asked(capsys):
         (["--from", "0", "--towards", "1,0"], "is no pair of numbers"),
         (["--start", "s=1", "--component", "circle"], "leave --component out"),
         (["--from", "0,0", "--towards", "1,0", "--arithmetic", "arb"], "takes one exact start on the wall"),
-        (["--start", "0,0.1", "--fields", "x,z"], "'z' is none of a bounce; accepted: component, theta"),
+        (["--start", "0,0.1", "--fields", "x,z"], "'z' is no field of a bounce; accepted: component, theta"),
         (["--start", "1e399,0"], "too large"),
     ],
 )
@@ -158,6 +158,6 @@ def test_a_particle_escapes_through_a_door_after_the_bounces_that_a_rotation_cou
         ends = [each["bounces"][-1]["status"] for each in found["particles"]]
         assert ends == ["regular" if time is None else "escaped" for time in found["escape_times"]]
     assert None in found["escape_times"]
-    assert "accepted are two arc lengths from -3.14159 to 3.14159" in refusal(
+    assert "accepted: two arc lengths from -3.14159 to 3.14159" in refusal(
         capsys, *CIRCLE, "--start", "0.1,0.3", "--door", "1:9"
     )

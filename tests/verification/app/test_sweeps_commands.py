@@ -97,7 +97,7 @@ def test_attractors_are_not_averaged_together(capsys):
         ("bifurcation --polar 1+b*cos(theta) --shape b=0:2:3 --lams 0.3", "is not positive at"),
         ("bifurcation --polar 1 --shape b=0:2:3 --lams 0.3", "polar: no shape parameter b; it has: none"),
         ("bifurcation egg --shape alpha=0:0.1:3 --lams 0:1:3", "both vary; accepted: one number"),
-        ("sweep parameter-space egg --alpha 0.1 --lams 0.3", "one shape varies; accepted: --alphas"),
+        ("sweep parameter-space egg --alpha 0.1 --lams 0.3", "one shape parameter must vary; accepted: --alphas"),
         ("bifurcation circle --shape b=0:2:3 --lams 0.3", "b = 0 is no shape parameter"),
         ("bifurcation egg --alpha 1/2 --lams 0.3", "alpha must lie in [0, 1/10]"),
         ("sweep parameter-space --alphas 0:0.2:3 --lams 0.3", "in [0, 1/10]"),

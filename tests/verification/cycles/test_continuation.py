@@ -259,7 +259,7 @@ def test_the_shape_is_followed_to_the_fold_and_the_doubling_of_the_closed_forms(
 def test_a_table_without_a_shape_has_none_to_follow():
     result = run("circle", "--cycle", "diameter", "--lam", "0.5", "--shape", "0:1")
 
-    assert "--shape: circle has none; accepted: the ellipse, the egg, and tables" in str(result.exception)
+    assert "--shape: circle has no shape parameter; accepted: the ellipse, the egg, and tables" in str(result.exception)
 
 
 def test_a_start_in_a_family_of_cycles_is_refused_as_one():

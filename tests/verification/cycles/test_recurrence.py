@@ -150,5 +150,5 @@ def test_the_delayed_logistic_map_bears_its_torus_where_no_fold_is():
 
 
 def test_as_many_parameters_are_free_as_there_are_conditions():
-    with pytest.raises(ValueError, match="2 conditions for 1 free"):
+    with pytest.raises(ValueError, match="2 conditions, 1 free"):
         critical(henon(1), [FOLD, TORUS], ["a"])

@@ -168,7 +168,7 @@ def test_digits_out_of_range_are_refused(digits):
     ("arguments", "says"),
     [
         ("merging-crisis circle --lam 0.1:0.3 --period 2", "accepted with circle: saddle-node, doubling, symmetry-br"),
-        ("doubling circle --lam 0.1:0.3", "a table's cycles have a --period and no --n"),
+        ("doubling circle --lam 0.1:0.3", "bifurcations of a table take --period and not --n"),
         ("doubling circle --period 2", "--lam is missing; accepted: LOW:HIGH"),
         (
             "doubling circle --lam 0.1 --period 2",
@@ -177,7 +177,7 @@ def test_digits_out_of_range_are_refused(digits):
         ("doubling egg --alpha 0.08 --shape b=0:1 --lam 0.1 --period 2", "b = 0 is no shape parameter of this table"),
         ("doubling --alpha 0.08 --shape b=0:1", "--shape b=0:1 is for a table, and none is given"),
         ("doubling --alpha 0.08 --n 3 --law=-lam*sin(eta)", "accepted: -lam*eta, and any law for tangencies"),
-        ("saddle-node --alpha 0.08 --K 4", "--K 4 is for a table; accepted: egg --K 4"),
+        ("saddle-node --alpha 0.08 --K 4", "--K 4 needs a table; accepted: egg --K 4"),
         ("tangency", "locate tangency needs a table; accepted: egg --alpha 2/25 --lam 0.6:0.7 --period 3"),
         ("tangncy circle --lam 0.1:0.3 --period 2", "no value is called tangncy; accepted with circle: saddle-node"),
         ("tangency stadium --lam 0.1:0.3 --period 2", "its boundary has 4 pieces, and the map has kinks where they"),

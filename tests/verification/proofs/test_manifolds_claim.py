@@ -56,20 +56,20 @@ def test_a_claim_survives_the_way_through_a_file():
 @pytest.mark.parametrize(
     ("changed", "why"),
     [
-        ({"scene": {"table": "cuspless"}}, "cuspless is out of range; accepted: one smooth curve"),
+        ({"scene": {"table": "cuspless"}}, "cuspless is not of the accepted kind: one smooth curve"),
         ({"scene": {"table": "ellipse", "shape": {"a": "2"}}}, "a turn or a mirror that the table does not have"),
         ({"scene": {"table": "square"}}, "no table is called square"),
         ({"digits": 10**6}, "digits = 1000000"),
         ({"contact": CONTACT | {"value": "__import__('os')"}}, "value = __import__"),
         ({"contact": CONTACT | {"value": "1.5"}}, r"value = 1\.5"),
-        ({"scene": {"table": "egg"}}, "egg is out of range; accepted: one smooth curve, a number for each"),
+        ({"scene": {"table": "egg"}}, "egg is not of the accepted kind: one smooth curve, a number for each"),
         ({"scene": {"table": "egg", "shape": {"alpha": "0.2"}}}, r"alpha"),
         ({"contact": {"value": VALUE}}, "entry 'unstable' is missing"),
         ({"contact": CONTACT | {"bounces": 10**9}}, "bounces = 1000000000"),
         ({"contact": CONTACT | {"z": float("nan")}}, "z = nan"),
         (
             {"contact": CONTACT | {"stable": {"name": "", "start": [], "sign": 1, "shift": [1, 3]}}},
-            "saddle of 0 bounces",
+            "saddle: 0 bounces",
         ),
     ],
 )

@@ -197,7 +197,7 @@ def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
     from verification.measure.work.row import duration
 
     if calls:
-        console.print(f"\nwhole calls, beside what is inside; over the bar marked\n{CALLS}")
+        console.print(f"\nwhole calls, compared with the work inside; * marks ratios above the bar\n{CALLS}")
     for call in calls:
         times = f"{duration(call.seconds):>12}{call.ratio:>8.3g}{call.bar:>7.3g}"
         console.print(f"{call.scene:<10}{call.call:<36}{times}{' *' if call.ratio > call.bar else '  '} {call.against}")
@@ -209,7 +209,8 @@ def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
 
     if asked:
         console.print(
-            f"\nquestions as processes, beside plain scripts; over the bar marked\n{'time':>12}{'ratio':>8}{'bar':>7}"
+            "\nquestions as processes, compared with plain scripts; * marks ratios above the bar"
+            f"\n{'time':>12}{'ratio':>8}{'bar':>7}"
         )
     for one in asked:
         times = f"{duration(one.seconds):>12}{one.ratio:>8.3g}{one.bar:>7.3g}"
@@ -220,7 +221,10 @@ def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
 
 def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
     """Prints the errors of the hard cases; marks position errors above 4 units and direction errors above 8."""
-    console.print("\naccuracy of one bounce in float64, largest errors in units of 2**-52; beyond 4 and 8 marked")
+    console.print(
+        "\naccuracy of one bounce in float64, largest errors in units of 2**-52; * marks positions above 4, "
+        "directions above 8"
+    )
     console.print(CASES)
     for case in cases:
         beyond = case.position > 4 or case.direction > 8

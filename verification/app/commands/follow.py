@@ -181,9 +181,7 @@ def ranged(scene: Scene) -> str | None:
     """The parameter with a range, as `NAME=LOW:HIGH`; None if there is none, `ValueError` if there are several."""
     found = [f"{name}={low}:{high}" for name, (low, high) in scene.ranges.items()]
     if len(found) > 1:
-        raise ValueError(
-            f"--lam is one number and {', '.join(scene.ranges)} have ranges; say which, --shape {found[0]}"
-        )
+        raise ValueError(f"--lam is one number, {', '.join(scene.ranges)} have ranges; pick one: --shape {found[0]}")
     return next(iter(found), None)
 
 
@@ -193,8 +191,8 @@ def varied(scene: Scene, shape: str) -> tuple[str, str]:
     known = [*scene.shape, *dict(scene.law.numbers)]
     if not known:
         raise ValueError(
-            f"--shape: {scene.name} has none; accepted: the ellipse, the egg, and tables with parameters of their own, "
-            f"to which lengths of a table by name belong, as in straight=1:3"
+            f"--shape: {scene.name} has no shape parameter; accepted: the ellipse, the egg, and tables with parameters "
+            "of their own or with named lengths, as in straight=1:3"
         )
     if given and name not in known:
         raise ValueError(f"--shape {shape}: {name} is no parameter that varies here; accepted: {', '.join(known)}")

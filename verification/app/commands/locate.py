@@ -83,10 +83,12 @@ def command(
         writable(certificate)
     if scene is not None:
         if n is not None or period is None:
-            raise ValueError("a table's cycles have a --period and no --n; accepted: --period with an integer from 2")
+            raise ValueError(
+                "bifurcations of a table take --period and not --n; accepted: --period with an integer from 2"
+            )
         return of_scene(scene, axis, name, bare["lam"], period, digits, searches, certificate, output)
     if bare["K"] is not None:
-        raise ValueError(f"--K {bare['K']} is for a table; accepted: egg --K {bare['K']}, with --period")
+        raise ValueError(f"--K {bare['K']} needs a table; accepted: egg --K {bare['K']}, with --period")
     if name == TANGENCY:
         raise ValueError("locate tangency needs a table; accepted: egg --alpha 2/25 --lam 0.6:0.7 --period 3")
     options = bare["lam"], bare["alpha"], n, period
@@ -203,7 +205,7 @@ def marked(path: str, scene: Scene, parameter: str) -> "Marked":
     own |= ({} if scene.law.uniform else {"law": scene.law.formula}) | {"shape": shape}
     own |= {} if parameter == "lam" else {"lam": str(scene.lam)}
     if given.get("schema") != SCHEMA or given.get("free") != parameter:
-        raise ValueError(f"--mark {path} says nothing of {parameter}; accepted: what locate --certificate wrote of it")
+        raise ValueError(f"--mark {path} has no {parameter}; accepted: files of locate --certificate for {parameter}")
     said = {"shape": {}, **given["scene"]}
     for either in (own, said):
         either["shape"] = {name: text for name, text in either["shape"].items() if name != parameter}

@@ -316,7 +316,7 @@ def show(console: "Console", document: dict[str, Any]) -> None:
                 "independent bounces"
             )
         if group.get("trusted") is False:
-            console.print(f"{'':>17} too short for its memory: the error bar is rough")
+            console.print(f"{'':>17} the run is short compared with this memory: the error bar is rough")
         if group.get("skewed"):
             console.print(
                 f"{'':>17} rare stretches make the error (skewness {group['skewness']:.2g}): 95 per cent interval of "

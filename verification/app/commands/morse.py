@@ -249,7 +249,7 @@ def graphs_command(
     from verification.proofs.global_dynamics.database import continued, database
 
     if axis is None:
-        raise ValueError("one shape varies besides lam; give --shape NAME=LOW:HIGH:N")
+        raise ValueError("--shape is missing; accepted: --shape NAME=LOW:HIGH:N, which varies besides lam")
     scene, parameter, values = along(scene, axis)
     sweep = database(scene, parameter, values.tolist(), numbers("--lams", lams), columns, rows, coarsest)
 

@@ -84,7 +84,7 @@ def command(
     digits = wanted(digits, tolerance)
     picked: dict[str, Any] = {}
     if door is not None and (arithmetic != "float64" or out is not None):
-        raise ValueError(f"--door {door} is for orbits in float64 that are shown; leave --arithmetic and --out out")
+        raise ValueError(f"--door {door} is for float64 orbits shown on screen; leave out --arithmetic and --out")
     opening = opened(map, door) if door is not None else None
     if arithmetic != "float64":
         if len(particles) > 1 or first.given is None:
@@ -140,7 +140,7 @@ def command(
     if "why" in picked:
         output.console.print(f"{arithmetic}: {picked['why']}")
     if told[0][-1]["status"] == "unproved":
-        output.console.print("no proof that the next flight meets nothing before it lands; it is not given")
+        output.console.print("the next bounce is not given: no proof that its flight meets nothing before it lands")
     statuses = [*(entries[-1]["status"] for entries in told), picked.get("last", "regular")]
     return DONE if all(status in ("regular", "escaped") for status in statuses) else FAILED
 
@@ -153,7 +153,7 @@ def opened(map: Any, text: str) -> tuple[float, float]:
     except ValueError:
         raise ValueError(f"--door {text} is no opening; accepted: LOW:HIGH, two arc lengths such as 0.1:1/4") from None
     if low == high or not (-half <= low <= half and -half <= high <= half):
-        raise ValueError(f"--door {text}: accepted are two arc lengths from {-half:.6g} to {half:.6g}")
+        raise ValueError(f"--door {text} is out of range; accepted: two arc lengths from {-half:.6g} to {half:.6g}")
     return low, high
 
 
@@ -282,8 +282,8 @@ def normal_exits(scene: Scene) -> Scene:
     from symbolic.tables.table import lam
 
     if not vanishes(scene.law.phi.subs(lam, 0)):
-        said = "does not exit along the normal at lam = 0, as every law does that has a slap map"
-        raise ValueError(f"--law: {scene.law} {said}; accepted: laws that vanish there")
+        said = "does not exit along the normal at lam = 0, so it has no slap map"
+        raise ValueError(f"--law: {scene.law} {said}; accepted: laws that are 0 at lam = 0")
     return scene.at(law=UNIFORM)
 
 
@@ -426,15 +426,16 @@ def provable(scene: Scene) -> None:
 
     if not one_smooth_curve(scene.table, scene.law) or convex(scene.table) is not True:
         raise ValueError(
-            f"--prove covers all closed chains of chords of one smooth strictly convex curve, and {scene.name} is not "
-            "proved to be one: chains that a wall cuts could not be told from cycles; leave --prove out"
+            f"--prove: {scene.name} is not proved to be one smooth strictly convex curve, so that a closed chain "
+            "of chords may cross its wall and is then no cycle; leave --prove out"
         )
     if not scene.law.uniform:
         stated = scene.law.on(scene.table)
         if stated.placed and not (stated.measured or is_periodic(stated.phi)):
             raise ValueError(f"--prove: {stated} is not proved to have period 2*pi in theta; leave --prove out")
         if not stays_below(stated, scene.lam, scene.table):
-            raise ValueError(f"--prove: |phi| = |{stated}| is not proved to stay below pi/2 by a margin; leave it out")
+            unproved = f"|phi| = |{stated}| is not proved to stay below pi/2 by a margin"
+            raise ValueError(f"--prove: {unproved}; leave --prove out")
 
 
 def completeness(catalogue: "Catalogue", lam: Any, highest: int, budget: int, output: Output) -> list[dict[str, Any]]:

@@ -165,9 +165,11 @@ def fields_of(text: str | None) -> tuple[str, ...] | None:
     names = tuple(name.strip() for name in text.split(","))
     for name in names:
         if name not in (*KEYS, *MORE):
-            raise ValueError(f"--fields {text}: {name!r} is none of a bounce; accepted: {', '.join((*KEYS, *MORE))}")
+            raise ValueError(
+                f"--fields {text}: {name!r} is no field of a bounce; accepted: {', '.join((*KEYS, *MORE))}"
+            )
     if len({*names}) < len(names):
-        raise ValueError(f"--fields {text} names one twice; accepted: each once")
+        raise ValueError(f"--fields {text} names a field twice; accepted: each once")
     return names
 
 
@@ -226,7 +228,7 @@ def written(map: "PinballMap", starts: Sequence[Start], bounces: int, path: Path
     if path.suffix == ".zarr":
         if fields is not None and {*fields} - {*COLUMNS}:
             raise ValueError(
-                f"--fields {','.join(fields)}: a .zarr store has of these {', '.join(COLUMNS)}; leave others out"
+                f"--fields {','.join(fields)}: a .zarr store has the fields {', '.join(COLUMNS)} only; leave others out"
             )
         if any(each.inside for each in starts):
             raise ValueError(f"--out {path}: a .zarr store holds starts on the wall; accepted: .csv, .npz or .parquet")

@@ -310,7 +310,9 @@ def parameter_space(
     from numeric.sweeps.sweep import map_of, text_of
 
     if (axis is None) == (alphas is None) or (scene is None) != (axis is None):
-        raise ValueError("one shape varies; accepted: --alphas LOW:HIGH:N, or a table with --shape NAME=LOW:HIGH:N")
+        raise ValueError(
+            "one shape parameter must vary; accepted: --alphas LOW:HIGH:N, or a table with --shape NAME=LOW:HIGH:N"
+        )
     if bare["law"] is not None:
         raise ValueError(f"--law {bare['law']} is for a table, and none is given")
     contractions = np.array(span("--lams", lams))

@@ -189,7 +189,7 @@ def known_starts(scene: Scene, map: PinballMap, seed: int, bounces: int) -> Iter
         found += 1
         if found == PARTICLES:
             return
-    raise ValueError(f"work: of {16 * PARTICLES} particles not {PARTICLES} have bounces that balls prove in {scene}")
+    raise ValueError(f"work: fewer than {PARTICLES} of {16 * PARTICLES} particles have proved bounces in {scene}")
 
 
 def flights(own: ExactMap | EnclosedMap, starts: Sequence[Start], bounces: int) -> list[tuple[Bounce, Bounce]]:
@@ -202,7 +202,7 @@ def flights(own: ExactMap | EnclosedMap, starts: Sequence[Start], bounces: int) 
             if isinstance(landed, Refusal):
                 raise ValueError(landed.value)
             if landed.code:
-                raise ValueError("the particle stops")
+                raise ValueError("the particle stops before its last bounce")
             after = landed
         found.append((before, after))
     return found

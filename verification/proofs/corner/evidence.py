@@ -177,7 +177,7 @@ def measured(distances: Sequence[float], bounces: int = 40_000) -> list[ScaledAt
     for i, e in enumerate(distances):
         near = [np.asarray(x[bounces // 4 :, i], float) for x in fields]
         if np.any(orbit.code[:, i]):
-            raise ValueError(f"border: the orbit at lambda-star + {e} meets an undefined point")
+            raise ValueError(f"border: the orbit at lambda-star + {e} reaches a point where the map is undefined")
         found.append(_attractor(lams[i], e, near, (theta1, _exit_angle(theta1)), float(rates[i])))
     return found
 

@@ -83,10 +83,10 @@ def pieces(region: Polygon, e: tuple[float, float]) -> Pieces:
     `ValueError` unless the convex region meets `v = 0` and the range begins at 0 or above.
     """
     if not 0 <= e[0] <= e[1]:
-        raise ValueError(f"half return: e = {e} is no stretch of distances above lambda-star")
+        raise ValueError(f"half return: e = {e} is no range of distances above lambda-star; accepted: 0 <= LOW <= HIGH")
     on_border = [u for u, _ in clipped(region, 0.0, 0.0)]
     if not on_border:
-        raise ValueError("half return: the region does not meet v = 0, where the mean value theorem starts")
+        raise ValueError("half return: the region must meet v = 0, the mean value theorem's base point")
     with working(BITS):
         base = (min(on_border) + max(on_border)) / 2
         shift = _shift(base, cuts(0.0, e[1], LONGEST_E))

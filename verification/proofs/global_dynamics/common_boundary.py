@@ -149,13 +149,18 @@ class CommonBoundary(Theorem):
     def __post_init__(self) -> None:
         law = self.scene.law
         if len(self.scene.table.components) != 1 or not law.uniform:
-            raise ValueError(f"boundary: {self.scene.name}; accepted: one smooth closed curve under phi = -lam*eta")
+            raise ValueError(
+                f"boundary: {self.scene.name} is out of range; accepted: one smooth closed curve, phi = -lam*eta"
+            )
         turns = self.turns
         for part in (*self.turn, Fraction(*self.saddle.closure.shift)):
             if part % 1 not in turns or len(self.saddle.start) != 1 or self.saddle.closure.turn != 1:
-                raise ValueError(f"boundary: {part} of a turn a bounce is no symmetry of the table {self.scene.name}")
+                wanted = (
+                    f"a turn by {part} must be a symmetry of {self.scene.name}, the saddle fixed by a bounce and a turn"
+                )
+                raise ValueError(f"boundary: {wanted}")
         if self.side not in (1, -1) or not 0 < self.lam < 1:
-            raise ValueError(f"boundary: side = {self.side} or lam = {self.lam} is out of range; lam is in (0, 1)")
+            raise ValueError(f"boundary: side = {self.side}, lam = {self.lam}; accepted: side 1 or -1, 0 < lam < 1")
 
     @property
     def turns(self) -> tuple[Fraction, ...]:

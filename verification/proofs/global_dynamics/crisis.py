@@ -91,9 +91,11 @@ class BoundaryCrisis(Certified):
         if self.scene.law.placed:
             raise ValueError(f"crisis: law = {self.scene.law} depends on the place; accepted: laws of eta and lam")
         if not all(abs(x) < FAR for x in (*self.saddle.start, *self.sink)):
-            raise ValueError(f"crisis: the saddle at {self.saddle.start} or the sink at {self.sink} is out of range")
+            given = f"the saddle at {self.saddle.start}, the sink at {self.sink}"
+            raise ValueError(f"crisis: {given}; accepted: numbers below {FAR}")
         if self.side not in (1, -1) or not 0 < low < high < 1 or not 0 <= self.start <= 1:
-            raise ValueError(f"crisis: side = {self.side}, lam = {low}:{high} or start = {self.start} is out of range")
+            given = f"side = {self.side}, lam = {low}:{high}, start = {self.start}"
+            raise ValueError(f"crisis: {given}; accepted: side 1 or -1, 0 < LOW < HIGH < 1, start from 0 to 1")
         if not self.scene.law.uniform:
             PinballImages(self.scene, self.lam)  # raises ValueError where exit angles are not bounded below pi/2
 

@@ -128,9 +128,13 @@ def database(
     if not 0 <= min(lams) < max(lams) < 1:
         raise ValueError(f"lam = {min(lams)} to {max(lams)} is no range; accepted: 0 <= LOW < HIGH < 1")
     if min(len(values), len(lams)) < 2:
-        raise ValueError("N values bound N - 1 boxes; give LOW:HIGH:N with N of at least 2 for either parameter")
+        raise ValueError(
+            "one value bounds no box of parameters; give LOW:HIGH:N with N of at least 2 for both parameters"
+        )
     if coarsest & (coarsest - 1) or columns % coarsest or rows % coarsest:  # each box would be left unknown
-        raise ValueError(f"blocks of {coarsest} are no power of 2 that divides {columns} columns and {rows} rows")
+        raise ValueError(
+            f"coarsest = {coarsest}; accepted: a power of 2 that divides {columns} columns and {rows} rows"
+        )
     ends = scene.ranges.get(parameter)
     shapes = [Fraction(repr(float(value))) for value in values]
     if ends is not None:

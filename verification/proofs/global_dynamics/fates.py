@@ -210,7 +210,7 @@ class RecurrentClusters(RangeTheorem):
     def saddle_parts(self) -> list[Cluster]:
         """The components of clusters that are not sinks; `ArithmeticError` if the components are not proved."""
         if self.parts is None:
-            raise ArithmeticError("clusters do not hold all that returns")
+            raise ArithmeticError("the components of the clusters are not proved to hold all orbits that return")
         return [part for part in self.parts if not part.sink]
 
 

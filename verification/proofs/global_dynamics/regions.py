@@ -73,12 +73,14 @@ def _unrolled(runs: Any, region: Mapping[str, Any]) -> Cells:
     charts, columns, rows = len(region["scene"].table.components), region["columns"], region["rows"]
     given = [[whole_number("a run", x, LARGEST, 0) for x in run] for run in runs]
     if {len(run) for run in given} != {5} or not 1 <= sum(run[4] for run in given) <= MOST_BOXES:
-        raise ValueError("certificate: runs is no list of [chart, size, column, row, how many]")
+        raise ValueError(
+            f"certificate: runs must be a list of [chart, size, column, row, how many], 1 to {MOST_BOXES} in all"
+        )
     found = np.array(given, dtype=np.int64)
     chart, size, column, row, count = found.T
     good = (chart < charts) & (size >= 1) & (count >= 1) & (column + size <= columns) & (row + size * count <= rows)
     if not np.all(good):
-        raise ValueError(f"certificate: the run {found[~good][0].tolist()} juts out of {columns} by {rows} cells")
+        raise ValueError(f"certificate: the run {found[~good][0].tolist()} is not within {columns} by {rows} cells")
     own = np.repeat(np.arange(chart.size), count)
     step = np.arange(own.size) - np.repeat(np.cumsum(count) - count, count)
     return Cells(chart[own], column[own], row[own] + step * size[own], size[own])

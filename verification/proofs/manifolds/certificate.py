@@ -50,7 +50,7 @@ class Tangency(Certified):
     def __post_init__(self) -> None:
         if self.table.shapes or self.table.undefined or not closes_smoothly(self.table):
             wanted = "one smooth curve, a number for each of its parameters, and no point where the map is undefined"
-            raise ValueError(f"tangency: {self.table.name} is out of range; accepted: {wanted}")
+            raise ValueError(f"tangency: {self.table.name} is not of the accepted kind: {wanted}")
         if why := objection(self.contact, self.map, float(self.near)):
             raise ValueError(why)
 
@@ -115,7 +115,8 @@ class Tangency(Certified):
         """The theorem that a document of this version states; `ValueError` if an entry is out of range."""
         digits, value = int(given["digits"]), str(given["contact"]["value"])
         if not 10 <= digits <= LARGEST_DIGITS or not DECIMAL.fullmatch(value):
-            raise ValueError(f"certificate: digits = {digits} or value = {value[:30]} is out of range")
+            wanted = f"digits from 10 to {LARGEST_DIGITS}, a decimal as value"
+            raise ValueError(f"certificate: digits = {digits}, value = {value[:30]}; accepted: {wanted}")
         table, law = scene_of(given["scene"], "", arb(0))
         near, off = Fraction(value), Fraction(1, 10**9)
         law.check((max(near - off, 0), min(near + off, 1)), *law.places(table))
@@ -140,10 +141,12 @@ def contact_of(given: Mapping[str, Any]) -> Contact:
     unstable, stable = (orbit_of(given[name]) for name in ("unstable", "stable"))
     bounces, sign = int(given["bounces"]), int(given["sign"])
     if not 0 <= bounces <= LARGEST_FLIGHT or sign not in (1, -1):
-        raise ValueError(f"certificate: bounces = {bounces} or sign = {sign} is out of range")
+        wanted = f"bounces from 0 to {LARGEST_FLIGHT}, sign 1 or -1"
+        raise ValueError(f"certificate: bounces = {bounces}, sign = {sign}; accepted: {wanted}")
     z, end, parameter = (float(given[name]) for name in ("z", "end", "letter"))
     if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < parameter < 1):
-        raise ValueError(f"certificate: z = {z}, end = {end} or letter = {parameter} is out of range")
+        wanted = f"z and end not 0, of size below {FARTHEST}, letter between 0 and 1"
+        raise ValueError(f"certificate: z = {z}, end = {end}, letter = {parameter}; accepted: {wanted}")
     return Contact(unstable, stable, bounces, sign, z, end, parameter)
 
 
@@ -157,5 +160,6 @@ def orbit_of(given: Mapping[str, Any]) -> SaddleCycle:
     start, sign = tuple(float(x) for x in given["start"]), int(given["sign"])
     turns, parts = (int(x) for x in given["shift"])
     if not 1 <= len(start) <= LARGEST_PERIOD or sign not in (1, -1) or not 1 <= parts <= LARGEST_TURN:
-        raise ValueError(f"certificate: a saddle of {len(start)} bounces, sign {sign}, turn 1/{parts} is out of range")
+        wanted = f"up to {LARGEST_PERIOD} bounces, sign 1 or -1, turn 1/1 to 1/{LARGEST_TURN}"
+        raise ValueError(f"certificate: saddle: {len(start)} bounces, sign {sign}, turn 1/{parts}; accepted: {wanted}")
     return SaddleCycle(str(given["name"]), start, Closure(sign, (turns, parts)))

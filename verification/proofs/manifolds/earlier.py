@@ -116,7 +116,7 @@ def earlier(contact: Contact, map: PlaneMap, low: float, bounces: int) -> Earlie
     while not any(near(guess) for guess in _seen(contact, here, before, bounces, spacing)[2]):
         spacing /= CLOSER
         if spacing < LEAST_SPACING:
-            raise ValueError(f"earlier: no flight of up to {bounces} bounces is the contact's own")
+            raise ValueError(f"earlier: no flight of up to {bounces} bounces leads to the contact; give more bounces")
     spacing /= CLOSER
     reached, extrema, guesses = _seen(contact, here, before, bounces, spacing)
     touches, tried, lost = list[Touch](), set[int](), 0

@@ -106,7 +106,9 @@ def enclosed_saddle(orbit: SaddleCycle, map: PlaneMap, parameter: acb) -> Saddle
     found = enclosed_cycle(orbit, map, parameter)
     stable, unstable = multipliers_of(orbit, map, found, parameter)
     if not (abs(stable) < 1 and abs(unstable) > 1):
-        raise TooWideError("saddle", f"the multipliers of the {orbit.name} are not separated")
+        raise TooWideError(
+            "saddle", f"not proved that one multiplier of the {orbit.name} is inside the unit circle, one outside"
+        )
     return Saddle(orbit, map, parameter, tuple(found), stable, unstable)
 
 
@@ -219,7 +221,9 @@ TUBE = "1e-6"  # the radius of the tube over which slopes are bounded; the remai
 def remainder(made: Enclosed, outer: int) -> arb:
     """A bound of the remainders of all bounces on the unit disc, from the rule on radius `outer`, or `TooWideError`."""
     if not vanishing(made):
-        raise TooWideError("remainder", "the rule has terms of low order; these are no coefficients of a manifold")
+        raise TooWideError(
+            "remainder", "the series do not satisfy the rule up to their order, so they belong to no manifold"
+        )
     slopes = round_outwards(made, outer)
     least = bounds(made, slopes, [arb(0)] * len(slopes))
     allowed = [2 * e for e in least]

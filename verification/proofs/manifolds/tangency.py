@@ -120,7 +120,7 @@ class Coefficients:
     def at(self, i: int, z: arb, away: arb) -> Near:
         """Enclosure of bounce `i` (0 or 1) at `z`, for parameters that differ by `away` from that of `places`."""
         if not abs(z) < 0.5:
-            raise TooWideError("exists", "the parameter leaves the disc of radius 1/2")
+            raise TooWideError("exists", "the coordinate on the manifold leaves the disc of radius 1/2")
         slopes, e = self.slopes[i], self.error
         places = [c + s * away for c, s in zip(self.places[i], slopes, strict=True)]
         there: Jet = horner(places, Jet(z, arb(1), arb(0)))
@@ -193,7 +193,9 @@ def pair(orbit: SaddleCycle, map: PlaneMap, parameter: arb, scale: Scale, precis
     balls = map.over(complex_balls(precision.bits))
     step, disc = precision.step, precision.disc
     if not disc > 2 * step:
-        raise TooWideError("saddle", f"with {precision.digits} digits no disc is larger than the steps in it")
+        raise TooWideError(
+            "saddle", f"with {precision.digits} digits the disc of parameters is smaller than the steps in it"
+        )
     beyond = (parameter + step).mid()
 
     def near(at: acb) -> Enclosed:

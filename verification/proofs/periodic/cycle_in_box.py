@@ -431,8 +431,8 @@ def _pair(x: arb) -> list[str]:
 
 def _ball(pair: Any) -> arb:
     if not all(isinstance(text, str) and INTEGER.fullmatch(text) for text in pair):
-        raise ValueError("certificate: a number is no pair of two decimal integers as text")
+        raise ValueError("certificate: a number is not written as a pair of texts, each a decimal integer")
     mantissa, exponent = map(fmpz, pair)  # int() refuses more than 4300 digits
     if abs(exponent) > LARGEST_BITS * 2:
-        raise ValueError(f"certificate: the exponent {exponent} is out of range")
+        raise ValueError(f"certificate: the exponent {exponent} is out of range; accepted: up to {LARGEST_BITS * 2}")
     return arb((mantissa, exponent))

@@ -91,7 +91,7 @@ class Labels:
 
     def __init__(self, map: CurveMap, columns: int, rows: int, parts: int = 4) -> None:
         if parts % 2:
-            raise ValueError(f"parts = {parts}: the middle of a column is no border of parts; give an even number")
+            raise ValueError(f"parts = {parts} is odd, so no parts meet in the middle of a column; give an even number")
         self.map, self.rows, self.parts = map, rows, parts
         size = np.array([chart.x[1] - chart.x[0] for chart in map.charts])
         self.columns = np.maximum(np.ceil(columns * size / size.max()).astype(int), 4)
@@ -149,7 +149,7 @@ class Labels:
         r = landed.stretch
         known = [np.isfinite(x.r) for x in landed[3:]]
         if not np.all(known) or not np.all(r.positive() | r.negative()):
-            raise ValueError("a curve's stretching is not bounded away from 0; give finer cells, or there is no cone")
+            raise ValueError("a curve's stretching is not bounded away from 0: cells too coarse, or no cone exists")
         x, foot = self.middles(self.chart, self.column), self.bottom[self.chart] + self.row * self.high[self.chart]
         line = Boxes(self.chart, (x - 1e-15, x + 1e-15), (foot - SLOP, foot + self.high[self.chart] + SLOP))
         middle = image_labels(self.map, line, BallArray(np.zeros(count)))
@@ -164,7 +164,7 @@ class Labels:
         up[own[r.m > 0]] = True
         down[own[r.m < 0]] = True
         if np.any(up & down):
-            raise ValueError("curves of one label turn over; give finer cells")
+            raise ValueError("the map may keep or reverse the direction of curves of one label; give finer cells")
         size = np.abs(r.m)
         least = reduced(np.minimum, count, own, (size - r.r) * (1 - 1e-14))
         most = reduced(np.maximum, count, own, (size + r.r) * (1 + 1e-14))
@@ -206,7 +206,7 @@ class Labels:
         foot, head = ((end - self.bottom[chart]) / self.high[chart] for end in ends)
         bottom, top = np.floor(foot - PAD).astype(np.int64), np.floor(head + PAD).astype(np.int64)
         if np.any((bottom < 0) | (top >= self.rows)):
-            raise ValueError("a curve may leave its chart; the region comes too near to its border")
+            raise ValueError("a curve may leave its chart, as the region comes too near to the border of the chart")
         return Targets(source, chart, column, bottom, top)
 
     def cut_off(self, chart: Indices, phi: BallArray) -> Range:

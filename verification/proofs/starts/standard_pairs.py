@@ -53,7 +53,7 @@ def first(map: CurveMap, grid: Grid, cells: Cells, bounces: int = BOUNCES) -> Fi
         source = wide[entry]
         to = names.astype(np.int64)[landed.chart[source], column[entry], ranges(met.bottom[wide], met.top[wide] + 1)]
         if np.any(to < 0) or np.any(met.out):
-            raise ValueError("the boxes are no trapping region")
+            raise ValueError("the boxes are not proved to be a trapping region")
         slopes, bends, density = (pushed(x, source, to, count) for x in (landed.slope, bend, dense))
     return First(landed, bend, dense)
 
@@ -77,7 +77,7 @@ def kept(start: Range, step: Callable[[Range], Range]) -> Range:
         low, high = np.minimum(low, new[0]), np.maximum(high, new[1])
         if not np.all((low > -LARGEST) & (high < LARGEST)):
             break
-    raise ValueError("bends or densities of curves grow on and on: curves are not stretched often enough")
+    raise ValueError("bends or densities of curves are not proved bounded: curves are not stretched often enough")
 
 
 class Pairs(NamedTuple):
@@ -126,7 +126,7 @@ def pairs(map: CurveMap, grid: Grid, cells: Cells, columns: int, rows: int, part
             edge = source[order], to[order]
             return Pairs(labels, cast, spread, scattered, edge, densities(start, edges[0], cast, edge, labels.count))
         labels.low, labels.top = low, top
-    raise ValueError("cones grow on and on; give finer cells")
+    raise ValueError("cones grow at each step and are not proved bounded; give finer cells")
 
 
 def densities(

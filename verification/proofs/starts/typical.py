@@ -57,7 +57,9 @@ class Cut:
             for _ in range(window):
                 chart, column = labels.chart[near], labels.column[near] + side
                 if np.any((column < 0) | (column >= labels.columns[chart])):
-                    raise ValueError("a window beside a join reaches the next; give a smaller one or more columns")
+                    raise ValueError(
+                        "a window beside a join reaches the next join; give a smaller window or more columns"
+                    )
                 foot, way = labels.bottom[chart] + labels.row[near] * labels.high[chart], side * labels.wide[chart]
                 phi, slopes = (foot, foot + labels.high[chart]), (labels.low[near], labels.top[near])
                 met = labels.named(labels.crossed(near, chart, column, phi, (way, way), slopes, hulls))[1]
@@ -133,7 +135,7 @@ class Balance:
                 seen[which] = True
                 made.append(Cut(self.found, which, window))
         if not np.all(seen[broken]):
-            raise ValueError("a curve is broken where no join is")
+            raise ValueError("a curve is broken at a point that is no join")
         return made
 
     @staticmethod

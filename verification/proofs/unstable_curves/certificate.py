@@ -34,7 +34,7 @@ def _point(given: Any, charts: int) -> Point:
     chart, theta, phi = given
     point = whole_number("a component", chart, charts - 1, 0), float(theta), float(phi)
     if not (isfinite(point[1]) and isfinite(point[2])):
-        raise ValueError(f"certificate: {given!r} is no phase point")
+        raise ValueError(f"certificate: {given!r} is no phase point; accepted: finite theta and phi")
     return point
 
 
@@ -84,7 +84,9 @@ class AtMostOneAttractor(RangeTheorem, Certified):
         for chart, x, y in (*self.points, self.saddle):
             (left, right), (bottom, top) = self.map.charts[chart].x, self.map.charts[chart].y
             if not (left <= x <= right and bottom <= y <= top):
-                raise ValueError(f"certificate: ({chart}, {x}, {y}) is outside of its component, or of the strip")
+                raise ValueError(
+                    f"certificate: ({chart}, {x}, {y}) has theta or phi outside the ranges of component {chart}"
+                )
         places = np.array(self.points)[:, 1:].T
         start = Boxes(np.array([point[0] for point in self.points]), *((at, at) for at in places))
         return NoTwoAttractors(self.map, self.columns, self.rows, start, self.saddle, self.period, self.half)

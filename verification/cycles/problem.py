@@ -64,7 +64,7 @@ class Problem:
             given = f"without a number are {', '.join(sorted(shapes)) or 'no parameters'}, and lam = {self.lam}"
             raise ValueError(f"{self.table.name}: {given}; accepted: just {self.free or 'none'} without a number")
         if self.kind not in (None, BifurcationKind.FOLD, BifurcationKind.FLIP):
-            raise ValueError(f"{self.table.name}: a {self.kind.value} is no problem of one cycle; accepted: fold, flip")
+            raise ValueError(f"{self.table.name}: kind = {self.kind.value} is unknown here; accepted: fold, flip")
         if (self.kind is None) != (not self.free):
             kind = self.kind.name if self.kind else "CYCLE"
             given = f"{kind} with {self.free or 'no parameter'} free has not as many equations as unknowns"

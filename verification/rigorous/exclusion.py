@@ -81,7 +81,9 @@ def exclude(
     with np.errstate(over="ignore"):
         ends = np.abs(start.middle) + start.half
     if not np.all((start.half >= 0) & np.isfinite(ends)):
-        raise ValueError("exclude: a middle or a half width is not finite, or below 0; accepted: boxes with both ends")
+        raise ValueError(
+            "exclude: a middle is not finite, or a half width is negative or not finite; accepted: bounded boxes"
+        )
     queue, tested = start, 0
     while queue.size:
         chunk, queue = queue[-CHUNK:], queue[:-CHUNK]

@@ -312,11 +312,11 @@ def show(console: "Console", document: dict[str, Any]) -> None:
         if group.get("naive_stderr"):
             ratio = group["nu_plus_stderr"] / group["naive_stderr"]
             console.print(
-                f"{'':>17} memory {group['autocorrelation_time']:.3g} bounces; the error is {ratio:.3g} times that of "
-                "independent bounces"
+                f"{'':>17} autocorrelation time {group['autocorrelation_time']:.3g} bounces; the error is {ratio:.3g} "
+                "times that of independent bounces"
             )
         if group.get("trusted") is False:
-            console.print(f"{'':>17} the run is short compared with this memory: the error bar is rough")
+            console.print(f"{'':>17} the run is short compared with this time: the error bar is rough")
         if group.get("skewed"):
             console.print(
                 f"{'':>17} rare stretches make the error (skewness {group['skewness']:.2g}): 95 per cent interval of "

@@ -152,5 +152,5 @@ def command(
     output.console.print(f"{page}: {len(made.sections)} sections, {made.seconds:.0f} s of work")
     if made.left:
         words = further(made.left)
-        output.console.print(f"left for more time, or to be refined: {words}; the same command goes on from here")
+        output.console.print(f"left for more time, or to be refined: {words}; the same command continues")
     return DONE

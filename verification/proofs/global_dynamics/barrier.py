@@ -56,7 +56,9 @@ class Barrier:
         """The map on boxes; `ValueError` unless it is proved to be a homeomorphism of the strip onto its image."""
         map = PinballImages(self.scene, self.lam)
         if not (map.closed and map.law is None and self.lam[0] > 0):
-            raise ValueError(f"barrier: {map.label}; accepted: one smooth closed curve, the paper's law and lam > 0")
+            raise ValueError(
+                f"barrier: {map.label} does not fit; accepted: one smooth closed curve, the paper's law, lam > 0"
+            )
         return map
 
     @cached_property

@@ -87,7 +87,7 @@ class BoundaryCrisis(Certified):
         closure, (low, high) = self.saddle.closure, self.lam
         turns = {Fraction(0)} | {Fraction(*g.shift) for g in symmetries(self.scene.table) if g.turn == 1}
         if len(self.saddle.start) != 1 or closure.turn != 1 or Fraction(*closure.shift) % 1 not in turns:
-            raise ValueError(f"crisis: the {self.saddle.name} must be fixed by one bounce and a turn of the table")
+            raise ValueError(f"crisis: the {self.saddle.name} must be a fixed point of the map, up to a rotation")
         if self.scene.law.placed:
             raise ValueError(f"crisis: law = {self.scene.law} depends on the place; accepted: laws of eta and lam")
         if not all(abs(x) < FAR for x in (*self.saddle.start, *self.sink)):

@@ -210,9 +210,11 @@ def varied(scene: Scene, parameter: str, low: Any, high: Any) -> Table:
     """
     table: Table = scene.over(parameter, low, high)
     if any(parameter in map(str, S(end).free_symbols) for part in table.components for end in (part.start, part.end)):
-        raise ValueError(f"{table.name}: components end elsewhere for another {parameter}; accepted: ends that stay")
+        raise ValueError(f"{table.name}: the ends of components depend on {parameter}; accepted: fixed ends")
     if scene.law.measured or parameter in parameters_of_law(scene.law.formula):
-        raise ValueError(f"law = {scene.law}: it depends on {parameter}; accepted: laws that no shape changes")
+        raise ValueError(
+            f"law = {scene.law}: it depends on {parameter} or s; accepted: laws that do not depend on the shape"
+        )
     return table
 
 

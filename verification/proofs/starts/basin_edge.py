@@ -66,7 +66,7 @@ class BasinEdge(Theorem):
     def __post_init__(self) -> None:
         closure, turns = self.saddle.closure, self.barrier.turns
         if turns < 2 or closure.turn != 1 or closure.shift != (1, turns) or len(self.saddle.start) != 1:
-            raise ValueError(f"edge: the {self.saddle.name} must be fixed by one bounce and a turn of the table")
+            raise ValueError(f"edge: the {self.saddle.name} must be a fixed point of the map, up to a rotation")
 
     @property
     def turn(self) -> float:

@@ -55,7 +55,7 @@ class AbsorbingTube:
     def __post_init__(self) -> None:
         sizes = self.inner, *(size for pair in (self.bounds, *self.entry_tubes) for size in pair)
         if not (self.cells >= 1 and all(0 < size < np.inf for size in sizes)):
-            raise ValueError(f"{self}: accepted: at least one cell, and bounds above 0")
+            raise ValueError(f"{self} is out of range; accepted: at least one cell, and bounds above 0")
 
     def holds(self, sets: Parallelograms, *sizes: tuple[float, float]) -> Mask:
         """A mask of the sets in a tube with one of the bounds `(outer, width)` in `sizes`; by default, in this tube."""

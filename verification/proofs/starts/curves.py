@@ -74,9 +74,11 @@ class PinballCurves:
         if self.map.law is not None:
             raise ValueError(f"law = {self.map.scene.law}: unstable curves are followed under the law -lam*eta alone")
         if self.map.range[0] <= 0:
-            raise ValueError("lam = 0: almost every orbit is not known by area; accepted: 0 < lam")
+            raise ValueError("lam = 0: the map takes phase space to a curve, of area 0; accepted: 0 < lam")
         if None in constant_bends(self.map.map.table):
-            raise ValueError(f"{self.map.scene.name}: a tangent turns unevenly; accepted: cardioids, the circle")
+            raise ValueError(
+                f"{self.map.scene.name}: a tangent turns at no constant rate; accepted: cardioids, the circle"
+            )
 
     @property
     def closed(self) -> bool:

@@ -52,7 +52,7 @@ class ExpandingAnnulus:
 
     def __post_init__(self) -> None:
         if not (0 <= self.low < self.high and self.width > 0 and self.cone > 0):
-            raise ValueError(f"{self}: accepted: 0 <= low < high, width > 0 and cone > 0")
+            raise ValueError(f"{self} is out of range; accepted: 0 <= low < high, width > 0 and cone > 0")
 
     def part(self, chart: int, side: int) -> Boxes:
         """Boxes that cover the part of the annulus on one side (1 or -1)."""

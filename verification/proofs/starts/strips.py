@@ -118,7 +118,8 @@ def strips(map: PinballImages, columns: tuple[int, ...], rows: int) -> Strips:
     if len(columns) != len(map.charts) or min(rows, *columns) < 1:
         raise ValueError(f"strips: columns = {columns}, rows = {rows}; accepted: 1 or more, for each component")
     if map.law is not None or not map.mirrored:
-        raise ValueError(f"strips: {map.label}; accepted: tables that are their own mirror images, under -lam*eta")
+        wanted = "tables that are their own mirror images, under -lam*eta"
+        raise ValueError(f"strips: {map.label} does not fit; accepted: {wanted}")
     pieces: list[Strips] = []
     edges = np.linspace(0.0, QUARTER, rows + 1)
     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2 * (1 + 1e-9)

@@ -64,7 +64,7 @@ def test_a_cycle_that_is_left_out_is_seen():
     [(Closure(1, (1, 1)), 1), (Closure(-1, (1, 3)), 1), (Closure(1, (1, 2)), 1), (Closure(1, (1, 3)), 2)],
 )
 def test_a_saddle_that_is_not_one_bounce_and_a_part_of_a_turn_is_refused(closure, by):
-    with pytest.raises(ValueError, match="must be fixed by one bounce"):
+    with pytest.raises(ValueError, match="must be a fixed point of the map"):
         replace(FOUND, saddle=replace(FOUND.saddle, closure=closure, start=FOUND.saddle.start * by))
 
 

@@ -207,7 +207,7 @@ def filling(map: PinballMap, particles: int = 100, bounces: int = 9, seed: int =
 
 
 def cycle_near(map: PinballMap, particle: BoundaryParticle) -> Cycle | None:
-    """The attracting cycle on which the particle's orbit ends; otherwise a cycle near one of its returns, or None.
+    """The attracting cycle on which the particle's orbit ends; else a cycle near a return of it, or None.
 
     >>> axis = cycle_near(PinballMap("ellipse", a=2, lam="0.5"), BoundaryParticle(0, 1.5, 0.01))
     >>> axis.period
@@ -228,7 +228,7 @@ SETTLED = 1e-4  # in lengths and radians: an orbit that has settled returns to w
 
 
 def _returning(map: PinballMap, particle: BoundaryParticle, within: float) -> Cycle | None:
-    """The cycle that Newton's method finds from the particle's returns closer than `within`, nearest first, or None."""
+    """The cycle that Newton's method finds from returns to within `within` of the start, nearest first; or None."""
     orbit = map.orbit(particle.theta, particle.phi, LONGEST, particle.component)
     if orbit.code[-1]:
         return None

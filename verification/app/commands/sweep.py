@@ -72,7 +72,7 @@ def sweep_options(command: Command) -> Command:
 
 
 def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
-    """Runs a sweep and prints a summary (or only its cost); returns the exit status. `more` is passed to --plot."""
+    """Runs a sweep, or estimates its cost, and prints a summary; returns the exit status. `more` is for --plot."""
     from numeric.sweeps import run
     from numeric.sweeps.cost import cost
 

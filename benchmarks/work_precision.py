@@ -30,12 +30,13 @@ diagrams on your machine; {{py:func}}`~verification.measure.work.scenes.work_pre
 question.
 
 Each diagram shows the error of an answer against the seconds it took, with one line for each method. The marks on a
-line are the method's settings: numbers of digits, or tolerances. Errors are distances from a *certified ball*, so the
-errors themselves are known. Full marks lie on the Pareto front, the grey step line: no other mark is both quicker and
+line are the method's settings: numbers of digits, or tolerances. Errors are distances from a *certified ball*, so they
+are known and not estimated. Full marks lie on the Pareto front, the grey step line: no other mark is both quicker and
 more accurate. A cross marks an error that is larger than the method claims. Times are processor time of one core for
-one answer, medians with quartiles as bars, after a first call that is not counted. Methods start from the same few
-decimals. *Certified* includes the whole proof, for example that each landing is the first hit and the period the least.
-`benchmarks/work_precision.py` writes this page from `benchmarks/records/work_precision.json`, which has every row.
+one answer, medians with quartiles as bars, after a first call that is not counted. All methods start from the same
+values, rounded to a few decimals. *Certified* includes the whole proof, for example that each landing is the first hit
+and the period the least. `benchmarks/work_precision.py` writes this page from `benchmarks/records/work_precision.json`,
+which has every row.
 
 Made with {footer}
 

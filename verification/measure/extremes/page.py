@@ -226,36 +226,36 @@ if balls cannot decide, the definition of the map in mpmath. `python benchmarks/
 and writes this page; `tests/verification/measure/test_extremes.py` compares every verdict with its record.
 
 Let the data be $x$, the true value $f(x)$ and the computed one $y$. The **forward error** is $\lvert y - f(x) \rvert$.
-The **backward error** is the smallest $(\delta x, \delta y)$ with $y + \delta y = f(x + \delta x)$, to first order
-(the mixed error of {{cite:p}}`Higham2002`). The **condition number** is the largest factor between them, from
-difference quotients of the reference. Errors are absolute, in units of $2^{{-52}}$ (80-bit floats: $2^{{-63}}$), of the
-landing's parameter and the direction of flight. A method is called stable if no backward error is above {SMALL}. It is
-called sensitive if, in addition, such an error costs half of 15 digits, which happens from a condition number of 9e+06
-on. Each line shows the worst start of its case. `llvm`, `numpy`, `longdouble` and `mpmath, 16 digits` run the same
-step; `textbook discriminant` is the quadratic formula with nothing divided out.
+The **backward error** is the smallest $(\delta x, \delta y)$ with $y + \delta y = f(x + \delta x)$, to first order (the
+mixed error of {{cite:p}}`Higham2002`). The **condition number** is the largest factor by which the forward error can
+exceed the backward error, from difference quotients of the reference. Errors are absolute, in units of $2^{{-52}}$
+(80-bit floats: $2^{{-63}}$), of the landing's parameter and the direction of flight. A method is called stable if no
+backward error is above {SMALL}. A stable method is called sensitive if a backward error of {SMALL} costs half of 15
+digits, which happens from a condition number of 9e+06 on. Each line shows the worst start of its case. `llvm`, `numpy`,
+`longdouble` and `mpmath, 16 digits` run the same step; `textbook discriminant` is the quadratic formula, from which the
+known root is not divided out.
 
 **What kernels report.** If a flight cannot continue, the kernel names the reason (`PinballMap.step(...).status`). A
 cycle found by Newton's method is a `Solution` with its `condition` number (an estimate of the largest row sum of the
-inverse {{cite:p}}`Higham2002`) and the `digits_sure` that it leaves. Its `conditioning`, which `pinball cycles` prints,
-is SOUND, SENSITIVE next to a fold or a flip, or REPEATED for a repetition of a shorter cycle. `pinball follow` steps by
-arc length, in a system that is regular at a fold.
+inverse {{cite:p}}`Higham2002`) and `digits_sure`, the digits that are then certain. Its `conditioning`, which
+`pinball cycles` prints, is SOUND, SENSITIVE next to a fold or a flip, or REPEATED for a repetition of a shorter cycle.
+`pinball follow` steps by arc length, in a system that is regular at a fold.
 
-**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** The outcome is JOIN if the line
-passes a join so closely that rounding hides its side: the landing's distance from the join, times $\cos\eta$, is
-below $2^{{-50}}$ of the way from the start to the join. (On the arc, which bends away from the line, the distance
-itself replaces $\cos\eta$ if it is larger. A flight from the wall has to land within 4 units of $\tan(\theta/2)$.)
-Next to this limit kernels may disagree: each answer is right for data that differ by a rounding. The verdict column
-states the distance at which the true flight passes the join.
+**JOIN, CUSP and GRAZING are decided on the landing that a kernel computes.** The outcome is JOIN if the line passes a
+join so closely that rounding hides its side: the landing's distance from the join, times $\cos\eta$, is below
+$2^{{-50}}$ of the distance from the start to the join. (On the arc, which bends away from the line, the distance itself
+replaces $\cos\eta$ if it is larger. A flight from the wall has to land within 4 units of $\tan(\theta/2)$.) Next to
+this limit kernels may disagree: each answer is right for data that differ by a rounding. The verdict column states the
+distance at which the true flight passes the join.
 
 **80 bits.** `longdouble` is the step on 80-bit floats, with the C library's functions and zeros refined to the last
 bit. It is also the reference of `benchmarks/adversarial.py`, which reports how far this reference moves if its state is
-rounded once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp, where the reference has 50
-digits instead.
+rounded once more: less than 0.2 units of a double, but 390 for particles aimed at the cusp; for these a reference of 50
+digits is used.
 
-**Exponents** are compared with the product of the matrices along the kernel's own orbit, since the product depends on
-the orbit. On the cardioid at $\lambda = 0.01$ the orbits in float64 and in 50 digits
-are 5e-10 apart after 40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many bounces differ by 2e-12,
-6e-6 and 6e-3.
+**Exponents** are compared with the product of the matrices along the orbit that the kernel computed, since the product
+depends on the orbit. On the cardioid at $\lambda = 0.01$ the orbits in float64 and in 50 digits are 5e-10 apart after
+40 bounces, 8e-4 after 80 and 3 after 100; the exponents of so many bounces differ by 2e-12, 6e-6 and 6e-3.
 
 **Long orbits** are at the end of the page: invariants, closed forms, an attracting cycle proved in balls, mirror
 images, and means over the elastic cardioid, which is ergodic {{cite:p}}`Szasz1992,Markarian1993`. Nothing drifts: the

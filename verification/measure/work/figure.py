@@ -241,7 +241,7 @@ def integers(rows: Sequence[MethodResult]) -> str:
 
 
 def usual(rows: Sequence[MethodResult]) -> list[str]:
-    """A sentence for each textbook method: its error, and this package's quickest method that is as accurate."""
+    """A sentence for each textbook method: its error, and this package's quickest method at least as accurate."""
     names = dict.fromkeys(row.method for row in rows if row.textbook)
     own = [row for row in rows if not row.textbook]
     return [_judged(name, [row for row in rows if row.method == name], own) for name in names]
@@ -255,7 +255,7 @@ def _judged(name: str, rows: Sequence[MethodResult], own: Sequence[MethodResult]
     text = f"*{name}* has the error {short(error)} in {duration(seconds)}"
     rivals = [row for row in front(own) if row.error is not None and row.error <= error]
     if rivals and rivals[0].seconds < seconds:
-        text += f"; *{rivals[0].method}* is as accurate and {times(seconds / rivals[0].seconds)} times as fast"
+        text += f"; *{rivals[0].method}* is at least as accurate and {times(seconds / rivals[0].seconds)} times as fast"
     elif rivals:
         text += f", {times(rivals[0].seconds / seconds)} times as fast as *{rivals[0].method}*"
     else:

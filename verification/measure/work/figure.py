@@ -198,7 +198,7 @@ def picked(rows: Sequence[MethodResult]) -> str:
         return ""
     parts = [
         f"from {digits} {'digit' if digits == 1 else 'digits'} on, *{choice.method}*"
-        f" ({choice.digits} digits in {duration(choice.seconds)})"
+        f" (which gives {choice.digits} digits in {duration(choice.seconds)})"
         for digits, choice in crossovers(rows[0].question, measured=known)
     ]
     return "The quickest methods that keep the error they claim: " + "; ".join(parts) + "."

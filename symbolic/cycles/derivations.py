@@ -314,10 +314,10 @@ def _kernel(letters: tuple[Symbol, ...], names: tuple[str, ...], entries: tuple[
 def generate(expression: Expr | Matrix, arithmetic: str = "numpy", digits: int = 50) -> Any:
     """The code of an expression or a matrix, for arrays, for mpmath numbers, for balls, or as text.
 
-    The function takes the free symbols, by position or by name: `theta`, `theta0`, `theta1` come first, then the others in
-    alphabetical order. `arithmetic` is `"numpy"`, `"mpmath"` or
-    `"arb"` (with `digits`), or `"text"`, which returns the source in the closed vocabulary of
-    `symbolic.expressions.text`; a rational is written `q(1, 3)` there and never rounded.
+    The function takes the free symbols, by position or by name: `theta`, `theta0`, `theta1` come first, then the others
+    in alphabetical order. `arithmetic` is `"numpy"`, `"mpmath"` or `"arb"` (with `digits`), or `"text"`, which returns
+    the source in the closed vocabulary of `symbolic.expressions.text`; a rational is written `q(1, 3)` there and never
+    rounded.
 
     An argument is text such as `"0.1"`, an integer, a fraction, or an exact number of SymPy. A float stands for the
     double that it is, which is not the decimal that it shows: 30 digits of `f(0.1)` are not those of `f("0.1")`.

@@ -104,7 +104,7 @@ BAD = {
     "a shape in words": (lambda: ellipse.at(a="two"), "a = 'two' is no exact number such as 2/25 or 0.08"),
     "a truth value": (lambda: ellipse.at(a=True), "is no exact number"),
     "nothing": (lambda: ellipse.at(a=None), "is no exact number"),
-    "a shape along the boundary": (lambda: ellipse.at(a=2 + cos(theta)), "changes along the boundary"),
+    "a shape along the boundary": (lambda: ellipse.at(a=2 + cos(theta)), "depends on theta"),
     "a wrong shape name": (lambda: ellipse.at(b=2), "ellipse: no shape parameter b; it has: a$"),
     "a shape of a table without": (lambda: cardioid.at(a=2), "cardioid: no shape parameter a; it has: none$"),
     "an egg of one point": (lambda: egg(1), "egg: K = 1 is no number of points"),

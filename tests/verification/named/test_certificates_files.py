@@ -122,7 +122,7 @@ def test_one_name_for_a_number_of_the_table_and_another_of_the_law_is_refused():
         proof_near(Problem(egg, (0, 0, 0), lam=Rational(1, 2), law=law.at(alpha=number)), [0.96, 3.05, 5.15], 20)
         for number in ("1/100", "2/25")
     )
-    with pytest.raises(ValueError, match="alpha is a number of the table, and another one of the law"):
+    with pytest.raises(ValueError, match="alpha is a parameter of the table, and another one of the law"):
         other.document()
 
     assert checked(json.loads(json.dumps(same.document()))).proved

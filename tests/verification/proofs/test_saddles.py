@@ -99,8 +99,8 @@ def test_a_law_of_the_place_leaves_no_rotations():
 @pytest.mark.parametrize(
     ("b", "start", "said"),
     [
-        (Rational(2), -0.91608, "not separated"),  # multipliers near 1.5 and -1.3
-        (Rational(3, 10), 1.21699, "not separated"),  # near 0.4 and -0.7
+        (Rational(2), -0.91608, "inside the unit circle"),  # multipliers near 1.5 and -1.3
+        (Rational(3, 10), 1.21699, "inside the unit circle"),  # near 0.4 and -0.7
         (Rational(-9, 10), 0.51249, "may be complex"),
     ],
 )

@@ -134,13 +134,13 @@ def test_points_of_a_branch_are_those_of_its_series(side):
     ("changes", "said"),
     [
         ({"side": 0}, "side = 0"), ({"side": 2}, "side = 2"), ({"lam": Fraction(0)}, "lam = 0"),
-        ({"lam": Fraction(1)}, "lam = 1"), ({"turn": (Fraction(1, 3), Fraction(1, 4))}, "no symmetry"),
-        ({"turn": (Fraction(1, 2), Fraction(2, 3))}, "no symmetry"),
+        ({"lam": Fraction(1)}, "lam = 1"), ({"turn": (Fraction(1, 3), Fraction(1, 4))}, "must be a symmetry"),
+        ({"turn": (Fraction(1, 2), Fraction(2, 3))}, "must be a symmetry"),
         ({"scene": Scene("egg", alpha="0.08", law="-lam*sin(eta)")}, "one smooth closed curve"),
         ({"scene": Scene("cuspless")}, "one smooth closed curve"),
-        ({"saddle": replace(FOUND.saddle, start=FOUND.saddle.start * 2)}, "no symmetry"),
-        ({"saddle": replace(FOUND.saddle, closure=Closure(-1, FOUND.saddle.closure.shift))}, "no symmetry"),
-        ({"saddle": replace(FOUND.saddle, closure=Closure(1, (1, 4)))}, "no symmetry"),
+        ({"saddle": replace(FOUND.saddle, start=FOUND.saddle.start * 2)}, "must be a symmetry"),
+        ({"saddle": replace(FOUND.saddle, closure=Closure(-1, FOUND.saddle.closure.shift))}, "must be a symmetry"),
+        ({"saddle": replace(FOUND.saddle, closure=Closure(1, (1, 4)))}, "must be a symmetry"),
     ],
 )  # fmt: skip
 def test_each_hypothesis_of_a_common_boundary_is_asked_when_it_is_stated(changes, said):

@@ -177,6 +177,8 @@ def test_a_report_of_ones_own_table_is_one_page(tmp_path):
         (lambda: find_cycles(PEA, period=2), "the shape parameter b needs a value"),
         (lambda: attractors(PEA, lam="1/2"), "the shape parameter b needs a value"),
         (lambda: follow(PEA, lam=("0", "1")), "follow: Table given; accepted: a cycle"),
+        (lambda: follow(find_cycles(HERE, period=2)[0], lams=("0", "1")), "lam, b; did you mean lam?"),
+        (lambda: bifurcation_diagram("egg", lams=(0, 1)), "no shape parameter lams; it has: alpha; did you mean lam?"),
         (lambda: certify(PEA), "certify: Table given; accepted: a cycle"),
         (lambda: work_precision(PEA, "leap", **AT), "question = 'leap'; accepted: step, jacobian, orbit, cycle, fold"),
         (lambda: laws.jacobian(["egg", "eg"]), "no table is called 'eg'; accepted: circle"),

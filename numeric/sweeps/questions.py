@@ -279,7 +279,7 @@ def bifurcation_diagram(
 nu_plus_error, chaotic over 3 lam x 2 orbit x 4 bounce)
     """
     given: dict[str, Any] = {"lam": lam, **shape}
-    parameter, ends = _interval("bifurcation_diagram", given)
+    parameter, ends = _interval("bifurcation_diagram", given, table, law)
     scene, own = _scene_over(table, law, given, (parameter,))
     axis = np.linspace(*ends, counted("values", values, 2))
     sweep = fields.bifurcation(scene, axis, orbits, points, bounces, transient, seed, parameter, own)
@@ -308,8 +308,8 @@ def parameter_space(
     >>> found["chaotic"].tolist()
     [[0, 0], [0, 3]]
     """
-    parameter, ends = _interval("parameter_space", shape)
-    first, last = _interval("parameter_space", {"lam": lam})[1]
+    parameter, ends = _interval("parameter_space", shape, table, law)
+    first, last = _interval("parameter_space", {"lam": lam}, table, law)[1]
     scene, _ = _scene_over(table, law, {"lam": lam, **shape}, (parameter, "lam"))
     along, up = np.linspace(first, last, counted("columns", columns)), np.linspace(*ends, counted("rows", rows))
     sweep = space.parameter_space(up, along, orbits, bounces, transient, seed=seed, scene=scene, parameter=parameter)
@@ -333,13 +333,17 @@ def _one_map(table: Any, lam: Any, law: Law | str | None, shape: dict[str, Any])
     return map
 
 
-def _interval(question: str, given: dict[str, Any]) -> tuple[str, tuple[float, float]]:
+def _interval(
+    question: str, given: dict[str, Any], table: Any, law: Law | str | None
+) -> tuple[str, tuple[float, float]]:
     """The name of the one keyword that is an interval, and the ends of this interval."""
-    varied = [name for name, value in given.items() if isinstance(value, tuple | list)]
+    varied = {name: value for name, value in given.items() if isinstance(value, tuple | list)}
     if len(varied) != 1:
-        raise ValueError(
-            f"{question}: {' and '.join(varied) or 'no keyword'} varies; accepted: one interval, as in lam=('0', '1')"
-        )
+        low = {name: value[0] for name, value in varied.items() if name != "lam" and value}
+        if low:  # a keyword that is no parameter is refused as such
+            _map(table, None, law, {**{name: value for name, value in given.items() if name != "lam"}, **low})
+        varies = f"{' and '.join(varied)} vary" if varied else "no keyword varies"
+        raise ValueError(f"{question}: {varies}; accepted: one interval, as in lam=('0', '1')")
     (name,) = varied
     ends = given[name]
     low, high = (float(shape_value(name, end)) for end in ends) if len(ends) == 2 else (1.0, 0.0)

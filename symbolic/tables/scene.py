@@ -24,6 +24,7 @@ from symbolic.tables.definition import (
     contraction_text,
     exact,
     known_entries,
+    like,
     name_of,
     named_boundary,
     number_entry,
@@ -246,7 +247,7 @@ class Scene:
         first, last = (exact(parameter, end) for end in (low, high))
         known = {**self.shape, **{name: exact(name, text) for name, text in self.law.numbers}}
         if parameter not in known:
-            accepted = ", ".join(["lam", *known])
+            accepted = f"{', '.join(['lam', *known])}{like(parameter, ['lam', *known])}"
             raise ValueError(f"{parameter} is no parameter that varies in {self}; accepted: {accepted}")
         if not first < last:
             raise ValueError(f"{parameter} from {low} to {high} is no interval; the first must be the smaller")

@@ -71,6 +71,7 @@ def bifurcations(
     if kind is not None and kind not in KINDS:
         raise ValueError(f"bifurcations: {kind} is no kind of event; accepted: {', '.join(KINDS)}")
     if len(varied) != 1:
+        as_scene(table, **{name: (varied.get(name) or (own,))[0] for name, own in interval.items()})  # refuses others
         raise ValueError(f"bifurcations: {', '.join(varied) or 'no parameter'} given; one parameter varies")
     ((parameter, ends),) = varied.items()
     scene = as_scene(table, **{name: own for name, own in interval.items() if name != parameter})

@@ -19,7 +19,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 from numeric.pinball.states import ComparedByValues
-from symbolic.tables.definition import exact
+from symbolic.tables.definition import exact, like
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene, as_scene
 from verification.arithmetic.iteration import silent
@@ -317,7 +317,8 @@ def ring_over(orbit: PeriodicOrbit, parameter: str, ends: Any) -> "tuple[Chords,
     if law.parameters:
         return ring, float(exact(parameter, own[parameter])), fixed
     if parameter not in scene.shape:
-        accepted = ", ".join(["lam", *scene.shape, *own])
+        known = ["lam", *scene.shape, *own]
+        accepted = f"{', '.join(known)}{like(parameter, known)}"
         raise ValueError(f"follow: {parameter} is no parameter that varies in {scene}; accepted: {accepted}")
     return replace(ring, table=scene.over(parameter, *ends)), float(scene.shape[parameter]), fixed
 

@@ -314,11 +314,16 @@ class Scene:
 
     @classmethod
     def load(cls, path: "str | Path") -> "Scene":
-        """The scene that the file at `path` holds."""
+        """The scene that the file at `path` holds; `ValueError` where that file cannot be read."""
         from pathlib import Path  # imported here, since most starts read no scene file
 
-        with Path(path).open(encoding="utf-8") as file:
-            return cls.parse(file.read(LONGEST + 1))  # bounded: a device such as /dev/zero never ends
+        try:
+            with Path(path).open(encoding="utf-8") as file:
+                text = file.read(LONGEST + 1)  # bounded: a device such as /dev/zero never ends
+        except (OSError, UnicodeDecodeError) as why:
+            said = getattr(why, "strerror", None) or why
+            raise ValueError(f"scene: {path} cannot be read ({said}); give a file that Scene.save writes") from None
+        return cls.parse(text)
 
     def save(self, path: "str | Path") -> None:
         """Writes the scene as a file that `load` reads; `ValueError` where that file cannot be written."""

@@ -21,7 +21,7 @@ from symbolic import tables
 from symbolic.tables.definition import GALLERY, PAPER, POINTS, UNIFORM, exact, parameter_text, range_ends, range_text
 from symbolic.tables.law import Law, parameters_of_law
 from symbolic.tables.scene import Scene
-from verification.app.cli import Whole, columns, reason
+from verification.app.cli import Whole, columns
 from verification.app.lines import on_terminal
 
 if TYPE_CHECKING:
@@ -192,10 +192,7 @@ def _from_file(
     for key, text in {"K": K, **shape}.items():
         if text is not None:
             raise ValueError(f"--{key} = {text} is already in the file of --scene; leave it out, or use --shape")
-    try:
-        found = Scene.load(file)
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"--scene {file!r} cannot be read: {reason(error)}") from None
+    found = Scene.load(file)
     numbers = {name: parameter_text(f"--shape {name}", text) for name, text in values.items()}
     law = None if formula is None else _law(formula)
     return found.at(lam=None if lam is None else _contraction(lam), law=law, **numbers)

@@ -18,6 +18,7 @@ from verification import (
     report,
     strategies,
     trapping_region,
+    verify,
     work_precision,
 )
 
@@ -184,6 +185,7 @@ def test_a_report_of_ones_own_table_is_one_page(tmp_path):
         (lambda: laws.jacobian(["egg", "eg"]), "no table is called 'eg'; accepted: circle"),
         (lambda: Scene(tables.polar), "polar: a call of it makes no table"),
         (lambda: HERE.save("/no/such/folder/pea.toml"), "cannot be written"),
+        (lambda: verify(claims="nodir"), "there is no folder 'nodir'; accepted: a folder with a paper.toml"),
         (lambda: PinballMap("circle", lam=[0.1, 0.2]).scene, "lam has 2 values; a scene has one contraction"),
     ],
 )

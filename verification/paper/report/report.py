@@ -86,13 +86,17 @@ def pictures(found: Paper) -> list[PaperFigure]:
 def verify(only: str = "*", digits: int = 15, jobs: int = 1, claims: str | Path = OWN) -> Iterator[Result]:
     """Judges the claims whose id matches the glob `only`, in the catalogue's order; only their judges are imported.
 
-    `ValueError` if there is no such claim.
+    `ValueError` at the call if there is no such claim or folder.
 
     With more than one job the claims are judged in that many processes. `claims` is the folder of another paper, or the
     name of a paper of the package; the judges in a folder are executed.
     """
     known = {claim.id: claim for claim in catalogue(claims)}
-    asked = [known[name] for name in matching(only, [*known])]
+    return _in_order([known[name] for name in matching(only, [*known])], digits, jobs)
+
+
+def _in_order(asked: Sequence[Claim], digits: int, jobs: int) -> Iterator[Result]:
+    """Yields the result of each claim, in the order of the claims."""
     found: dict[str, Result] = {}
     order = deque(claim.id for claim in asked)
     with closing(judged(asked, digits, jobs)) as results:

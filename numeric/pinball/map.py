@@ -28,6 +28,7 @@ from numeric.pinball.states import (
     counted,
     real,
     shape_value,
+    together,
 )
 from numeric.pinball.unit import ONE, unit_of
 from symbolic.tables.scene import GALLERY, Law, Scene, given_table, no_parameter
@@ -41,13 +42,12 @@ ROUNDED = 2.0**-48  # of a component's range
 
 
 class PinballMap:
-    """The map `T_lambda` of a table. Paper: section 2.
+    """The map `T_lambda` of a table; without `lam` it is elastic, `lam = 1`. Paper: section 2.
 
-    `table` is a scene or another map, which determine everything, or an exact table, or the name of a table of the
-    paper or of `tables.GALLERY`. For the latter, shape parameters and lengths are keywords, exact or decimal: `0.08`,
-    as text or float, means 2/25. `lam` is one number or one for each particle, and replaces that of a scene. `law` is a
-    law other than the paper's, with numbers for its parameters. With `kernels=False` the same steps run on NumPy
-    arrays.
+    `lam` is one number or one for each particle, and replaces that of a scene. `table` is a scene or another map, which
+    determine everything, or an exact table, or a name of the paper or of `tables.GALLERY`. For these, shape parameters
+    and lengths are keywords, exact or decimal: `0.08`, as text or float, means 2/25. `law` is a law other than the
+    paper's, with numbers for its parameters. With `kernels=False` the same steps run on NumPy arrays.
 
     >>> ellipse = PinballMap("ellipse", lam=1, a=2)
     >>> step = ellipse.step(theta=0.0, phi=0.0)  # along the long axis
@@ -429,7 +429,7 @@ class PinballMap:
     def _start(self, theta: ArrayLike, phi: ArrayLike, component: ArrayLike) -> tuple[NDArray[np.int64], Array, Array]:
         theta, phi = angles("theta", theta), angles("phi", phi)
         where = components(component, [part.name for part in self.ir.parts])
-        theta, phi, where = np.broadcast_arrays(theta, phi, where)
+        theta, phi, where = together(theta, phi, where)
         if theta.size == 0:
             raise ValueError("theta and phi are empty; give at least one particle")
         if phi.max() >= np.pi / 2 or phi.min() <= -np.pi / 2:

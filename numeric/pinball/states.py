@@ -71,6 +71,16 @@ def components(given: ArrayLike, names: Sequence[str]) -> NDArray[np.int64]:
     return array.astype(np.int64)
 
 
+def together(theta: Array, phi: Array, component: NDArray[np.int64]) -> tuple[Array, Array, NDArray[np.int64]]:
+    """The three in one shape; `ValueError` where NumPy cannot broadcast them."""
+    try:
+        theta, phi, component = np.broadcast_arrays(theta, phi, component)
+    except ValueError:
+        shapes = f"theta has shape {theta.shape}, phi {phi.shape} and component {component.shape}"
+        raise ValueError(f"{shapes}; give arrays of one shape, or one number for all particles") from None
+    return theta, phi, component
+
+
 def contraction(given: Contraction) -> Array:
     """The contraction `lam` as an array, of one number or one for each particle; `ValueError` outside of [0, 1].
 

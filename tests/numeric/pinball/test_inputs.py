@@ -35,6 +35,7 @@ def test_a_contraction_that_is_none(lam, words):
         ("north", 0.0, "theta has dtype"),
         (1j, 0.0, "theta has dtype complex128; give real numbers"),
         (np.array(1.0, dtype=np.longdouble), 0.0, "theta has dtype"),
+        ([0.1, 0.2], [0.1, 0.2, 0.3], r"theta has shape \(2,\), phi \(3,\) and component"),
         ([[0.1], [0.2, 0.3]], 0.0, "inhomogeneous"),
         (np.ma.masked_greater([0.1, 0.2, 0.3], 0.15), 0.0, "theta is a masked array with 2 missing entries"),
     ],

@@ -63,6 +63,8 @@ def test_a_window_of_phase_space(tmp_path, capsys):
     read = xr.open_zarr(store)
     assert read.s.values.tolist() == [-0.875, -0.625, -0.375, -0.125, 0.125, 0.375, 0.625, 0.875]
     assert read.sin_phi.values.tolist() == [0.0625, 0.1875, 0.3125, 0.4375]
+    assert main([*arguments, "--window", "-1", "1", "0", "0.5"]) == 0
+    assert "1 of 1 parts were there" in capsys.readouterr().out
 
 
 @pytest.mark.slow

@@ -83,10 +83,13 @@ def carried_out(sweep: "Sweep", how: How, lines: Lines, *more: Any) -> int:
             how.output.console.print(line)
         return DONE
     with how.output.progress(sweep.name, len(sweep.indices())) as advance:
-        shown = 0
+        shown, begun = 0, False
 
         def tick(done: int, parts: int) -> None:
-            nonlocal shown
+            nonlocal shown, begun
+            if done and not begun:  # the first call says what the store had
+                how.output.console.print(f"{done} of {parts} parts were there")
+            begun = True
             for i in range(shown, done):
                 advance(f"{i + 1} of {parts}")
             shown = done

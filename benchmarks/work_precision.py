@@ -26,8 +26,10 @@ KEPT = ("name", "title", "answers", "unit", "certified")
 HEAD = """# Error against run time, question by question
 
 Which method is quickest for a given accuracy, and what does it cost? `pinball work NAME` draws one of these
-diagrams on your machine; {{py:func}}`~verification.measure.work.scenes.work_precision` draws one for your own table and
-question.
+diagrams on your machine. Your own table may be named after the question, as in `pinball work cycle egg --alpha 0.08
+--lam 0.5`, and in Python {{py:func}}`~verification.measure.work.scenes.work_precision` does the same. The question
+`cycle` then takes a cycle of the least period from 2 to 4 at which one is found, and of these one that attracts, if any
+does.
 
 Each diagram shows the error of an answer against the seconds it took, with one line for each method. The marks on a
 line are the method's settings: numbers of digits, or tolerances. Errors are distances from a *certified ball*, so they

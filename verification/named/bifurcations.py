@@ -59,7 +59,8 @@ def bifurcations(
 
     With a `kind` (`saddle-node`, `doubling` or `symmetry-breaking`), the result is the events of cycles of one
     `period`, with proofs: events of the families, and of cycles, attracting or not, that a search finds at `searches`
-    values. Each value returned is proved; that there are no others is not.
+    values. Each value returned is proved, but for pitchforks at which no mirror symmetry is lost, which are told in
+    float64; that there are no others is not proved.
 
     >>> found = bifurcations("ellipse", a="3/2", lam=("1/10", "1"), values=10, starts=20)
     >>> [(one["period"], one["symmetry"]) for one in found.document()["branches"]]

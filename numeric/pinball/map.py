@@ -433,8 +433,8 @@ class PinballMap:
         if theta.size == 0:
             raise ValueError("theta and phi are empty; give at least one particle")
         if phi.max() >= np.pi / 2 or phi.min() <= -np.pi / 2:
-            steep = np.abs(phi) >= np.pi / 2
-            raise ValueError(f"phi = {phi[steep].flat[0]} does not point into the table; |phi| must be below pi/2")
+            steep = phi[np.abs(phi) >= np.pi / 2].flat[0]
+            raise ValueError(f"phi = {steep} does not point into the table; |phi| must be below pi/2, in radians")
         far = theta[np.abs(theta) > 3] if self.family.cusped else np.zeros(0)
         if np.any(at_cusp := np.cos(far / 2) < NEAR):
             raise ValueError(f"theta = {far[at_cusp].flat[0]} is the cusp, where no normal and so no exit is defined")

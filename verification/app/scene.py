@@ -150,6 +150,9 @@ def _shape_value(text: str) -> tuple[str, str]:
     name, equals, value = text.partition("=")
     if not equals or not name.strip().isidentifier():
         raise ValueError(f"--shape {text!r} sets nothing; give NAME=VALUE such as b=1/10")
+    if ".." in value and ":" not in value:
+        ranges = "NAME=VALUE:LOW..HIGH, and NAME=LOW:HIGH or NAME=LOW:HIGH:N where a parameter varies"
+        raise ValueError(f"--shape {text} is no value; accepted: NAME=VALUE, {ranges}")
     return name.strip(), value.strip()
 
 

@@ -168,6 +168,7 @@ def test_a_scene_file_is_taken_by_a_command_and_its_contraction_may_be_changed(s
         ("stadium --shape straight --lam 1", "--shape 'straight' sets nothing; give NAME=VALUE such as b=1/10"),
         ("--polar 1+b*cos(theta) --shape b=0.1:0..2 --lam 1", "--polar: rho = b*cos(theta) + 1 is not positive at"),
         ("--polar 1+b*cos(theta) --shape b=0.1:1/4 --lam 1", "--shape b=0.1:1/4 varies a parameter; this"),
+        ("--polar 1+b*cos(theta) --shape b=0.1..0.3 --lam 1", "NAME=VALUE:LOW..HIGH, and NAME=LOW:HIGH"),
         ("--scene nowhere.toml", "scene: nowhere.toml cannot be read (No such file or"),
         ("circle --polar 1 --lam 1", "one table is needed, polar and circle given"),
         ("circle", "--lam is missing; accepted: numbers in [0, 1], as in --lam 1/2"),

@@ -162,7 +162,7 @@ def test_pinball_work_writes_rows_table_and_diagram(tmp_path, capsys):
     ("arguments", "said"),
     [
         (["fold-4"], "QUESTION = fold-4 is none that is measured; accepted: step-egg"),
-        (["--out", "x.png"], "--plot x.png needs one QUESTION"),
+        (["--out", "x.png"], "--plot x.png needs one QUESTION, as a diagram shows one; accepted: step-egg, "),
         (["fold-3", "--out", "x.txt"], "accepted: .png, .pdf, .svg"),
         (["fold-3", "--most-digits", "5"], "16<=x<=1000"),
     ],

@@ -1,7 +1,7 @@
 """Timing and caching: `pinball bench` times one bounce, `pinball work` a whole question, `pinball cache` shows or
 clears the files kept between runs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -257,11 +257,12 @@ def work_command(
 ) -> int:
     """Error against run time for a whole question, in every arithmetic and by plain scripts.
 
-    With a table, QUESTION is step, jacobian, orbit, cycle, fold or exponent, for that scene. Without one it is
-    step-egg, step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle,
-    exponent-chaos, arclength, arclength-inverse or slap-infimum, and all of these if left out. Errors are distances
-    from a certified ball. In the printed table `*` marks the Pareto front: no method is both quicker and more exact;
-    `!` marks a method whose error is larger than it claims.
+    With a table, QUESTION is step, jacobian, orbit, cycle, fold or exponent, for that scene; the cycle is one of the
+    least period from 2 to 4 at which one is found, attracting if possible. Without a table it is step-egg,
+    step-cardioid, jacobian, cycle-2, cycle-3, cycle-64, lambda-star, fold-3, doubling, exponent-cycle, exponent-chaos,
+    arclength, arclength-inverse or slap-infimum, and all of these if left out. Errors are distances from a certified
+    ball. In the printed table `*` marks the Pareto front: no method is both quicker and more exact; `!` marks a method
+    whose error is larger than it claims.
     """
     from verification.measure.work.bench import MISSING, is_checkout
     from verification.measure.work.choice import QUESTIONS
@@ -270,7 +271,7 @@ def work_command(
     from verification.measure.work.row import facts, footer, plain
     from verification.measure.work.scenes import QUESTIONS as OF_SCENES
 
-    path = _target(question, out)
+    path = _target(question, out, QUESTIONS if scene is None else OF_SCENES)
     for option, value in bare.items():
         if scene is None and value is not None:
             raise ValueError(f"--{option} {value} is for a table, and none is given")
@@ -318,13 +319,13 @@ def described(question: "Question") -> dict[str, str | bool]:
     return {name: getattr(question, name) for name in ("name", "title", "answers", "unit", "certified")}
 
 
-def _target(question: str | None, out: str | None) -> Path | None:
+def _target(question: str | None, out: str | None, known: Iterable[str]) -> Path | None:
     """The path of the diagram, or None; a path that cannot be written is refused before anything is measured."""
     if out is None:
         return None
     path = Path(out)
     if question is None:
-        raise ValueError(f"--plot {out} needs one QUESTION; a diagram shows one")
+        raise ValueError(f"--plot {out} needs one QUESTION, as a diagram shows one; accepted: {', '.join(known)}")
     if path.suffix not in ENDINGS or not path.parent.is_dir():
         raise ValueError(
             f"--plot = {out} cannot be written; accepted: {', '.join(ENDINGS)} files in a folder that is there"

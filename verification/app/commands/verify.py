@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Example: pinball figure egg-slap --out egg-slap.pdf")
 @click.argument("name", required=False)
-@click.option("--out", metavar="FILE", help="A .png, .pdf or .svg file; NAME.png in the current folder if left out.")
+@click.option("--out", metavar="FILE", help="A .png, .pdf, .svg or .webp file; or NAME.png in the current folder.")
 @click.option("--full", is_flag=True, help="In print quality: minutes, where a draft takes seconds.")
 @click.option("--list", "listing", is_flag=True, help="The names, each with the first sentence of its caption.")
 @click.option("--all", "everything", is_flag=True, help="Every figure, as PNG files in the folder --out.")

@@ -339,9 +339,8 @@ def _interval(
     """The name of the one keyword that is an interval, and the ends of this interval."""
     varied = {name: value for name, value in given.items() if isinstance(value, tuple | list)}
     if len(varied) != 1:
-        low = {name: value[0] for name, value in varied.items() if name != "lam" and value}
-        if low:  # a keyword that is no parameter is refused as such
-            _map(table, None, law, {**{name: value for name, value in given.items() if name != "lam"}, **low})
+        one_of_each = {name: value[0] if name in varied and value else value for name, value in given.items()}
+        _map(table, one_of_each.pop("lam", None), law, one_of_each)  # refuses a keyword that is no parameter
         varies = f"{' and '.join(varied)} vary" if varied else "no keyword varies"
         raise ValueError(f"{question}: {varies}; accepted: one interval, as in lam=('0', '1')")
     (name,) = varied

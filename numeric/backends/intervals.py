@@ -1,9 +1,10 @@
 """Number systems that run a program on more than one point: on whole intervals, or on both ends of a chord at once.
 
 `Intervals` encloses the values of a program over intervals of its inputs, as arrays; every operation is rounded
-outwards, so that what the bounds show is proved for every point of the intervals. `Secants` computes the values of a
-program at two points, and the difference of the two values divided by a small number. No digits cancel in this
-difference, even where the two values almost agree.
+outwards, so that what the bounds show is proved for every point of the intervals. `CentredIntervals` does so for
+functions of one variable, with closer bounds from the range of the slope. `Secants` computes the values of a program at
+two points, and the difference of the two values divided by a small number. No digits cancel in this difference, even
+where the two values almost agree.
 """
 
 from collections.abc import Callable
@@ -165,7 +166,7 @@ class Centred:
 
     @staticmethod
     def constant(half: Array, value: Interval) -> "Centred":
-        """A value that is the same on every cell."""
+        """A function with the same value on every cell; `half` has half the width of each cell."""
         found = object.__new__(Centred)
         found.half, found.middle, found.whole, found.slope = half, value, value, NOUGHT
         return found

@@ -203,7 +203,7 @@ class Family(ABC):
         return self.boundary.frame(component, theta)
 
     def cartesian(self, component: NDArray[np.int64], theta: Array) -> tuple[Array, Array]:
-        """The Cartesian coordinates of boundary points, those of `frame`."""
+        """The Cartesian coordinates of boundary points, the same as in `frame`."""
         x, y = self.boundary.curve(component, theta, 2)
         return x, y
 

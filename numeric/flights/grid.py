@@ -131,7 +131,7 @@ def met(
     wide = ops.number(float(grid.shape[0]))
 
     def on(state: list[N]) -> list[N]:
-        """One step through the empty square where the flight is: the length to its edge, and the next list."""
+        """One step over the cell of `state`, or the empty square there: the length at its edge, and the cell's list."""
         t, _ = state
         i, j = (ops.rounded(step[axis] * t + start[axis]) for axis in (0, 1))
         x, y, link, _ = ops.look_up_row(grid.squares, j * wide + i + way)

@@ -98,7 +98,7 @@ class Many(Pieces):
         return self._landed(flight, shape, pieces, [t, *best, where], [*ends, *passed])
 
     def _where(self, flight: Ray[N, M], kind: str, where: N, best: list[N]) -> list[N]:
-        """`p`, `q` and `v x d` of the landing if it is on a piece of the kind `kind`; else the numbers `best`."""
+        """`p`, `q` and `v x d` (see `pieces`) of the landing on piece `where` if its kind is `kind`; else `best`."""
         ops, marked = flight.ops, [known == kind for known in self.kinds]
         if all(marked):
             return list(self._met(flight, self._at(ops, kind, where), where)[1:4])

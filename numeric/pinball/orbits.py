@@ -203,7 +203,7 @@ class OrbitRun:
         return result.rows
 
     def _chosen(self, out: dict[str, NDArray[Any]], made: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
-        """The fields that the caller asked for, in the same order."""
+        """The fields `names` of the run, in this order; `out` has the recorded ones, `made` the bounce of each row."""
         shape = len(made), self.lam.size
         if "component" not in out and {"component", "s"} & {*self.names}:
             out["component"] = np.zeros(shape, dtype=np.int64)

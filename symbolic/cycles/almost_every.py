@@ -1,9 +1,12 @@
 """Every orbit of the cardioid is hyperbolic at every contraction below 1, with bounds that hold for almost every orbit.
 
-Paper: section 4.1. The notation is that of `defocusing` and `splitting`. Lengths along the wall are measured by
-`|K|*ds`, in which the whole boundary is `3*pi` long. A beam leaves with curvature `-y/D`, so that
-`dphi = (1 - y)*|K|*ds`. The cone is `1 <= y <= 1 + lam`; horizontal lines, on which `phi` is constant, are curves along
-the cone, with `y = 1`. `P` is the strip `|phi| <= lam*pi/2`.
+Paper: section 4.1. The notation is that of `defocusing` and `splitting`. A flight of length `t` begins at `theta0` at
+the angle `phi0`, and ends at `theta1` at the angle `eta1`; at either end `c = cos(theta/2)`. Let `C = cos(delta)` with
+`2*delta = theta1 - theta0`, `D0 = cos(phi0)/|K0|` and `d1 = cos(eta1)/|K1|`. The gain `(t - D0)/d1` is at least
+`g = 1 + tan((1 - lam)*pi/8)**2/2` on every flight but the first. Lengths along the wall are measured by `|K|*ds`, in
+which the whole boundary is `3*pi` long. A beam leaves with curvature `-y/D`, so that `dphi = (1 - y)*|K|*ds`. The cone
+is `1 <= y <= 1 + lam`; horizontal lines, on which `phi` is constant, are curves along the cone, with `y = 1`. `P` is
+the strip `|phi| <= lam*pi/2`.
 
 *Pieces.* From every point of the wall the cusp is visible, at one exit angle. These angles form a curve `S` in phase
 space, a graph over the whole wall. A beam focused at the cusp, at a distance `t`, has `y = D0/t < 1`, since
@@ -34,17 +37,18 @@ and for almost every start the upper limit of `log|det D(T**n)|/n` is at most `l
 with `lam`, and is negative for `lam < 1/2`, where the area of `T**n(P)` is at most `4*pi**2*lam*(2*lam)**n`.
 
 *The other direction.* On an orbit that never meets the cusp only one direction is never taken into the cone
-(`splitting`); call it `E`. With `y = D0/(t - f)` it has `0 < f < d1`, since the next `y` is `1 + lam - lam*d1/f` and
-below 1. So `|K|*ds` of a vector of `E` is multiplied by `(D0/d1)*f/(t - f)`, less than `D0/(t - d1) <= 1`: the
-reciprocal of the gain on the chord run backwards, at most `1/g` on every flight but the first. Its `abs(dphi)` is less,
-as `0 < y < 1`, while a pushed-forward horizontal vector has `y >= 1 + lam*(1 - 1/g)` from the second bounce on. So
-*every* orbit off the cusp is hyperbolic for `0 < lam < 1`, and uniformly so in `|K|*ds = (3/2)*d(theta)` and `dphi`:
-one direction is stretched by `g` at each bounce, the other shrinks by `g`, and they keep apart by an angle that depends
-on `lam` alone. In `ds` and `dphi` too the lower limit of the one rate is at least `log(g)`, by `defocusing`, and the
-upper limit of the other at most `-log(g)`, since `|K| >= 3/4`. The area spanned by vectors of both directions is the
-product of their lengths and of the difference of their `y`. So the bound on areas bounds the second rate by `log(lam)`,
-first at times at which `c_n` has a positive lower bound, which include one of any two successive bounces, and then at
-all times, since the vector shrinks in between.
+(`splitting`); call it `E`. Let `f` be the distance from its focus to the landing, so that `y = D0/(t - f)`. Then
+`0 < f < d1`, since the next `y` is `1 + lam - lam*d1/f` and below 1. So `|K|*ds` of a vector of `E` is multiplied by
+`(D0/d1)*f/(t - f)`, less than `D0/(t - d1) <= 1`: the reciprocal of the gain on the chord run backwards, at most `1/g`
+on every flight but the first. Its `abs(dphi)` is less, as `0 < y < 1`, while a pushed-forward horizontal vector has
+`y >= 1 + lam*(1 - 1/g)` from the second bounce on. So *every* orbit off the cusp is hyperbolic for `0 < lam < 1`, and
+uniformly so in `|K|*ds = (3/2)*d(theta)` and `dphi`: one direction is stretched by `g` at each bounce, the other
+shrinks by `g`, and they keep apart by an angle that depends on `lam` alone. In `ds` and `dphi` too the lower limit of
+the one rate is at least `log(g)`, by `defocusing`, and the upper limit of the other at most `-log(g)`, since
+`|K| >= 3/4`. The area spanned by vectors of both directions is the product of their lengths and of the difference of
+their `y`. So the bound on areas bounds the second rate by `log(lam)`, first at times at which `c_n` has a positive
+lower bound, which include one of any two successive bounces, and then at all times, since the vector shrinks in
+between.
 
 *No cycle.* A curve along the cone that is never cut would outgrow the wall; so two points of a horizontal line whose
 orbits are on the same side of `S` at every bounce are one point. An orbit that converges to a cycle is from some bounce

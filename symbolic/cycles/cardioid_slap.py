@@ -155,7 +155,7 @@ def unbounded() -> SignFinding:
 
 @cache
 def expansion_infimum() -> Expr:
-    """The least value of `|(T0**2)'|`, an algebraic number, which is attained where the first flight crosses the axis.
+    """The least value of `|(T0**2)'|`, an algebraic number, attained on the branch whose first flight crosses the axis.
 
     `infimum_attained` proves that it is the least.
 

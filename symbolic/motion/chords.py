@@ -193,10 +193,10 @@ def polygon_kernel(table: Table, corners: int, order: int = 1) -> Kernel:
 
 @cache
 def polar_polygon_kernel(table: Table, corners: int) -> Kernel:
-    """The angles of `polygon_kernel` to order 0 on one polar curve, with the gaps between corners as arguments too.
+    """The angles of `polygon_kernel`, no derivatives, on one polar curve; the gaps between corners are arguments too.
 
-    The arguments are the parameters at the corners, and the gaps from each corner to the next one, at last from the
-    last to the first. Let `q` be the ratio of the radii at both ends of a chord. The chord makes the angle
+    The arguments are the parameters at the corners, then the gaps: how much they grow from each corner to the next one,
+    and from the last to the first. Let `q` be the ratio of the radii at both ends of a chord. The chord makes the angle
     `atan(sin(gap)/(q - cos(gap)))` with the ray to the origin, and the normal makes the angle `atan(rho'/rho)`. As gaps
     are arguments of their own, their width in ball arithmetic does not grow with the uncertainty of both corners. The
     first results are the angles, which are valid where the last results, `q - cos(gap)`, are positive. `ValueError` for

@@ -342,7 +342,7 @@ def _reach(law: Law, table: "Table") -> Range:
     try:
         return -root_integral(square, theta, whole.start, origin), root_integral(square, theta, origin, whole.end)
     except UnboundedError as error:
-        raise ValueError(f"law = {law}: the arc length s of {table.name} is not bounded: {error}") from None
+        raise ValueError(f"law = {law}: no bounds of the arc length s of {table.name} were found: {error}") from None
 
 
 def _cases(phi: "Expr", ranges: Ranges) -> Iterator[Case]:

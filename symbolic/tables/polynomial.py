@@ -284,7 +284,7 @@ def meets(curves: Sequence[Sequence[Piece]]) -> tuple[float, float] | None:
             looked += 1
             if looked > MOST:
                 raise ValueError(
-                    f"more than {MOST} pairs of pieces are close: not proved that they do not cross; accepted: fewer"
+                    f"over {MOST} pairs of pieces are close, too many to prove that none cross; give fewer pieces"
                 )
             if _touch(part, piece, 0):
                 return _shown(part)

@@ -199,7 +199,7 @@ class Scene:
 
     @property
     def family(self) -> "Table":
-        """The table with every shape parameter that has a range left free; `table` itself if none has one."""
+        """The table, free in each shape parameter that has a range; `table` itself if none has one."""
         return _family(self.family_text) if self.family_text else self.table
 
     def over(self, parameter: str, low: Any, high: Any) -> "Table":

@@ -86,7 +86,7 @@ def prove_simple(table: Table, ranges: Mapping[Symbol, tuple[Expr, Expr]] = NONE
         widest = max(range(len(box)), key=lambda i: box[i][1] - box[i][0])
         (low, high), (at, _) = box[widest], middle[widest]
         if high - low <= whole[widest][1] - whole[widest][0] >> NARROWEST:
-            raise NotProvedError(f"{table.name} is not proved to be a table near {where}")
+            raise NotProvedError(f"{table.name} is not proved to be a table for all parameters near {where}")
         boxes += [(*box[:widest], half, *box[widest + 1 :]) for half in ((low, at), (at, high))]
 
 

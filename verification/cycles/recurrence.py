@@ -110,7 +110,7 @@ class Closure:
         return 2 * words.pi * words.q(p, q) if p else 0
 
     def padded(self, x: Sequence[Any], angle: Any) -> list[Any]:
-        """The list `x[-1], x[0], ..., x[n]`, where `angle` is the shift as a number of the same kind.
+        """`x` with a neighbour at each end, `x[-1]` and `x[n]`; `angle` is the shift in radians, of the same kind.
 
         >>> Closure(-1).padded([1, 2], 0)
         [-2, 1, 2, -1]

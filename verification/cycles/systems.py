@@ -7,8 +7,8 @@ equation, for one more parameter. Its derivative is `dg = -w dA v` with the left
 
 A rotation by `2*pi/k`, or the mirror `theta -> -theta`, that maps the boundary to itself maps cycles to cycles. A cycle
 that is its own image after `m` of its `n` bounces is a ring of `m` bounces that closes by the symmetry. Where such a
-cycle has the multiplier 1 without a fold, two cycles branch off that lack the symmetry: a pitchfork, at which the part
-flips.
+cycle has the multiplier 1 without a fold, two cycles branch off that lack the symmetry: a pitchfork, at which the ring
+of `m` bounces has the multiplier -1.
 """
 
 from collections.abc import Callable

@@ -117,7 +117,7 @@ class Cell:
         return _outside(box, cell) / self.dpi
 
     def words(self, renderer: RendererAgg) -> "Array":
-        """How far tick labels, axis labels and title extend beyond the axes, as in `beyond`; places the axis labels."""
+        """Places the axis labels; returns how far they, tick labels and title reach beyond the axes, as in `beyond`."""
         self.axes.apply_aspect()
         shown = (self.axes.xaxis, self.axes.yaxis) if self.axes.axison else ()
         numbered = [list(axis.get_majorticklocs()) for axis in shown]

@@ -57,17 +57,17 @@ class Marked(NamedTuple):
 
 
 def drawn(kind: str, results: Sequence[Any], ending: str) -> bytes:
-    """The picture of a command's results as bytes; `kind` is `module.function` in this package, `ending` a suffix."""
+    """The picture of a command's results; `kind` is `module.function` in `verification.plots`, `ending` a suffix."""
     module, _, name = kind.partition(".")
     with styled():
         return image(getattr(import_module(f"verification.plots.{module}"), name)(*results), ending)
 
 
 def shown(kind: str, results: Sequence[Any], axes: Any = None) -> "Figure":
-    """Figure of results for a script or a notebook; on given axes, or new.
+    """The figure of results for a script or a notebook; on given axes, or new.
 
-    `kind` is `module.function` of this package, or the full name of a function. A new figure is saved in the style in
-    which it was drawn.
+    `kind` is the function that draws it: `module.function` in `verification.plots`, or a full name. A new figure is
+    saved in the style in which it was drawn.
     """
     if isinstance(axes, str | Path):
         path = repr(str(axes))

@@ -241,8 +241,8 @@ def plan(
 ) -> Iterator[Step]:
     """The steps, the most useful first; later steps are planned from the results of earlier ones.
 
-    `within(share)` gives a function for a fraction of the remaining time. A long search calls this function, which may
-    end the search with a `TimeoutError`.
+    `within(share)` gives a function that raises `TimeoutError` once this fraction of the remaining time is over. Long
+    searches call that function from time to time.
     """
     from verification.reports import dynamics
 

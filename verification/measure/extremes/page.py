@@ -160,7 +160,7 @@ def _exceptions(found: Sequence[Line]) -> str:
 
 
 def _of_flights(found: Sequence[Line]) -> str:
-    """A table with a row for each case: numbers of the LLVM kernel, backward errors of other kernels, verdict."""
+    """A table with a row for each case: condition and forward error (LLVM kernel), all backward errors, verdict."""
     others = [*FLIGHTS[1:], TEXTBOOK.name]
     rows = ["| case | condition | forward | error/(cond*eps) | backward: llvm | " + " | ".join(others)
             + " | verdict |", "|---" * (6 + len(others)) + "|"]  # fmt: skip

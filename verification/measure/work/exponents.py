@@ -325,7 +325,7 @@ def parameters() -> Question:
     return Question(
         "arclength-inverse",
         "The parameter at an arc length, egg",
-        f"the parameter at {len(AT)} arc lengths on the egg, alpha = {ALPHA}",
+        f"theta of the points at {len(AT)} given arc lengths on the egg, alpha = {ALPHA}",
         "radians",
         sought.enclosed,
         (own, *slow, *textbook_parameters(map)),

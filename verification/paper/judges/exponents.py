@@ -181,7 +181,8 @@ def jumps(claim: Claim) -> Judgement:
 def triangle_rate() -> Expr:
     """The exponents `nu_plus = nu_minus` of the egg's triangles while their multipliers are complex: `log(g(eta))/2`.
 
-    At a corner of an equilateral triangle the chords make the angle `pi/3`, so `eta + lam*eta = pi/3`.
+    A bounce multiplies areas `ds d(sin(phi))` by `g(eta)`, as `area_factor` says. At a corner of an equilateral
+    triangle the chords make the angle `pi/3`, so `eta + lam*eta = pi/3`.
 
     >>> round(float(triangle_rate().subs(lam, Rational(3937, 10000))), 4)
     -0.3314

@@ -345,7 +345,7 @@ def kink(lam: arb) -> Kink:
         box = arb(near, radius)
         sides = [courses(arb(end), lam) for end in (near - radius, near + radius)]
         if not (all(c.second.whole > 0 for c in sides[0]) and all(c.second.whole < 0 for c in sides[1])):
-            raise ArithmeticError("the kink is not enclosed")
+            raise ArithmeticError(f"the kink of s4 is not enclosed for lam in {lam}; give a narrower range of lam")
         found = courses(box, lam)
         speeds = [c.fourth.slopes[1] - c.fourth.slopes[0] * c.second.slopes[1] / c.second.slopes[0] for c in found]
         middle = courses(arb(near), arb(lam.mid()))

@@ -298,7 +298,11 @@ def departing(
 
 @Compiled
 def aside(x: BallArray, y: BallArray, *known: BallArray) -> list[BallArray]:
-    """The cross product of `(v, w)` and `z - z0`, enclosed by the mean-value theorem, for `Flights.sides`."""
+    """The cross product of `(v, w)` and `(x, y) - z0`, enclosed by the mean-value theorem, for `Flights.sides`.
+
+    `known` has the first four `SIDES` at the midpoints of boxes, all `SIDES` over the boxes, and the balls of the
+    differences of `theta` and `phi` from the midpoint.
+    """
     (x0, y0, v0, w0), (x1, y1, v, w, cos, speed, bend), (by_theta, by_phi) = known[:4], known[4:11], known[11:]
     value = v0 * (y - y0) - w0 * (x - x0)
     along = v * (x - x1) + w * (y - y1)

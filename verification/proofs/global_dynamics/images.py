@@ -76,7 +76,7 @@ class PinballImages:
         self.ends = [tuple(part.ends(self.ops, *self.shape)) for part in self.map.ir.parts]
         if (law := scene.law.on(self.map.table)).measured or law.along is not None:
             wanted = "formulas without s, or with s on one closed curve whose arc length has a formula"
-            raise ValueError(f"law = {law}: the arc length s is not known on boxes; accepted: {wanted}")
+            raise ValueError(f"law = {law}: the arc length s cannot be enclosed over a box; accepted: {wanted}")
         self.law, self.placed = None if law.uniform else lower_law(law, lambda: self.map.table), law.placed
         if self.placed and self.closed and not is_periodic(law.phi):
             raise ValueError(f"law = {law}: it is not proved to have the period 2*pi in theta, which boxes need")

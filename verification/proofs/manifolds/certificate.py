@@ -145,7 +145,7 @@ def contact_of(given: Mapping[str, Any]) -> Contact:
         raise ValueError(f"certificate: bounces = {bounces}, sign = {sign}; accepted: {wanted}")
     z, end, parameter = (float(given[name]) for name in ("z", "end", "letter"))
     if not (0 < abs(z) < FARTHEST and 0 < abs(end) < FARTHEST and 0 < parameter < 1):
-        wanted = f"z and end not 0, of size below {FARTHEST}, letter between 0 and 1"
+        wanted = f"z and end not 0, of size below {FARTHEST}, a letter (the parameter) between 0 and 1"
         raise ValueError(f"certificate: z = {z}, end = {end}, letter = {parameter}; accepted: {wanted}")
     return Contact(unstable, stable, bounces, sign, z, end, parameter)
 

@@ -196,8 +196,9 @@ class Pinball(_Bound):
     `2*pi`.
 
     Forwards, a particle lands where the chord makes the exit angle of the law with the normal; in a table that is not
-    convex it is the first such place, computed in float64 only. Backwards, the chord makes the angle `-phi/lam`, or the
-    angle that another, decreasing law maps to `phi` (float64 only); where this exceeds `pi/2`, the result is NaN.
+    convex it is the first such place, computed in float64 only. Backwards, the chord makes the angle that the law maps
+    to `phi`: `-phi/lam` for the paper's law; for another law, which must decrease, it is found by bisection (float64
+    only). Where this angle exceeds `pi/2`, the result is NaN.
 
     >>> from symbolic.tables import circle
     >>> round(float(Pinball(circle).following(0.0, 3.0, 1.0)), 12)

@@ -147,7 +147,7 @@ def scale(orbit: SaddleCycle, map: PlaneMap, parameter: float, unstable: bool, o
 
 
 def _reach(made: Local) -> float:
-    """The least length along the eigenvector at which the absolute terms of a bounce sum up to `REACH`."""
+    """The least length along the eigenvector at which the moduli of the terms of a bounce add up to `REACH`."""
     low, high = 0.0, 1.0
     while high - low > 1e-3 * high:
         middle = (low + high) / 2
@@ -227,8 +227,8 @@ class Contact:
     """A contact of two manifolds: the saddles, and starting values for `z`, for `end` on the stable manifold, and the
     parameter.
 
-    `z` and `end` are displacements along the eigenvectors. After `bounces` bounces the point is reflected (`sign = -1`)
-    and rotated with the table, and then compared with the stable manifold.
+    `z` and `end` are displacements along the eigenvectors. After `bounces` bounces a symmetry of the table carries the
+    point near the saddle of the stable manifold, with which it is compared; a reflection if `sign = -1`.
     """
 
     unstable: SaddleCycle

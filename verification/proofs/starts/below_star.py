@@ -9,13 +9,14 @@ wall lie in an attracting tube (`core`); every walk reaches these cells, as none
 *From `NEXT` to `lambda*`*. The half return near the corner orbit (`verification.proofs.corner.half_return`) is a map
 `(U, V) -> (U1, V1)`. A state `(U, V)` is a flight from the arc at `-theta1 + U` to the distance `V` beyond the upper
 corner, on the arc where `V < 0` and on the wall where `V > 0`. The map has a fixed point at 0 for `lam = lambda*`, and
-continuous derivatives on either side of `V = 0`. So with `e = lambda* - lam` it is `a*U + b*V + c*e`, with `a`, `b`,
-`c` from the hull of derivatives along the segment to 0, which stays on one side. Call a state *inner* when `U >=
--K*(abs(V) + e)`, `abs(U) <= U_END` and `V_LOW <= V <= V_HIGH`. The hulls prove (`inner`):
+continuous derivatives on either side of `V = 0`. So with `e = lambda* - lam`, `U1` is `a*U + b*V + c*e`, with `a`, `b`,
+`c` from the hull of derivatives along the segment to 0, which stays on one side; `V1` likewise, with other derivatives.
+Names in capitals are constants of this module. Call a state *inner* when `U >= -K*(abs(V) + e)`, `abs(U) <= U_END` and
+`V_LOW <= V <= V_HIGH`. The hulls prove (`inner`):
 
 - the image of an inner state has `0 <= U1 <= U_END`, `0 < V1 <= FAR` and `U1 <= LEAN*V1 + THICK`;
-- if `U >= 0` and `V >= 0` then `V1 >= q*V + c*e` with `q > 1` and `c > 0`. So `V` grows by at least a factor and a
-  positive number at each half return, until it lies between `V_HIGH` and `FAR`;
+- if `U >= 0` and `V >= 0` then `V1 >= q*V + c*e` with some numbers `q > 1` and `c > 0`. So `V` grows by at least a
+  factor and a positive number at each half return, until it lies between `V_HIGH` and `FAR`;
 - no orbit has all its states within `abs(U) <= U_END` and `V_LOW <= V <= V_HIGH`. If none of the states were inner,
   then `U < -K*e` in each and `U1 >= a*U` with `a < 1`, so that `U` would tend to 0, which is a contradiction; and after
   an inner state `V` grows beyond `V_HIGH`. So no orbit stays in boxes next to the corner orbit, and *almost every orbit
@@ -24,10 +25,11 @@ continuous derivatives on either side of `V = 0`. So with `e = lambda* - lam` it
 All states with `V_HIGH <= V <= FAR` and `-THICK <= U <= LEAN*V + THICK`, called *exits*, are in the tube around the
 horizontal orbit, or an entry tube (`core`, `exits`).
 
-An orbit that starts at the join lands on the arc, at `theta1 - U`, and then `V1 = r*U + c*e`. For `abs(U) <= BESIDE`
-the state `(U, V1)` is inner or an exit (`starts`): if `U < -K*e` then `V1 < 0` and `K*(abs(V1) + e) >= abs(U)`, since
-`abs(V1) >= r*abs(U) - c*e`, `K*r > c` and `K*r > 1`. The other starts are covered by parallelograms, whose images are
-followed until all are in the tube or an entry tube (`carried`).
+An orbit that starts at the join lands on the arc, at `theta1 - U`, and then `V1 = r*U + c*e` with derivatives `r > 0`
+and `c > 0`, enclosed in the same way. For `abs(U) <= BESIDE` the state `(U, V1)` is inner or an exit (`starts`): if
+`U < -K*e` then `V1 < 0` and `K*(abs(V1) + e) >= abs(U)`, since `abs(V1) >= r*abs(U) - c*e`, `K*r > c` and `K*r > 1`.
+The other starts are covered by parallelograms, whose images are followed until all are in the tube or an entry tube
+(`carried`).
 """
 
 from collections.abc import Sequence
@@ -270,7 +272,7 @@ class AlmostEveryOrbitBelowLambdaStar(Theorem):
 
     @hypothesis
     def each(self) -> bool:
-        """In each range almost every orbit of the cuspless table converges to the horizontal one."""
+        """For `lam` in each of the ranges, almost every orbit of the cuspless table converges to the horizontal one."""
         return all(one.scene == Scene("cuspless") and one.cycles == (HORIZONTAL,) and one.proved for one in self.ranges)
 
 

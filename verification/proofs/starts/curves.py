@@ -4,12 +4,13 @@ A curve is a graph `phi = g(theta)` on one component, with slope `m = g'`, bend 
 with `d = (log rho)'`. On the boundary `speed` is the length of the velocity, and `bend0` and `bend1` the rates at which
 the tangent turns at start and landing; `l` is the length of the flight. With `p = bend0 - m` and `N = l*p -
 cos(phi0)*speed0` the stretching (the landing's derivative along the curve) is `r = N/(speed1*cos(eta1))`. The length of
-the flight has the derivative `l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`, so that `log r` has the derivative ::
+the flight has the derivative `l' = -sin(eta1)*speed1*r - sin(phi0)*speed0`. If `bend0` and `bend1` do not depend on the
+boundary point, which is needed throughout this module (`ValueError` for other tables), `log r` has the derivative ::
 
     k = (l'*p - l*w + sin(phi0)*m*speed0 - cos(phi0)*speed0')/N - r*speed1'/speed1 + tan(eta1)*(bend1*r - p)
 
-on components whose bend is constant; others raise `ValueError`. The image has the slope `-lam*(bend1 - p/r)`, the bend
-`-lam*p*k0/r^2 + lam*cos(phi0)*speed0*w/(r^2*N)`, where `k = k0 + k1*w`, and `d` becomes `(d - k)/r`.
+The image has the slope `-lam*(bend1 - p/r)`, the bend `-lam*p*k0/r^2 + lam*cos(phi0)*speed0*w/(r^2*N)`, where
+`k = k0 + k1*w`, and `d` becomes `(d - k)/r`.
 """
 
 from dataclasses import dataclass

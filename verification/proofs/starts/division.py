@@ -5,13 +5,13 @@ to the trapping region. The remaining boxes surround unstable cycles, or fill an
 to prove that orbits drift. The points that stay in the remaining boxes for ever have measure 0:
 
 - *Saddles* are clusters of boxes around unstable cycles, as in `fates`.
-- An *annulus* is the set `low <= |theta| <= high`, `|phi - slope*theta -+ offset| <= width` on the tube's component,
-  with the sign of `theta`: two convex parts, mirror images. Over it the derivative of two bounces maps vectors whose
-  slopes `dphi/dtheta` are within `cone` of `slope` to such vectors, and stretches `|dtheta|` by `growth > 1` or more.
-  The distance of two points on a line of that slope, whose orbits visit the same parts, grows by this factor in each
-  round, since the segment between them lies in the convex part. Each box belongs to the right or the left part, and a
-  round from either leads to one part only. So the sequence of parts is the same for all points that start in one part,
-  and the points that stay meet each such line in at most one point. They have measure 0 (Fubini).
+- An *annulus* is the set `low <= |theta| <= high`, `|phi - slope*theta - sign(theta)*offset| <= width` on the tube's
+  component: two convex parts, mirror images. Over it the derivative of two bounces maps vectors whose slopes
+  `dphi/dtheta` are within `cone` of `slope` to such vectors, and stretches `|dtheta|` by `growth > 1` or more. The
+  distance of two points on a line of that slope, whose orbits visit the same parts, grows by this factor in each round,
+  since the segment between them lies in the convex part. Each box belongs to the right or the left part, and a round
+  from either leads to one part only. So the sequence of parts is the same for all points that start in one part, and
+  the points that stay meet each such line in at most one point. They have measure 0 (Fubini).
 
 For `lam > 0` the map is a diffeomorphism wherever it is smooth, so the points that reach a set of measure 0, or a join,
 have measure 0. The theorem holds for every contraction of a range. Paper: section 5.2.

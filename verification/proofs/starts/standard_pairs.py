@@ -1,8 +1,9 @@
 """Standard pairs of a trapping region: curves whose bounds of slope, bend and density the map preserves.
 
+A label is a class of pieces of curves: those over one column of a grid that cross its middle in one row (`labels`).
 Short segments with slopes near 0 are followed for some bounces through the boxes of the region; their images are given
-labels. `pairs` finds all labels of later images, with cones that hold their slopes, and then ranges for bends and for
-`d = (log rho)'`, the logarithmic derivative of the density; see `labels` and `curves`.
+labels. `pairs` finds all labels of later images, with cones that hold their slopes. Then it finds ranges for bends, the
+second derivatives of `phi` by `theta`, and for `d = (log rho)'`, where `rho` is the density by `theta` (`curves`).
 """
 
 from collections.abc import Callable
@@ -81,7 +82,10 @@ def kept(start: Range, step: Callable[[Range], Range]) -> Range:
 
 
 class Pairs(NamedTuple):
-    """Labels, their images (in order along curves, or scattered), all edges, and a bound of `abs(d)` for each label."""
+    """Labels and their images, edges from each label to those of its images, and a bound of `abs(d)` for each label.
+
+    `spread` has the images in their order along the curves; `scattered` has those of broken labels, without an order.
+    """
 
     labels: Labels
     cast: Cast

@@ -26,7 +26,7 @@ from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.cycles.critical import corner
 from verification.cycles.newton import refined
 from verification.proofs.corner.border_collision import AffinePiece, robust
-from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
+from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton, near_guess
 
 ARC, WALL = 0, 1
 NEAR = (0.2545, 0.0712)  # theta1 and lambda-star: the start of Newton's method
@@ -306,10 +306,6 @@ def _polished(here: BoundaryPoint, component: int, value: float, near: float) ->
 def _root(plain: Angle, angle: Angle, here: arb, value: arb, near: float, radius: float) -> arb:
     """The position where the chord angle from `here` is `value`, by an interval Newton step from `near`."""
     gap = plain(here, arb(near))[0] - value
-    for _ in range(10):
-        box = arb(near, radius)
-        image: arb = near - gap / angle(here, box)[2]
-        if box.contains_interior(image):  # which is no NaN
-            return image
-        radius *= 2
+    if (found := near_guess(near, gap, lambda box: angle(here, box)[2], radius, 10)) is not None:
+        return found
     raise ArithmeticError("a landing is not enclosed")

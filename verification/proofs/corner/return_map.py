@@ -40,6 +40,7 @@ from verification.proofs.corner.corner import (
     on_arc,
     parameter,
 )
+from verification.proofs.periodic.interval_newton import near_guess
 
 Angle = Callable[..., Any]
 Angles = dict[tuple[int, int], Angle]
@@ -149,15 +150,12 @@ class CusplessMap:
         middle = arb(piece.theta.mid())
         turned = angle(piece.theta, arb(guess))[1] * (piece.theta - middle)
         missed = value(middle, arb(guess))[0] + turned - piece.phi
-        for _ in range(6):
-            box = arb(guess, radius)
-            image = guess - missed / angle(piece.theta, box)[2]
-            if box.contains_interior(image):  # which is no NaN
-                over = angle(piece.theta, image)
-                phi_1 = -self.lam * self.values[target, piece.component](image, piece.theta)[0] + arb(0)
-                return Departures(target, image, -piece.slope * over[1] / over[2], phi_1)
-            radius *= 2
-        return None
+        image = near_guess(guess, missed, lambda box: angle(piece.theta, box)[2], radius, 6)
+        if image is None:
+            return None
+        over = angle(piece.theta, image)
+        phi_1 = -self.lam * self.values[target, piece.component](image, piece.theta)[0] + arb(0)
+        return Departures(target, image, -piece.slope * over[1] / over[2], phi_1)
 
 
 SETTLED, HALVED = 1e-8, 1e-15  # the last correction of Newton's method (the next is about its square), and of bisection

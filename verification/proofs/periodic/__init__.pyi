@@ -3,7 +3,7 @@
 from .bifurcation import Checks, Stability, Twist, doubling_curve, over_interval, stability, twist
 from .completeness import one_smooth_curve, proofs, stays_below
 from .cycle_in_box import AttractingCycle, Box, SolutionInBox, UniqueCycle, check_unknowns, closed_form
-from .interval_newton import Enclosure, ZeroStatus, compared, dense, slope_bits, stepped
+from .interval_newton import Enclosure, ZeroStatus, compared, dense, near_guess, slope_bits, stepped
 from .torus import TRACE, Rotating, Torus
 from .triangles import PRODUCED, SLAP, contracts, flips_nowhere, no_triangles, witness
 
@@ -29,6 +29,7 @@ __all__ = [
     "dense",
     "doubling_curve",
     "flips_nowhere",
+    "near_guess",
     "no_triangles",
     "one_smooth_curve",
     "over_interval",

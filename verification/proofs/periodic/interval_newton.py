@@ -134,6 +134,23 @@ def stepped(centre: Sequence[Any], box: Sequence[Any], correction: Callable[[], 
     return Enclosure(compared(image, box), image)
 
 
+def near_guess(guess: float, value: arb, slope: Callable[[arb], arb], radius: float, boxes: int) -> arb | None:
+    """The zero of a function of one variable, by interval Newton steps on boxes around a guess, each twice as wide.
+
+    `value` encloses the function at the guess, `slope(box)` its derivative on a box. None if no step is proved.
+
+    >>> square = near_guess(1.4, arb(1.4) ** 2 - 2, lambda box: 2 * box, 1e-3, 10)
+    >>> bool(square is not None and square.contains(arb(2).sqrt()))
+    True
+    """
+    for doubling in range(boxes):
+        box = arb(guess, radius * 2.0**doubling)
+        image: arb = guess - value / slope(box)
+        if box.contains_interior(image):  # which is no NaN
+            return image
+    return None
+
+
 def slope_bits(unknowns: int) -> int:
     """The number of bits for the derivatives, which need not grow with the digits since `F` at the midpoint is tiny.
 

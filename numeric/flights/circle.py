@@ -1,5 +1,7 @@
 """The unit circle: the state is `(theta, phi)`, and a bounce takes it to `(theta + pi - 2*phi, lam*phi)`."""
 
+import numpy as np
+
 from numeric.backends import functions as plane
 from numeric.backends.protocol import Backend, Fields, M, N, Pair, modulus
 from numeric.flights.family import SLAP, Boundary, Family, Frame, Landing
@@ -16,7 +18,7 @@ class Circle(Family):
 
     @classmethod
     def matches(cls, boundary: Boundary) -> bool:
-        return boundary.ir.same_as == "circle"
+        return boundary.ir.same_as == "circle" and boundary.ends[0][0] == -np.pi  # which is where its angles begin
 
     def enter(self, ops: Backend[N, M], component: N, theta: N) -> list[N]:
         return [theta]

@@ -104,7 +104,7 @@ class Conic(Ellipse):
 
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         n = self.unit_of_theta(ops, position)
-        return ops.number(0.0), ops.atan2(n[1], n[0])
+        return ops.number(0.0), self.ranged(ops, ops.atan2(n[1], n[0]))
 
     def _seen(self, theta: Array) -> tuple[Array, Array, Pair[Array]]:
         """The values `1/r` at the polar angles `theta`, and the lengths and the directions of the normals `p*n + Q`.

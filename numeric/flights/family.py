@@ -223,6 +223,14 @@ class Family(ABC):
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
         """The component, as a number, and the parameter `theta` of a position in the family's fields."""
 
+    def ranged(self, ops: Backend[N, M], theta: N) -> N:
+        """The parameter, given as an angle from `-pi` to `pi`, moved by whole turns into its range on the boundary."""
+        low = self.boundary.ends[0][0]
+        if low == -np.pi:
+            return theta
+        theta = theta + ops.number(2 * np.pi * np.floor((low + np.pi) / (2 * np.pi)))
+        return ops.select(theta < ops.number(low), theta + ops.number(2 * np.pi), theta)
+
     def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N] | None:
         """The frame at a position in the family's fields, in any number system; for kernels that record orbits."""
         return None

@@ -40,7 +40,7 @@ class Harmonic(Family):
         return [ops.cos(theta), ops.sin(theta)]
 
     def place(self, ops: Backend[N, M], position: Fields[N]) -> Pair[N]:
-        return ops.number(0.0), ops.atan2(position[1], position[0])
+        return ops.number(0.0), self.ranged(ops, ops.atan2(position[1], position[0]))
 
     def framed(self, ops: Backend[N, M], shape: Fields[N], position: Fields[N]) -> Frame[N]:
         d = self.velocity(ops, *position, *shape)

@@ -126,8 +126,7 @@ class Catalogue:
             kinds = {CycleType.of(one.multipliers, self.elastic) for one in spectra}
             sides = OneSided.OPEN if self.elastic else verdict(derivatives)
             stability = stability if self.elastic and len(kinds) == 1 else CycleType(sides.stability)
-        theta = np.mod(x + pi, 2 * pi) - pi if len(self.table.components) == 1 else x
-        at = tuple(map(float, theta)), tuple(map(float, phi))
+        at = tuple(map(float, _wrapped(self.table, x))), tuple(map(float, phi))
         turns, size = _winding(self.table, components, x), length(self.table, components, x)
         self.cycles.append(Found(components, *at, spectra[0], turns, stability, size, sides, derivatives))
         return True
@@ -203,6 +202,19 @@ class Catalogue:
             turns = cycle.winding * (n // cycle.period)
             sums[turns] = sums.get(turns, 0) + cycle.period * (cycle.index(n) or 0)
         return sums
+
+
+def _wrapped(table: Table, x: Array) -> Array:
+    """Parameters, less the whole turns by which they are outside of their range if the only component runs one turn."""
+    low, turn = _range(table)
+    return np.asarray(low + np.mod(x - low, turn)) if turn else x
+
+
+@cache
+def _range(table: Table) -> tuple[float, float]:
+    """The low end of the parameter's range, and a whole turn if the range is one and there is one component; else 0."""
+    low, high = (float(end) for end in (table.components[0].start, table.components[0].end))
+    return low, 2 * pi if len(table.components) == 1 and abs(high - low - 2 * pi) < SAME else 0.0
 
 
 def _least_periods(components: tuple[int, ...], x: Array, phi: Array) -> NDArray[np.int64]:
@@ -403,7 +415,7 @@ def _admitted(map: PinballMap, itinerary: tuple[int, ...], closed: Array, correc
     out = corrector.exits(itinerary, closed)
     ends = np.array(map.states.ends)[list(itinerary)]
     one = len(map.states.ends) == 1
-    x = np.mod(closed + pi, 2 * pi) - pi if one else closed
+    x = _wrapped(corrector.table, closed)
     fine = np.all(np.abs(out) < pi / 2 - 1e-9, axis=1) & np.all((x >= ends[:, 0]) & (x <= ends[:, 1]), axis=1)
     apart = np.abs(np.sin((np.roll(x, -1, axis=1) - x) / 2))
     fine &= np.all((apart > 1e-7) | (np.array(itinerary) != np.roll(itinerary, -1)), axis=1)
@@ -419,6 +431,8 @@ def _admitted(map: PinballMap, itinerary: tuple[int, ...], closed: Array, correc
     hits = (np.abs(np.sin((theta - after) / 2)) < 1e-6) & (where == np.roll(itinerary, -1))
     if convex(corrector.table) is True:  # where all chords are free
         hits |= np.array([known.on_smooth(p, at) for p, at in zip(np.roll(itinerary, -1), after.T, strict=True)]).T
+    if corrector.law.placed:  # which may be another one where a bounce was moved to
+        hits &= np.abs(landed.phi - np.roll(out, -1, axis=1)) < 1e-6
     right = np.all(hits, axis=1)
     return x[right], out[right]
 

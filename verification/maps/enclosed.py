@@ -113,6 +113,10 @@ class EnclosedMap:
         That a particle stops is what mpmath finds for the midpoint of `here`; it is not proved.
         """
         refusal = Refusal.WIDE
+        with working(self.bits):
+            low, high = self.ends[here.component]
+            if not (self.closed or low <= here.theta <= high or self._on_boundary(here.component, here.theta)):
+                return Refusal.UNPROVED if here.theta < low or here.theta > high else Refusal.WIDE
         for guess in self._guesses(here):
             if guess.code:
                 return guess
@@ -155,7 +159,7 @@ class EnclosedMap:
 
     def _along(self, curves: Curves, component: int, theta: arb) -> Sequence[arb]:
         stretches = self._stretches(component, theta)
-        if len(stretches) == 1 and stretches[0][0] == component:
+        if len(stretches) == 1 and stretches[0][1] is theta:
             return curves[component](theta)
         found = []
         for part, at, ratio in stretches:

@@ -203,13 +203,15 @@ def inside(
     shape: tuple[arb, ...] = (),
     turns: bool = True,
     rough: bool = False,
+    over: bool = True,
 ) -> bool | None:
     """True when each bounce is proved inside its component, or on a closed curve of period 2*pi; False if one is proved
     outside.
 
-    `turns` says that the law, too, has period 2*pi. A parameter beyond its component's end is admitted if one analytic
-    curve runs through the join; with `rough` also if only the tangents agree, for equations that go on along the next
-    component (`OverJoins`). With a single component nothing is refuted: modulo whole turns the parameter may be inside.
+    `turns` says that the law, too, has period 2*pi, and `over` that it is the same on both sides of a join. Then a
+    parameter beyond its component's end is admitted if one analytic curve runs through the join; with `rough` also if
+    only the tangents agree, for equations that go on along the next component (`OverJoins`). With a single component
+    nothing is refuted: modulo whole turns the parameter may be inside.
     """
     ends = _ends(table, shape, BITS)
     for index, value in zip(components, zero, strict=False):
@@ -217,7 +219,7 @@ def inside(
             continue
         start, end = ends[index]
         if not (value > start and value < end):
-            if turns and _runs_on(table, index, value, shape, rough):
+            if turns and over and _runs_on(table, index, value, shape, rough):
                 continue
             return False if len(table.components) > 1 and (value < start or value > end) else None
     return True

@@ -61,7 +61,7 @@ def in_multiprecision(
 def _computed(exact: ExactMap, start: Start, bounces: int, step: Step) -> tuple[list[Bounce], int]:
     """The start and the bounces after it, and the status code of the outcome that ended the orbit, or 0."""
     theta, phi, component = start
-    turned = exact.exactly(theta) - 2 * _turns(exact.map, start) * exact.context.pi
+    turned = _turned(exact.map, start, exact.exactly(theta), exact.ends[component], 2 * exact.context.pi)
     orbit = [exact.start(turned, exact.exactly(phi), component)]
     for i in range(bounces):
         following = exact.bounce(orbit[-1])
@@ -144,7 +144,7 @@ def _attempt(
     names = [part.name for part in map.ir.parts]
     entries = Entries()
     with working(bits):
-        theta = number(start[0], bits) - 2 * _turns(map, start) * arb.pi()
+        theta = _turned(map, start, number(start[0], bits), enclosed.ends[start[2]], 2 * arb.pi())
     here = enclosed.start(theta, *start[1:])
     flight, time = None, arb(0)
     for i in range(bounces + 1):
@@ -171,10 +171,13 @@ def _attempt(
     return entries, None
 
 
-def _turns(map: PinballMap, start: Start) -> int:
-    """Number of turns by which a start on a closed curve is outside the range of its parameter; 0 on other tables."""
+def _turned(map: PinballMap, start: Start, theta: Any, ends: tuple[Any, Any], turn: Any) -> Any:
+    """The start's parameter, on a closed curve less the whole turns by which it is outside of its range."""
+    if not map.states.boundary.closed:
+        return theta
     low, high = map.states.ends[start[2]]
-    return 0 if len(map.states.ends) > 1 else round((float(start[0]) - (low + high) / 2) / (high - low))
+    theta = theta - turn * round((float(start[0]) - (low + high) / 2) / (high - low))
+    return theta - turn if theta > ends[1] else theta + turn if theta < ends[0] else theta  # what float64 cannot tell
 
 
 def text_of(number: arb, digits: int) -> str:

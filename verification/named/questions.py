@@ -423,7 +423,10 @@ def _proof_of_cycle(orbit: PeriodicOrbit, digits: int) -> "UniqueCycle":
             f"certify: a bounce lies on a join, and {scene.law} may jump there; accepted: laws in eta alone"
         )
     problem = Problem(scene.table, orbit.components, lam=S(scene.lam), law=scene.law)
-    return proof_near(problem, list(orbit.theta), digits)
+    proof = proof_near(problem, list(orbit.theta), digits)
+    if any(abs(float(x.mid()) - at) > 1e-3 for x, at in zip(proof.enclosure.zero, orbit.theta, strict=False)):
+        raise ValueError(f"certify: {orbit!r} is no cycle: Newton's method leads to another one, far from it")
+    return proof
 
 
 def morse_graph(

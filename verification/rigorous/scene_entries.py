@@ -69,7 +69,7 @@ def _law_said(table: Table, law: Law, scene: dict[str, Any]) -> dict[str, Any]:
     twice = [name for name in own if shape.get(name, own[name]) != own[name]]
     if twice:
         raise ValueError(f"certificate: {twice[0]} is a parameter of the table, and another one of the law; rename one")
-    return {"shape": {**shape, **own}, "law": law.formula}
+    return ({"shape": {**shape, **own}} if shape or own else {}) | {"law": law.formula}
 
 
 def title_of(scene: Mapping[str, Any]) -> str:

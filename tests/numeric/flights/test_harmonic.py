@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from one_bounce import bounce_errors
-from sympy import cos, sin
+from sympy import cos, pi, sin
 
 from numeric import PinballMap
 from symbolic import tables
@@ -114,3 +114,16 @@ def test_the_parameter_of_a_conic_is_the_polar_angle_about_its_focus(conic):
         assert exact.context.hypot(frame.x[i] - x, frame.y[i] - y) <= 2.0**-49 * condition * exact.context.hypot(x, y)
         assert abs(speed[i] / size - 1) <= 2.0**-48 * condition
         assert abs(curvature[i] * size**3 / (dy * ax - dx * ay) - 1) <= 2.0**-47 * condition
+
+
+@pytest.mark.parametrize("low", [-pi, 0, -pi / 2, 2 * pi])
+@pytest.mark.parametrize("wave", [0, cos(3 * symbol) / 40])
+def test_a_parameter_lies_in_its_range_and_a_law_takes_it_there(low, wave):
+    x, y = (1 + wave) * 11 * cos(symbol) / 10, (1 + wave) * sin(symbol)
+    map = PinballMap(
+        tables.piecewise(tables.arc("c", x, y, low, low + 2 * pi)), lam=0.25, law="-lam*eta + sin(theta/2)/10"
+    )
+    told = map.step(float(low) + np.linspace(0.1, 6.1, 12), 0.2)
+
+    assert np.all((float(low) <= told.theta) & (told.theta <= float(low + 2 * pi)))
+    assert told.phi == pytest.approx(-told.eta / 4 + np.sin(told.theta / 2) / 10, abs=1e-14)

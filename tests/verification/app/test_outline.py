@@ -265,7 +265,7 @@ NESTED = '<g id="g0"><path d="M0 0H1V1Z"/></g>' + "".join(
         ("a.svg", svg('<path d="M10 10 C10 10 60 20 50 40 L10 40 Z"/>'), "no direction at its end (10, -10)"),
         ("a.csv", "\n".join(f"{i},{i * i}" for i in range(20000)), "20000 points are given"),
         ("a.wkt", "LINEARRING (0 0, 1 0, 1 1, 0 0)", "line 1 of data is"),
-        ("a.svg", svg(RECT, 'width="9cm" height="9cm" preserveAspectRatio="none" viewBox="0 0 10 6"'), "height differently"),
+        ("a.svg", svg(RECT, 'width="9cm" height="9cm" preserveAspectRatio="none" viewBox="0 0 10 6"'), "differently"),
         ("a.svg", svg(NESTED), "more than 4000 shapes"),
         ("a.svg", svg('<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g>'), "within one another"),
     ],

@@ -166,3 +166,20 @@ def test_at_a_jump_of_the_law_on_a_closed_curve_both_sides_are_held_or_nothing_i
 
     assert landed is Refusal.WIDE or (landed.phi.contains(arb.pi() / 10) and landed.phi.contains(-arb.pi() / 10))
     assert beside.phi < -0.3
+
+
+def test_beyond_a_smooth_end_the_formula_of_the_next_component_holds_though_it_is_the_same_component():
+    """A landing 1e-20 beyond the end; its place by bisection on the boundary in 70 digits."""
+    map = EnclosedMap(Scene(tables.polar("1 + theta*(theta^2-pi^2)^2/2000"), lam="1/2"), digits=55)
+    phi = "0.1206364594594235067110971724244524366570184742739348342009671605880649"
+    landed = map.bounce(map.start("1/3", phi))
+
+    with working(250):
+        assert landed.theta.overlaps(arb("-3.14159265358979323845264338327950288419716939937510582097494 +/- 1e-58"))
+
+
+def test_an_orbit_that_starts_beyond_a_corner_is_not_proved():
+    map = EnclosedMap(Scene(tables.polar("1 + cos(theta/2)/12"), lam="1/2"), digits=30)
+    starts = ["3.3", "-3.2", "3.14159265358979323847", arb(3.14159, "1e-3")]
+
+    assert all(isinstance(map.bounce(map.start(at, "0.2")), Refusal) for at in starts)

@@ -206,3 +206,13 @@ def test_a_pitchfork_that_has_no_certificate_keeps_its_value_which_is_not_certif
     assert float(found.value) == pytest.approx(0.887936692, abs=1e-8)  # the report's, by another search
     with pytest.raises(ValueError, match="was not proved; accepted"):
         found.save("pitchfork.json")
+
+
+def test_a_cycle_beside_a_join_at_which_the_law_jumps_is_not_certified():
+    """Its equations hold on the continuation of a half whose bounce lies 5e-35 beyond its end, on the other half."""
+    halves = [("upper", "2*cos(theta)", "sin(theta)"), ("lower", "-2*cos(theta)", "-sin(theta)")]
+    parts = [{"name": name, "x": x, "y": y, "from": "0", "to": "pi"} for name, x, y in halves]
+    law = "-lam*eta + (1 - cos(theta) + sin(theta) - cos(theta)/10^33)/10"
+    found = find_cycles(Scene.of({"component": parts, "lam": "1/2", "law": law}), period=2)
+
+    assert not any(certify(cycle, digits=30).certified for cycle in found if min(map(abs, cycle.theta)) < 1e-9)

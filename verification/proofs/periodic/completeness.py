@@ -135,9 +135,12 @@ def no_others(
 def one_smooth_curve(table: Table, law: Law) -> bool:
     """True if the boundary is one closed curve that has a tangent everywhere and no straight component.
 
-    With several components, the law must also be independent of the place.
+    With several components, the law must also be independent of the place. A single one must have the period 2*pi, as
+    its chords are taken on its formula beyond its ends.
     """
-    joined = len(curves(table)) == 1 and not (table.shapes or law.placed or table.undefined)
+    joined = (
+        len(table.components) > 1 and len(curves(table)) == 1 and not (table.shapes or law.placed or table.undefined)
+    )
     bent = all(any(x.diff(letter, 2) != 0 for x in part.point) for part in table.components)
     return closes_smoothly(table) or (joined and bent and all(contact.smooth for contact in contacts(table)))
 

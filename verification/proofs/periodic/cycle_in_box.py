@@ -244,7 +244,7 @@ class UniqueCycle(SolutionInBox):
         if law.measured and len(problem.table.components) == 1:  # beyond its jump the equations belong to another law
             whole = [arb(x, self.radius) for x in self.centre[: problem.period]]
         rough = problem.kind is None and not law.placed
-        placed = inside(problem.table, parts, whole, shape, turns or not law.placed, rough)
+        placed = inside(problem.table, parts, whole, shape, turns or not law.placed, rough, over=not law.placed)
         if placed is not True or convex(problem.table, shape) is True:
             return placed
         free = [first_hits(problem.table, on, theta, shape) for on, theta, _ in self.sides]

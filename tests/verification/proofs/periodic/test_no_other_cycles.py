@@ -6,15 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flint import arb
-from sympy import Rational
+from sympy import Rational, cos, pi, sin
 
 from symbolic.tables import circle, egg
+from symbolic.tables.gallery import arc, piecewise
 from symbolic.tables.law import Law
+from symbolic.tables.table import theta
 from verification.arithmetic.arrays import BallArray
 from verification.arithmetic.balls import balls, working
 from verification.cycles.newton import floats
 from verification.cycles.problem import Problem
-from verification.cycles.search import all_cycles
+from verification.cycles.search import Catalogue, all_cycles
 from verification.proofs.periodic import completeness, triangles
 from verification.proofs.periodic.interval_newton import ZeroStatus, krawczyk
 
@@ -127,3 +129,10 @@ def test_there_are_no_cycles_of_no_bounces():
     catalogue = all_cycles(egg(3).at(alpha="1/20"), Rational(1, 4), 1).catalogue
     with pytest.raises(ValueError, match="n = 0"):
         completeness.no_others(catalogue, Rational(1, 4), 0)
+
+
+def test_of_one_formula_that_has_not_the_period_of_its_curve_nothing_is_proved():
+    """An ellipse run through once as theta runs from 0 to 4*pi; both its axes are cycles of period 2."""
+    whole = piecewise(arc("c", 11 * cos(theta / 2) / 10, sin(theta / 2), 0, 4 * pi))
+
+    assert completeness.no_others(Catalogue(whole, 0.25), Rational(1, 4), 2).complete is None

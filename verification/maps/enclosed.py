@@ -17,6 +17,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
+from numeric.pinball.states import components
 from symbolic.tables.definition import exact
 from symbolic.tables.joins import JoinKind, contacts, following
 from symbolic.tables.law import Law
@@ -96,6 +97,7 @@ class EnclosedMap:
 
     def start(self, theta: Any, phi: Any, component: int = 0) -> Bounce:
         """The bounce, in balls, with parameter `theta` and exit angle `phi`, which are balls or exact numbers."""
+        component = int(components(component, [part.name for part in self.map.ir.parts]))
         with working(self.bits):
             theta, phi = number(theta, self.bits), number(phi, self.bits)
             return self._leaving(theta, phi, component, self._frame(component, theta))

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from numeric import PinballMap, Status
 from numeric.flights.family import FORMULA, NEAR, Frame, law_of
 from numeric.flights.general import General
+from numeric.pinball.states import components
 from symbolic.tables.definition import exact
 from symbolic.tables.law import Law
 from symbolic.tables.scene import as_scene
@@ -100,7 +101,7 @@ class ExactMap:
 
     def start(self, theta: Any, phi: Any, component: int = 0) -> Bounce:
         """The bounce at parameter `theta` with exit angle `phi`, both taken exactly."""
-        mp = self.context
+        mp, component = self.context, int(components(component, [part.name for part in self.map.ir.parts]))
         theta, phi = mp.mpf(theta), mp.mpf(phi)
         tx, ty, x, y = self._frame(component, theta)
         c, s = mp.cos(phi), mp.sin(phi)

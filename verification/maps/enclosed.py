@@ -117,7 +117,7 @@ class EnclosedMap:
         refusal = Refusal.WIDE
         with working(self.bits):
             low, high = self.ends[here.component]
-            if not (self.closed or low <= here.theta <= high or self._on_boundary(here.component, here.theta)):
+            if not (low <= here.theta <= high or self._on_boundary(here.component, here.theta)):
                 return Refusal.UNPROVED if here.theta < low or here.theta > high else Refusal.WIDE
         for guess in self._guesses(here):
             if guess.code:

@@ -19,6 +19,7 @@ from .graph import (
     morse_graph,
     ranges,
     refined,
+    sparse,
     transitions,
 )
 from .norms import in_frame, shrinkage, times
@@ -70,6 +71,7 @@ __all__ = [
     "scene_of",
     "scene_said",
     "shrinkage",
+    "sparse",
     "times",
     "title_of",
     "transitions",

@@ -41,7 +41,7 @@ from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.images import PinballImages, RangeTheorem, invertible
 from verification.proofs.global_dynamics.regions import Derivatives, factors, grown_cones, least_mean, push_slopes
 from verification.rigorous.boxes import Boxes
-from verification.rigorous.graph import Cells, Grid, Mask, Transitions, refined
+from verification.rigorous.graph import Cells, Grid, Mask, Transitions, refined, sparse
 from verification.rigorous.norms import shrinkage
 from verification.rigorous.theorem import hypothesis
 
@@ -95,7 +95,7 @@ def clusters(
     chosen = recurrent[:-1] & graph.leaf
     inner = graph.edges[:-1, :-1][chosen][:, chosen].tocoo()
     count = int(names.max()) + 1
-    walks = csr_matrix((np.ones(inner.nnz, dtype=bool), (names[inner.row], names[inner.col])), shape=(count, count))
+    walks = sparse(names[inner.row], names[inner.col], count)
     boxes = _rectangles(graph, cells, names, count)
     pieces, source = boxes.parts(*CUT)
     wide = np.max(boxes.x[1] - boxes.x[0])

@@ -99,6 +99,11 @@ class Catalogue:
     law: Law = PAPERS_LAW
     elastic: bool = False
 
+    @property
+    def scale(self) -> float:
+        """Radians per unit of the boundary's parameter, where cycles are compared."""
+        return _scale(self.table)
+
     def add(
         self, components: tuple[int, ...], x: Array, phi: Array, known: MonodromyDeterminants | None = None
     ) -> bool:
@@ -106,9 +111,9 @@ class Catalogue:
 
         `known` are the multipliers of a cycle of which this one is an image.
         """
-        n = int(_least_periods(components, x[None], phi[None])[0])
+        n = int(_least_periods(components, self.scale * x[None], phi[None])[0])
         components, x, phi = components[:n], x[:n], phi[:n]
-        mark = _marks(components, x, phi)
+        mark = _marks(components, self.scale * x, phi)
         if self._known(n, mark[None])[0]:
             return False
         several = joins(self.table).sides(components, x) if len(self.table.components) > 1 else [(components, x)]
@@ -133,10 +138,11 @@ class Catalogue:
 
     def unknown(self, components: tuple[int, ...], x: Array, phi: Array) -> NDArray[np.bool_]:
         """For each row of bounces, whether its cycle is not in the catalogue."""
-        periods, new = _least_periods(components, x, phi), np.ones(len(x), dtype=bool)
+        at = self.scale * x
+        periods, new = _least_periods(components, at, phi), np.ones(len(x), dtype=bool)
         for n in np.unique(periods).tolist():
             own = periods == n
-            new[own] = np.logical_not(self._known(n, _marks(components[:n], x[own, :n], phi[own, :n])))
+            new[own] = np.logical_not(self._known(n, _marks(components[:n], at[own, :n], phi[own, :n])))
         return new
 
     def _known(self, n: int, marks: Array) -> NDArray[np.bool_]:
@@ -205,20 +211,20 @@ class Catalogue:
 
 
 def _wrapped(table: Table, x: Array) -> Array:
-    """Parameters, less the whole turns by which they are outside of their range if the only component runs one turn."""
-    low, turn = _range(table)
-    return np.asarray(low + np.mod(x - low, turn)) if turn else x
+    """Parameters; those of a single component less the whole turns by which they are outside of its range."""
+    low, turn = float(table.components[0].start), 2 * pi / _scale(table)
+    return np.asarray(low + np.mod(x - low, turn)) if len(table.components) == 1 else x
 
 
 @cache
-def _range(table: Table) -> tuple[float, float]:
-    """The low end of the parameter's range, and a whole turn if the range is one and there is one component; else 0."""
-    low, high = (float(end) for end in (table.components[0].start, table.components[0].end))
-    return low, 2 * pi if len(table.components) == 1 and abs(high - low - 2 * pi) < SAME else 0.0
+def _scale(table: Table) -> float:
+    """Radians per unit of the parameter: a single component runs one whole turn, and none of several more than one."""
+    longest = max(float(part.end - part.start) for part in table.components)
+    return 2 * pi / longest if len(table.components) == 1 else min(1.0, 2 * pi / longest)
 
 
 def _least_periods(components: tuple[int, ...], x: Array, phi: Array) -> NDArray[np.int64]:
-    """The minimal period of each row of bounces."""
+    """The minimal period of each row of bounces at the angles `x`."""
     n = len(components)
     periods = np.full(len(x), n)
     for m in (m for m in range(n - 1, 0, -1) if n % m == 0 and components == components[m:] + components[:m]):
@@ -228,7 +234,7 @@ def _least_periods(components: tuple[int, ...], x: Array, phi: Array) -> NDArray
 
 
 def _marks(components: tuple[int, ...], x: Array, phi: Array) -> Array:
-    """Numbers that tell cycles apart and do not depend on the first bounce, for one cycle or for each row."""
+    """Numbers that tell cycles apart and do not depend on the first bounce; one cycle, or a row of angles `x` each."""
     parts, forth = np.array(components), np.roll(x, -1, axis=-1)
     terms = [np.cos(m * x + 0.4) + np.sin(0.7 + m * parts) for m in (1, 2, 3, 4, 5, 7)]  # symmetric cycles cancel all
     terms += [np.sin(m * phi + 0.3) for m in (1, 2)]  # sums but those of their own order
@@ -358,7 +364,7 @@ def _harvest(
     """Adds cycles found from orbit segments of `n` bounces, away from known ones if `deflated`; returns how many."""
     parts, theta, phi = orbits
     starts = theta.shape[0] - n
-    gap = np.abs(np.sin((theta[n:] - theta[:starts]) / 2)) * 2
+    gap = np.abs(np.sin(catalogue.scale * (theta[n:] - theta[:starts]) / 2)) * 2
     gap = gap + np.abs(phi[n:] - phi[:starts]) + 10.0 * (parts[n:] != parts[:starts])
     begin, particle = np.nonzero(gap < NEAR)
     if len(begin) > SEEDS:
@@ -377,7 +383,7 @@ def _harvest(
             while np.any(new := catalogue.unknown(components, x, out)):
                 first, met = int(np.argmax(new)), catalogue.degenerate
                 _file(catalogue, components, x[first], out[first])
-                marks = _marks(components, x[first:], out[first:])
+                marks = _marks(components, catalogue.scale * x[first:], out[first:])
                 x, out = x[first + 1 :], out[first + 1 :]
                 if catalogue.degenerate > met:  # and so are its copies
                     other = np.max(np.abs(marks[1:] - marks[0]), axis=1) >= SAME * n
@@ -390,7 +396,8 @@ def _isolated(
     catalogue: Catalogue, corrector: Corrector, components: tuple[int, ...], x: Array, out: Array
 ) -> tuple[Array, Array]:
     """The rows whose cycles do not have the multiplier 1; the catalogue counts those that do."""
-    periods, family = _least_periods(components, x, out), np.zeros(len(x), dtype=bool)
+    periods = _least_periods(components, catalogue.scale * x, out)
+    family = np.zeros(len(x), dtype=bool)
     for n in np.unique(periods).tolist():
         own = periods == n
         family[own] = corrector.at_one(components[:n], x[own, :n]) < FAMILY
@@ -414,21 +421,21 @@ def _admitted(map: PinballMap, itinerary: tuple[int, ...], closed: Array, correc
         return closed, closed
     out = corrector.exits(itinerary, closed)
     ends = np.array(map.states.ends)[list(itinerary)]
-    one = len(map.states.ends) == 1
+    one, half = len(map.states.ends) == 1, _scale(corrector.table) / 2
     x = _wrapped(corrector.table, closed)
     fine = np.all(np.abs(out) < pi / 2 - 1e-9, axis=1) & np.all((x >= ends[:, 0]) & (x <= ends[:, 1]), axis=1)
-    apart = np.abs(np.sin((np.roll(x, -1, axis=1) - x) / 2))
+    apart = np.abs(np.sin((np.roll(x, -1, axis=1) - x) * half))
     fine &= np.all((apart > 1e-7) | (np.array(itinerary) != np.roll(itinerary, -1)), axis=1)
     for part, sharp in no_tangent(corrector.table):
         gap = x[:, np.array(itinerary) == part] - sharp
-        fine &= np.all(np.abs(2 * np.sin(gap / 2) if one else gap) > SAME, axis=1)
+        fine &= np.all(np.abs(2 * np.sin(gap * half) if one else gap) > SAME, axis=1)
     x, out = x[fine], out[fine]
     if not len(x):
         return x, out
     landed, after = map.step(x, out, np.broadcast_to(np.array(itinerary), x.shape)), np.roll(x, -1, axis=1)
     known = joins(corrector.table)
     where, theta = known.canonical(landed.component, landed.theta) if not one else (landed.component, landed.theta)
-    hits = (np.abs(np.sin((theta - after) / 2)) < 1e-6) & (where == np.roll(itinerary, -1))
+    hits = (np.abs(np.sin((theta - after) * half)) < 1e-6) & (where == np.roll(itinerary, -1))
     if convex(corrector.table) is True:  # where all chords are free
         hits |= np.array([known.on_smooth(p, at) for p, at in zip(np.roll(itinerary, -1), after.T, strict=True)]).T
     if corrector.law.placed:  # which may be another one where a bounce was moved to

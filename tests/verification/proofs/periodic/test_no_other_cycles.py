@@ -135,4 +135,5 @@ def test_of_one_formula_that_has_not_the_period_of_its_curve_nothing_is_proved()
     """An ellipse run through once as theta runs from 0 to 4*pi; both its axes are cycles of period 2."""
     whole = piecewise(arc("c", 11 * cos(theta / 2) / 10, sin(theta / 2), 0, 4 * pi))
 
+    assert all_cycles(whole, Rational(1, 4), 2).catalogue.count(2) == 2
     assert completeness.no_others(Catalogue(whole, 0.25), Rational(1, 4), 2).complete is None

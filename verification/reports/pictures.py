@@ -4,6 +4,7 @@ Densities are small images of one ink, whose opacity is the logarithm of a count
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-LABELS = 14  # curves with words, at most; others are lines only
+BUNDLED = 0.05  # of the picture's width, about: curves that are everywhere so near another one share its label
 COLOURS = tuple(colour for colour in PALETTE if colour != "#7f7f7f")
 REST = "#b0a08a"  # colour of further families
 GROUND = {"chaotic": "#5a6478", "neutral": "#c3cad6", "stopped": "#e3dccb", "anything else": "#f3f3ef"}
@@ -250,29 +251,43 @@ def regions(
 
 def _curves(axes: "Axes", lams: Array, values: Array, curves: Sequence[Mapping[str, Any]], own: float) -> None:
     """Draws the curves of events with their names, dots where they are proved, and a line at the scene's own value."""
-    taken, size = list[Array](), np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
+    size = np.array([np.ptp(lams), 0.4 * np.ptp(values)])  # words are wider than they are high
+    bundles = list[tuple[Array, Array, list[int]]]()  # the points of a first curve, where words stand, and who is near
     axes.axhline(own, color="0.45", lw=0.8)
     for number, curve in enumerate(curves):
         points = np.array(curve["points"])[:, 1::-1]
         axes.plot(*points.T, color="black", lw=1.1, ls=DASHES.get(curve["kind"], "-"))
         axes.plot(*[[float(row[k]) for row in curve["proved"]] for k in (1, 0)], "o", color="black", ms=2.5)
-        words = f"{number + 1} {SHORT.get(curve['kind'], curve['kind'])} {curve['period']}"
+        points = _even(points / size)
+        for first, _, members in bundles:
+            if np.max(np.min(np.hypot(*(points[:, None] - first).T), axis=0)) < BUNDLED:
+                members.append(number)
+                break
+        else:
+            bundles.append((points, _apart(points, [place for _, place, _ in bundles]), [number]))
+    for _, place, members in bundles:
+        runs = [[i for _, i in run] for _, run in groupby(enumerate(members), lambda pair: pair[1] - pair[0])]
+        words = ", ".join(f"{run[0] + 1}" + f" to {run[-1] + 1}" * (len(run) > 1) for run in runs)
+        if len(members) == 1:
+            curve = curves[members[0]]
+            words += f" {SHORT.get(curve['kind'], curve['kind'])} {curve['period']}"
         ground = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8}
-        if number < LABELS:
-            taken.append(_apart(points / size, taken))
-            axes.annotate(words, tuple(taken[-1] * size), ha="center", va="center", fontsize=6.5, bbox=ground)
+        axes.annotate(words, tuple(place * size), ha="center", va="center", fontsize=6.5, bbox=ground)
     axes.set_xlim(*sides(lams))
     axes.set_ylim(*sides(values))
 
 
-def _apart(points: Array, taken: Sequence[Array]) -> Array:
-    """The point on a curve, away from its ends, farthest from the points in `taken`; the middle if `taken` is empty."""
+def _even(points: Array) -> Array:
+    """Points on a curve at equal distances along it."""
     length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
-    places = np.stack([np.interp(np.linspace(0.12, 0.88, 39) * length[-1], length, x) for x in points.T], axis=1)
-    if not taken:
-        return np.asarray(places[19])
-    gaps = np.min([np.hypot(*(places - other).T) for other in taken], axis=0)
-    return np.asarray(places[int(np.argmax(gaps))])
+    return np.stack([np.interp(np.linspace(0, length[-1], 51), length, x) for x in points.T], axis=1)
+
+
+def _apart(points: Array, taken: Sequence[Array]) -> Array:
+    """The point, away from the ends, farthest from the points in `taken`; the middle if `taken` is empty."""
+    places = points[6:-6]
+    gaps = [np.min([np.hypot(*(place - other)) for other in taken], initial=np.inf) for place in places]
+    return np.asarray(places[int(np.argmax(gaps)) if taken else len(places) // 2])
 
 
 def basins(

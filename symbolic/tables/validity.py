@@ -345,7 +345,13 @@ def root(square: Expr, box: Box) -> Expr:
 
 
 def modulus(expression: Expr, box: Box) -> Expr:
-    """`|expression|`, resolved when its sign on the box is proved."""
+    """`|expression|` of a polynomial, resolved when its sign inside the box is proved; at the ends it may vanish.
+
+    >>> x = Symbol("x", real=True)
+    >>> modulus(x, {x: Interval(0, 1)}), modulus(x, {x: Interval(-1, 1)})
+    (x, Abs(x))
+    """
+    box = {letter: range if range.interior.is_empty else range.interior for letter, range in box.items()}
     if is_positive(expression, box):
         return expression
     return -expression if is_positive(-expression, box) else Abs(expression)

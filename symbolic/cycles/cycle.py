@@ -247,16 +247,6 @@ def multipliers(trace: Expr, det: Expr) -> tuple[Expr, Expr]:
     return trace / 2 + half, trace / 2 - half
 
 
-def inside_unit_circle(trace: Expr, det: Expr, box: Box) -> SignFinding:
-    """Are both multipliers smaller than 1 in modulus, everywhere in the box?
-
-    >>> from sympy import Rational, S
-    >>> inside_unit_circle(S.Zero, Rational(1, 2), {}).outcome.name
-    'PROVED'
-    """
-    return conjunction(positive(1 - trace + det, box), positive(1 + trace + det, box), positive(1 - det, box))
-
-
 def saddle(trace: Expr, det: Expr, box: Box) -> SignFinding:
     """Is `0 < mu_minus < 1 < mu_plus` everywhere in the box?
 

@@ -12,7 +12,28 @@ from inspect import Parameter, Signature
 from itertools import pairwise
 from typing import Any, TypeAlias
 
-from sympy import And, Basic, Expr, Integral, Interval, Matrix, Piecewise, S, Symbol, elliptic_e, pi, simplify, sqrt
+from sympy import (
+    And,
+    Basic,
+    CRootOf,
+    Expr,
+    Integral,
+    Interval,
+    Matrix,
+    N,
+    Piecewise,
+    Poly,
+    S,
+    Symbol,
+    elliptic_e,
+    fraction,
+    pi,
+    roots,
+    simplify,
+    sqrt,
+    together,
+)
+from sympy.solvers.inequalities import solve_rational_inequalities
 
 from symbolic.cycles import cycle as cycles
 from symbolic.cycles.cycle import Cycle, given_cycle, shortened, trace_and_determinant
@@ -268,12 +289,13 @@ def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
 
     At `flip` a multiplier is -1; the cycle is stable below. Above `focus` the multipliers are complex. A value is None
     if no such contraction exists in [0, 1] for any shape in the range; if it exists for some shapes only, it is a
-    formula with its condition, a SymPy `Piecewise`, whose value is `nan` for the other shapes. `ValueError` for other
-    cycles.
+    formula with its condition, a SymPy `Piecewise`, whose value is `nan` for the other shapes. The condition bounds the
+    parameter if there is one, and else the stability number `P`. `ValueError` for other cycles.
 
-    >>> from symbolic.cycles.cycle import cuspless_horizontal
-    >>> thresholds(cuspless_horizontal())
+    >>> thresholds(double_normals("cuspless")[0])
     {'flip': (1 - sqrt(11)/4)/(sqrt(11)/4 + 1), 'focus': None}
+    >>> thresholds(double_normals("egg")[0])["focus"]
+    Piecewise(((alpha**2 + 18*alpha - 1)/(alpha**2 - 18*alpha - 1), alpha <= -9 + sqrt(82)))
     """
     if len(given_cycle("thresholds", cycle).bounces) != 2 or not cycles.is_double_normal(cycle):
         raise ValueError(f"{cycle.name}: thresholds are known of cycles of period 2 that are normal at both ends")
@@ -295,7 +317,25 @@ def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]
         divisor = shorter.as_numer_denom()[1]  # where it vanishes, the shorter form may be 0/0
         value = shorter if divisor.is_number or positive(divisor, box) or positive(-divisor, box) else plain
     held = all(nonnegative(gap, inside) for gap in (one, other))
-    return value if held else Piecewise((value, And(one >= 0, other >= 0)))
+    return value if held else Piecewise((value, _condition((one, other), box)))
+
+
+def _condition(gaps: tuple[Expr, ...], box: dict[Symbol, Interval]) -> Basic:
+    """The condition that all gaps are at least 0: as bounds of the letter, if they are rational functions of one."""
+    if len(box) != 1 or not all(gap.free_symbols <= set(box) and gap.is_rational_function() for gap in gaps):
+        return And(*(gap >= 0 for gap in gaps))
+    ((letter, range),) = box.items()
+    parts = [((Poly(above, letter), Poly(below, letter)), ">=") for above, below in map(fraction, map(together, gaps))]
+    where = solve_rational_inequalities([parts]).intersect(range).as_relational(letter)
+    return where.replace(CRootOf, lambda *root: _in_square_roots(CRootOf(*root)))
+
+
+def _in_square_roots(root: Expr) -> Expr:
+    """A root of a polynomial `a*x**4 + b*x**2 + c` with square roots; others as they are."""
+    coefficients = root.poly.all_coeffs()
+    if len(coefficients) != 5 or coefficients[1] or coefficients[3]:
+        return root
+    return next(x for x in roots(root.poly) if abs(N(x - root, 30)) < 1e-20)
 
 
 @lru_cache(maxsize=64)

@@ -351,7 +351,7 @@ def modulus(expression: Expr, box: Box) -> Expr:
     >>> modulus(x, {x: Interval(0, 1)}), modulus(x, {x: Interval(-1, 1)})
     (x, Abs(x))
     """
-    box = {letter: range if range.interior.is_empty else range.interior for letter, range in box.items()}
+    box = {letter: r if r.start == r.end else Interval.open(r.start, r.end) for letter, r in box.items()}
     if is_positive(expression, box):
         return expression
     return -expression if is_positive(-expression, box) else Abs(expression)

@@ -247,8 +247,9 @@ class RecurrenceLevels(NamedTuple):
 def _recurrence(quarters: Labels) -> tuple[int, Array, bool]:
     """The level, shares and spreading of one orbit, as in `RecurrenceLevels`, from sorted codes of its quarters."""
     early, late = (0, 1, 2, 0), (1, 2, 3, 3)
-    met = [finest(quarters[i], quarters[k]) for i, k in zip(early, late, strict=True)]
-    shares = np.array([[float(np.mean(each >= level)) for level in range(FINEST + 1)] for each in met])
+    met = [np.maximum(finest(quarters[i], quarters[k]), -1) for i, k in zip(early, late, strict=True)]
+    counts = np.array([np.bincount(each + 1, minlength=FINEST + 2) for each in met])
+    shares = np.cumsum(counts[:, :0:-1], axis=1)[:, ::-1] / met[0].size  # by level, of the points that reach it
     own = np.max(shares[:3], axis=0)
     level = max(COARSEST, int(np.max(np.nonzero(own >= RECURS)[0], initial=COARSEST)))
     return level, own, bool(shares[3, level] < SPREADS * np.mean(shares[:3, level]))

@@ -25,6 +25,7 @@ KEPT = 1 << 22  # numbers kept of each exponent
 FLIGHTS = 128  # blocks over which flights are averaged
 SAMPLED = 5  # sampled points of a component at which its curvature is tested
 HEARD = 50_000_000  # bounces, of all particles together, between two chances to interrupt
+STEPS = 32  # reports of progress in a count, at least
 
 
 class ExponentEstimates(NamedTuple):
@@ -92,13 +93,14 @@ class Count:
         return self.length * self.blocks
 
     def until(self, bounces: int) -> Iterator[int]:
-        """Counts whole blocks up to `bounces` bounces, and yields the number counted so far after each block."""
-        while self.bounces + self.length <= bounces:
-            stretch, volume = self.growth.stretch, self.growth.volume
-            self.growth.advance(self.length)
-            self._rows[0, self.blocks] = (self.growth.stretch - stretch) / self.length
-            self._rows[1, self.blocks] = (self.growth.volume - volume) / self.length
-            self.blocks += 1
+        """Counts whole blocks up to `bounces` bounces, and yields the number counted so far, after some blocks each."""
+        growth, heard = self.growth, min(HEARD // self.growth.theta.size, bounces // STEPS)
+        while (left := (bounces - self.bounces) // self.length) > 0:
+            some = min(left, self.most - self.blocks, max(1, heard // self.length))
+            before = np.array([[growth.stretch], [growth.volume]])
+            reached = np.concatenate([before, growth.advance_blocks([self.length] * some)], axis=1)
+            self._rows[:, self.blocks : self.blocks + some] = np.diff(reached, axis=1) / self.length
+            self.blocks += some
             if self.blocks == self.most:
                 self._rows[:, : self.most // 2] = (self._rows[:, ::2] + self._rows[:, 1::2]) / 2
                 self.blocks, self.length = self.most // 2, 2 * self.length

@@ -192,12 +192,8 @@ def _remembering(map: PinballMap, count: Count, members: Labels, found: Exponent
     few, end = members[:WATCHED], count.growth
     watched = Growth(map.at(end.lam[few]), end.theta[few], end.phi[few], end.component[few])
     watched.settle(ALIGNED)
-    track = np.empty((SINGLE + 1, few.size))
-    track[0] = watched.stretch
-    for bounce in range(1, SINGLE + 1):
-        watched.advance(1)
-        track[bounce] = watched.stretch
-    steps = np.diff(track, axis=0)[:, watched.code == 0]
+    track = watched.advance_blocks([1] * SINGLE)[0]
+    steps = np.diff(track, axis=0, prepend=0.0)[:, watched.code == 0]
     if steps.size == 0:
         return found
     naive = float(np.std(steps) / np.sqrt(count.bounces * members.size))

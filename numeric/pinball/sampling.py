@@ -250,6 +250,7 @@ def _spans(map: "PinballMap") -> tuple[Array, Array]:
 
 
 GENERIC = 0.8, 0.6  # a first tangent vector (ds, dphi), of length 1
+TOGETHER = 1 << 15  # particles times blocks whose growth is computed together
 ALIGNED = 256  # bounces in which a tangent vector turns to the direction of growth
 
 
@@ -348,35 +349,66 @@ class Growth:
     def skip(self, bounces: int, threads: int | None = None) -> None:
         """Moves the particles without tangent vectors and sets the sums to 0: these bounces do not count."""
         if bounces and self.theta.size:
-            self._run(KernelSpec(self.law), bounces, (), threads)
+            self._stop(self._run(KernelSpec(self.law), bounces, (), threads))
+            self._arrive(*self.map.states.place(self.own))
             self.began()
 
     def advance(self, bounces: int, threads: int | None = None) -> None:
         """Moves particles and tangent vectors by `bounces` bounces, and adds their growth to the sums."""
-        if not bounces or not self.theta.size:
-            return
-        going = self.code == 0
-        tangent = self.tangent or self._vectors()
-        rows = self._run(KernelSpec(self.law, exponents=True), bounces, tangent, threads)
-        self.tangent = [rows[name] for name in TANGENT]
-        speed, curvature = self.map.states.bending(self.component, self.theta)
+        self.advance_blocks([bounces] if bounces else [], threads)
+
+    def advance_blocks(self, sizes: Sequence[int], threads: int | None = None) -> Array:
+        """Moves particles and vectors by blocks of bounces; returns `stretch` and `volume` after each of the blocks.
+
+        The shape is `(2, blocks, particles)`. The kernel runs once for each block; what follows from its rows is
+        computed for many blocks together.
+        """
+        reached = np.empty((2, len(sizes), self.theta.size))
+        if self.theta.size:
+            most = max(1, TOGETHER // self.theta.size)
+            for first in range(0, len(sizes), most):
+                reached[:, first : first + most] = self._some_blocks(sizes[first : first + most], threads)
+        return reached
+
+    def _some_blocks(self, sizes: Sequence[int], threads: int | None) -> Array:
+        self.tangent = self.tangent or self._vectors()
+        spec, runs = KernelSpec(self.law, exponents=True), []
+        for size in sizes:
+            runs.append(self._run(spec, size, self.tangent, threads))
+            self.tangent = [runs[-1][name] for name in TANGENT]
+        rows = {name: np.concatenate([run[name] for run in runs]) for name in runs[0]}
+        component, theta = self.map.states.place([rows[name] for name in self.map.family.fields(self.law)])
+        speed, curvature = self.map.states.bending(component, theta)
         moved = rows["shift"] / rows["n0"] * speed
         turned = rows["omega"] - curvature * moved
+        shape = len(sizes), self.theta.size
         with np.errstate(divide="ignore"):
             stretch = elementary.log(np.hypot(moved, turned) / rows["down"]) + rows["growth"] * elementary.log(2.0)
-            ends = elementary.log(speed / self.speed) + elementary.log(self.n0 / rows["n0"])
+            begun = [np.tile(values, len(sizes)) for values in (self.speed, self.n0)]
+            ends = elementary.log(speed / begun[0]) + elementary.log(begun[1] / rows["n0"])
             volume = elementary.log(rows["up"] / rows["down"]) + rows["volume"] * elementary.log(2.0) + ends
-        self.stretch = np.where(going, stretch - self.origin[:, 0], self.stretch)
-        self.volume = np.where(going, volume - self.origin[:, 1], self.volume)
-        made = bounces - (rows["lost"].astype(np.int64) if "lost" in rows else 0)
-        self.bounces = self.bounces + np.where(going, made, 0)
+        reached = np.stack([x.reshape(shape) for x in (stretch, volume)]) - self.origin.T[:, None]
+        for i, (size, run) in enumerate(zip(sizes, runs, strict=True)):
+            going = self.code == 0
+            self.stretch, self.volume = reached[:, i] = np.where(going, reached[:, i], [self.stretch, self.volume])
+            made = size - (run["lost"].astype(np.int64) if "lost" in run else 0)
+            self.bounces = self.bounces + np.where(going, made, 0)
+            self._stop(run)
+        self._arrive(component[-shape[1] :], theta[-shape[1] :])
+        return reached
 
     def _run(self, spec: KernelSpec, bounces: int, tangent: Sequence[Array], threads: int | None) -> dict[str, Array]:
         map = self.map
         rows = map.engine.run(spec, self.own, self.lam, map.shape, bounces, tangent, threads).rows
         self.own = [rows[name] for name in map.family.fields(self.law)]
-        self.component, self.theta = map.states.place(self.own)
-        self.phi = map.states.exit(self.component, self.theta, self.own, self.law)
+        return rows
+
+    def _stop(self, rows: dict[str, Array]) -> None:
+        """Stores the outcomes of the particles that a run has stopped."""
         if "code" in rows:
             self.code = np.where(self.code == 0, rows["code"].astype(np.int64), self.code)
-        return rows
+
+    def _arrive(self, component: NDArray[np.int64], theta: Array) -> None:
+        """Stores where the particles are after a run."""
+        self.component, self.theta = component, theta
+        self.phi = self.map.states.exit(component, theta, self.own, self.law)

@@ -326,11 +326,8 @@ def counted(growth: Growth, bounces: int, threads: int | None = None) -> OrbitEx
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")
-    map, reached = growth.map, np.zeros((2, BLOCKS + 1, growth.theta.size))
-    reached[:, 0] = growth.stretch, growth.volume
-    for i in range(1, BLOCKS + 1):
-        growth.advance(block, threads)
-        reached[:, i] = growth.stretch, growth.volume
+    map, before = growth.map, np.array([[growth.stretch], [growth.volume]])
+    reached = np.concatenate([before, growth.advance_blocks([block] * BLOCKS, threads)], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):  # at lam = 0 areas vanish
         plus, volume = np.diff(reached, axis=1) / block
         minus = volume + growth.contraction - plus

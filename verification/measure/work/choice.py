@@ -299,10 +299,9 @@ def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) 
     This is the largest rise of the logarithm of a tangent vector's length, sampled at most `LOOKS` times.
     """
     growth = Growth(map, *start)
-    sizes, block = [0.0], max(1, bounces // LOOKS)
-    for done in range(0, bounces, block):
-        growth.advance(min(block, bounces - done))
-        sizes.append(float(growth.stretch[0]))
+    block = max(1, bounces // LOOKS)
+    sizes = growth.advance_blocks([min(block, bounces - done) for done in range(0, bounces, block)])[0, :, 0]
+    sizes = np.concatenate([[0.0], sizes])
     if int(growth.code[0]) != 0 or not np.all(np.isfinite(sizes)):
         return math.inf
     lost = float(np.max(sizes - np.minimum.accumulate(sizes))) / math.log(10)

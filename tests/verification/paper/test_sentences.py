@@ -12,7 +12,12 @@ import pytest
 
 from verification.paper.claims.folder import paper
 
-LISTED = [entry for path in paper().sentences for entry in tomllib.loads(path.read_text())["sentence"]]
+LISTED = [
+    (section, opens, fate)
+    for path in paper().sentences
+    for section, sentences in tomllib.loads(path.read_text(encoding="utf-8")).items()
+    for opens, fate in sentences.items()
+]
 SECTIONS = {claim.id: claim.section.split()[0] for claim in paper().claims}
 PAPER = os.environ.get("PINBALL_PAPER")
 LEFT_OUT = r"(?<!\\)%.*\n?|\\label\{[^}]*\}|\\(?:begin|end)\{(?:equation|eqnarray)\}|\\fl\b|\\ams\{.*\}"
@@ -22,22 +27,24 @@ def flat(text):
     return " ".join(re.sub(LEFT_OUT, " ", text).split())
 
 
-@pytest.mark.parametrize("sentence", LISTED, ids=lambda sentence: f"{sentence['section']} {sentence['opens']}")
-def test_a_sentence_has_one_fate_and_its_claims_quote_its_section(sentence):
-    assert len(sentence.keys() & {"claims", "repeats", "prose"}) == 1
-    assert {SECTIONS[name] for name in sentence.get("claims", ())} <= {sentence["section"]}
-    assert {*sentence.get("repeats", ())} <= SECTIONS.keys()
+@pytest.mark.parametrize(("section", "opens", "fate"), LISTED)
+def test_a_sentence_is_prose_or_its_claims_quote_its_section(section, opens, fate):
+    if isinstance(fate, list):
+        assert {SECTIONS[name] for name in fate} == {section}
+    elif not isinstance(fate, str):
+        assert fate.keys() == {"repeats"}
+        assert {*fate["repeats"]} <= SECTIONS.keys()
 
 
 def test_every_claim_stands_under_a_sentence():
-    assert {name for sentence in LISTED for name in sentence.get("claims", ())} == SECTIONS.keys()
+    assert {name for *_, fate in LISTED if isinstance(fate, list) for name in fate} == SECTIONS.keys()
 
 
 if PAPER:
 
     def test_the_list_is_in_the_order_of_the_paper_and_every_quote_is_in_it():
         text = flat(Path(PAPER).read_text(encoding="utf-8"))
-        for found in ([each["opens"] for each in LISTED], *(claim.quote.split("...") for claim in paper().claims)):
+        for found in ([opens for _, opens, _ in LISTED], *(claim.quote.split("...") for claim in paper().claims)):
             at = 0
             for part in map(flat, found):
                 at = text.find(part, at)

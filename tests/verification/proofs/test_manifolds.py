@@ -16,7 +16,6 @@ from verification.cycles.recurrence import Closure
 from verification.proofs.manifolds.grow import branch, far
 from verification.proofs.manifolds.known import (
     CONTACTS,
-    MIRRORED,
     SHAPE,
     TRIANGLE,
     contact,
@@ -31,7 +30,7 @@ from verification.proofs.manifolds.saddle import SaddleCycle, local, saddle
 from verification.proofs.manifolds.tangency import Contact, Gap, tangency
 
 INNER, OUTER = SaddleCycle("inner fixed point", (0.63,)), SaddleCycle("outer fixed point", (-1.13,))
-EGG = table(SHAPE)
+EGG, MIRRORED = table(SHAPE), CONTACTS["merging"].unstable
 CASES = [
     (Henon(Rational(3, 10)), INNER, 1.4),
     (Henon(Rational(3, 10)), OUTER, 1.4),

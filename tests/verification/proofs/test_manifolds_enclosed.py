@@ -23,7 +23,7 @@ from verification.proofs.manifolds.enclosed import (
     round_outwards,
     vanishing,
 )
-from verification.proofs.manifolds.known import MIRRORED, SHAPE, SYMMETRIC, TRIANGLE, table
+from verification.proofs.manifolds.known import CONTACTS, SHAPE, TRIANGLE, table
 from verification.proofs.manifolds.plane_map import Henon
 from verification.proofs.manifolds.saddle import SaddleCycle, horner, local, saddle
 from verification.proofs.manifolds.tangency import Precision, pair, scale
@@ -37,6 +37,7 @@ def at(orbit, parameter, width=0.0):
     return enclosed_saddle(orbit, EGG.over(complex_balls(300)), acb(arb(parameter, width), arb(0, width)))
 
 
+MIRRORED, SYMMETRIC = (CONTACTS[name].unstable for name in ("merging", "symmetry-restoring"))
 CASES = [(TRIANGLE, 2 / 3), (SYMMETRIC, 0.41), (MIRRORED, 0.4434)]
 
 

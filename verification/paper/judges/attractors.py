@@ -37,7 +37,7 @@ from verification.proofs.global_dynamics.branch import exact
 from verification.proofs.global_dynamics.fates import AlmostEveryOrbit
 from verification.proofs.global_dynamics.returns import every_return
 from verification.proofs.manifolds.enclosed import attracting, complex_balls
-from verification.proofs.manifolds.known import TRIANGLE, bands, boundary, earliest, table, touching
+from verification.proofs.manifolds.known import TRIANGLE, boundary, table, touching
 from verification.proofs.manifolds.saddle import SaddleCycle
 from verification.proofs.starts.below_star import HORIZONTAL
 
@@ -92,8 +92,7 @@ def strange(alpha: str, kind: str = "boundary") -> tuple[SignFinding, arb]:
 
     Tangencies are known at the shape `SHAPE`; but `bands` at 1/10 instead, and `boundary` at more shapes too.
     """
-    alone = {"boundary": lambda: boundary(Rational(alpha)), "bands": bands, "earliest": earliest}
-    found = alone[kind]() if kind in alone else touching(kind)
+    found = boundary(Rational(alpha)) if kind == "boundary" else touching(kind)
     held = found.proved and found.strange.proved
     said = (
         f"in every neighbourhood of lam = {found.value.str(9, radius=False)}, at alpha = {alpha}, strange attractors "

@@ -35,8 +35,10 @@ themselves (`tangency`) must agree.
 """
 
 import math
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -58,7 +60,6 @@ from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpen
 from verification.proofs.manifolds.saddle import SaddleCycle, horner
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
 from verification.proofs.manifolds.touching import composed
-from verification.proofs.manifolds.windows import WINDOWS, homoclinic
 
 
 @dataclass(frozen=True)
@@ -166,27 +167,25 @@ SHAPE = Rational(2, 25)
 STEP = Rational(1, 500)  # the largest step of the shape in continuation
 LEAST = Rational(1, 10_000)
 SHARE, LEAST_SHARE = Rational(1, 4), Rational(1, 1000)  # steps towards another law in continuation
-TRIANGLE = SaddleCycle("triangle of the vertices", (-0.165533,), Closure(1, (1, 3)))
-MIRRORED = SaddleCycle("cycle of period 8", (0.87019, 4.339815, 7.910758, 10.599687), Closure(-1, (7, 3)))
-SYMMETRIC = SaddleCycle("symmetric cycle of period 4", (-0.645971, 2.02441), Closure(-1, (2, 3)))
-FOUR = SaddleCycle("cycle of period 4", (-0.022673, 2.875498, 6.392393, 9.889393), Closure(1, (6, 3)))
-CONTACTS = {
-    "merging": Contact(MIRRORED, MIRRORED, 14, 1, -0.00396287, -0.00053713, 0.44343525),
-    "boundary": Contact(TRIANGLE, TRIANGLE, 5, 1, 0.03431592, -0.02607124, 0.66214427),
-    "band-merging": Contact(FOUR, FOUR, 20, 1, -0.01239661, 0.00116269, 0.39768737),
-    "symmetry-restoring": Contact(SYMMETRIC, SYMMETRIC, 12, 1, -0.03158573, -0.00186500, 0.41026825),
-} | WINDOWS
-CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # the name in the scheme of periods 8 and 16
+ENTRIES = tomllib.loads(Path(__file__).with_name("contacts.toml").read_text(encoding="utf-8"))
 
-FLATTER = SaddleCycle(TRIANGLE.name, (-0.053420925,), TRIANGLE.closure)
-SHARPER = SaddleCycle(TRIANGLE.name, (-0.228435096,), TRIANGLE.closure)
-SHARPEST = SaddleCycle(TRIANGLE.name, (-0.249454849,), TRIANGLE.closure)
-BOUNDARY = {  # the boundary tangency at four shapes, and its contraction there
-    SHAPE: (CONTACTS["boundary"], "0.66214427335822441948"),
-    Rational(19, 200): (Contact(SHARPER, SHARPER, 5, 1, 0.03705487, -0.01623858, 0.51753491), "0.51753490920795741937"),
-    Rational(1, 10): (Contact(SHARPEST, SHARPEST, 5, 1, 0.03883646, -0.01384408, 0.47171580), "0.47171579751413786140"),
-    Rational(1, 20): (Contact(FLATTER, FLATTER, 5, 1, 0.04529252, -0.06772806, 0.91652073), "0.91652073292391123465"),
+
+def homoclinic(name: str) -> Contact:
+    """The contact of this name in `contacts.toml`."""
+    entry = ENTRIES[name]
+    sign, p, q = entry["closure"]
+    orbit = SaddleCycle(entry["saddle"], tuple(entry["start"]), Closure(sign, (p, q)))
+    return Contact(orbit, orbit, **{"sign": 1, **entry["contact"]})
+
+
+CONTACTS = {name: homoclinic(name) for name, entry in ENTRIES.items() if "alpha" not in entry}
+# The least contraction and the most bounces of a search by `earlier` that found no contact before these.
+SEARCHED: dict[str, tuple[str, int]] = {
+    name: tuple(entry["searched"]) for name, entry in ENTRIES.items() if "searched" in entry
 }
+CONTACTS["band-merging-4"] = CONTACTS["band-merging"]  # the name in the scheme of periods 8 and 16
+SEARCHED["band-merging-4"] = SEARCHED["band-merging"]
+TRIANGLE = CONTACTS["boundary"].unstable
 
 
 def table(alpha: Expr, law: Law = PAPERS_LAW) -> Pinball:
@@ -359,98 +358,28 @@ def proof(found: KnownCrisis, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -
     return Tangency(touch.contact, map.table, value, digits, law)
 
 
-def boundary(alpha: Expr) -> Tangency:
-    """The theorem on the boundary tangency at a shape listed in `BOUNDARY`, within 1e-12 of the contraction listed
-    there.
-
-    >>> boundary(Rational(1, 20)).strange.proved
-    True
-    """
-    return Tangency(BOUNDARY[alpha][0], egg(3).at(alpha=alpha), BOUNDARY[alpha][1], 12)
-
-
-PROVED = {  # contractions of contacts at alpha = 0.08, and the number of digits with which each proof succeeds
-    "band-merging": ("0.39768736899279139077682306799053", 20),
-    "band-merging-16": ("0.393711849308008935479606", 20),
-    "interior-crisis-1": ("0.42841918986809247875652342973309216", 12),
-    "interior-crisis-1-later": ("0.428419190754595226515935", 12),
-    "merging": ("0.4434352460818512182485087598866334", 12),
-    "window-merging-9": ("0.504527312767549985147168", 12),
-}
-
-
-# The least contraction and the most bounces of a search by `earlier` that found no contact before these.
-SEARCHED: dict[str, tuple[str, int]] = {
-    "family-merging-12": ("0.374103", 48),
-    "family-end-12": ("0.3756876", 40),
-    "family-merging-8": ("0.3810743", 40),
-    "family-end-8": ("0.3826356", 40),
-    "window-end-8": ("0.39066904", 56),
-    "band-merging-16": ("0.3937117493", 128),
-    "band-merging-8": ("0.39441445", 64),
-    "band-merging": ("0.39768", 40),
-    "window-merging-12": ("0.4020801", 96),
-    "window-end-12": ("0.4023927", 96),
-    "symmetry-restoring": ("0.41026", 40),
-    "window-end-20": ("0.4204335", 70),
-    "window-end-6": ("0.4209303", 42),
-    "interior-crisis-1": ("0.42841914", 40),
-    "merging": ("0.443434", 34),
-    "window-merging-15": ("0.4477062", 40),
-    "window-end-15": ("0.44786875", 40),
-    "window-merging-9": ("0.504527", 40),
-    "window-end-9": ("0.5054006565", 59),
-    "window-merging-14": ("0.56502706", 56),
-    "window-end-14": ("0.565033136", 42),
-    "interior-crisis-2": ("0.62895", 23),
-    "window-merging-18": ("0.64102472", 72),
-    "window-end-18": ("0.641031328", 54),
-    "interior-crisis-3": ("0.6534", 24),
-    "boundary": ("0.66211", 15),
-}
-SEARCHED["band-merging-4"] = SEARCHED["band-merging"]
-
-
-def touching(kind: str) -> Tangency:
-    """The theorem on a contact listed in `PROVED`, by its name, at `alpha = 0.08`.
+def touching(name: str) -> Tangency:
+    """The theorem on a contact that has the entry `proved` in `contacts.toml`, at its shape.
 
     >>> touching("window-merging-9").strange.proved
     True
     """
-    return Tangency(CONTACTS[kind], egg(3).at(alpha=SHAPE), *PROVED[kind])
+    entry = ENTRIES[name]
+    return Tangency(homoclinic(name), egg(3).at(alpha=entry.get("alpha", SHAPE)), *entry["proved"])
 
 
-BANDS = homoclinic(  # `window-merging-9`, followed from alpha = 0.08 to 1/10, the end of the convex shapes
-    SaddleCycle("cycle of period 9", (-2.8419283836, -0.2524353493, 2.2503788186), Closure(1, (4, 3))),
-    12, 1, 0.0103226344, 0.0605500556, 0.29564321252129,
-)  # fmt: skip
+def boundary(alpha: Expr) -> Tangency:
+    """The theorem on the boundary tangency at a shape for which `contacts.toml` has it.
 
-
-def bands() -> Tangency:
-    """The theorem on the tangency named `BANDS`, at `alpha = 1/10`."""
-    return Tangency(BANDS, egg(3).at(alpha=Rational(1, 10)), "0.295643212521289641615402176260", 12)
-
-
-EARLIEST = homoclinic(  # where 64 chaotic bands become 32, at 0.08
-    SaddleCycle(
-        "cycle of period 32",
-        (
-            0.1020704794, 3.6063235185, 6.2638811018, 9.1719550495, 12.674658381, 16.162628784,
-            18.816517391, 21.697106346, 25.241183783, 28.745233578, 31.401249976, 34.317508461,
-            37.805563934, 41.284794864, 43.93874905, 46.799777668, 50.36886988, 53.873914163,
-            56.531264728, 59.442875426, 62.939478785, 66.423987566, 69.077808645, 71.950528933,
-            75.505187794, 79.010780114, 81.667396562, 84.585177278, 88.070708614, 91.548395213,
-            94.202428717, 97.060154978,
-        ),
-        Closure(1, (48, 3)),
-    ),
-    128, 1, 0.00076818689, 0.00022923241, 0.3935614580718,
-)  # fmt: skip
+    >>> boundary(Rational(1, 20)).strange.proved
+    True
+    """
+    return touching("boundary" if alpha == SHAPE else f"boundary-{alpha}")
 
 
 def earliest() -> Tangency:
-    """Theorem on the tangency named `EARLIEST`: of those proved in the cascade, the one at the smallest contraction."""
-    return Tangency(EARLIEST, egg(3).at(alpha=SHAPE), "0.3935614580718190283027611189356978401518", 30)
+    """Theorem on the tangency named `earliest`: of those proved in the cascade, the one at the smallest contraction."""
+    return touching("earliest")
 
 
 def decimals(found: KnownCrisis) -> tuple[str, str]:

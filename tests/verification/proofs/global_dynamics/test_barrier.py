@@ -8,7 +8,7 @@ import pytest
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.proofs.global_dynamics.barrier import Barrier, BarrierBreaks, point
-from verification.proofs.manifolds.known import BOUNDARY, SHAPE
+from verification.proofs.manifolds.known import SHAPE, boundary
 from verification.rigorous.boxes import Boxes
 
 EGG, AT = Scene("egg", alpha="0.08"), Fraction(66, 100)
@@ -50,7 +50,7 @@ def test_points_of_the_staircase_are_mapped_below_it(barrier):
 def test_a_barrier_is_lost_where_the_tangency_of_manifolds_is(barrier):
     """The tangency was located and proved by other methods."""
     assert BarrierBreaks(barrier, AFTER, SINK, CROSSES).proved
-    assert barrier.lam[0] < Fraction(BOUNDARY[SHAPE][1]) < AFTER
+    assert barrier.lam[0] < Fraction(boundary(SHAPE).near) < AFTER
 
 
 def test_beyond_the_crisis_no_barrier_is_below_the_triangle():

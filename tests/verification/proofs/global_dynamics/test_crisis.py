@@ -10,7 +10,7 @@ from symbolic.tables.scene import Scene
 from verification.app import cli
 from verification.cycles.recurrence import Closure
 from verification.proofs.global_dynamics.crisis import BoundaryCrisis, bracket
-from verification.proofs.manifolds.known import BOUNDARY, CONTACTS, SHAPE
+from verification.proofs.manifolds.known import CONTACTS, SHAPE, boundary
 
 BELOW, ABOVE = Fraction(3, 5), Fraction(663, 1000)
 GRID = (1024, 512, 1)
@@ -31,7 +31,7 @@ def test_the_boundary_crisis_of_the_egg_lies_between_two_contractions(found, tmp
     assert cli.main(["check", str(file)]) == 0
     assert "lam between 3/5 and 663/1000  (certified" in capsys.readouterr().out
     assert BoundaryCrisis.from_dict(json.loads(file.read_text())) == found
-    assert BELOW < Fraction(BOUNDARY[SHAPE][1]) < ABOVE
+    assert BELOW < Fraction(boundary(SHAPE).near) < ABOVE
 
 
 def test_another_saddle_than_the_one_that_is_named_is_refused(found):

@@ -22,6 +22,8 @@ from numeric.backends.scalars import ArrayBackend
 from numeric.kernels.traced import Traced
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 ROUNDING = 2.0**-52  # twice the largest relative error of one operation
 GROWTH = 1.0 + 2.0**-48  # covers sixteen roundings of a radius
 TINY = 1e-300
@@ -108,14 +110,14 @@ class BallArray:
         found: Array = m - (np.abs(m) * ROUNDING + TINY)
         return found
 
-    def positive(self) -> NDArray[np.bool_]:
+    def positive(self) -> Mask:
         """True where every number of a ball is positive; False where that is not known."""
-        known: NDArray[np.bool_] = self.m - self.r > 0  # not where the radius is infinite or nan
+        known: Mask = self.m - self.r > 0  # not where the radius is infinite or nan
         return known
 
-    def negative(self) -> NDArray[np.bool_]:
+    def negative(self) -> Mask:
         """True where every number of a ball is negative; False where that is not known."""
-        known: NDArray[np.bool_] = self.m + self.r < 0
+        known: Mask = self.m + self.r < 0
         return known
 
     def magnitude(self) -> Array:

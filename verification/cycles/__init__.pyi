@@ -14,7 +14,7 @@ from .cascade import (
     doublings,
     symmetry_breaking,
 )
-from .cells import Array, CycleType, fixed_points
+from .cells import CycleType, fixed_points
 from .chain import Chain, Elimination, dot, trace_and_determinant
 from .chords import Chords, chord_angles, landing
 from .critical import Small, corner, corner_angle, focus, polygon, solved
@@ -40,7 +40,7 @@ from .newton import (
     settled,
 )
 from .problem import Linearised, NormalForm, Problem, bordering_slopes, mirrored, seen_mirrored
-from .recurrence import IDENTITY, MIRROR, BifurcationKind, Closure, Recurrence, Rule, Terms, henon
+from .recurrence import IDENTITY, MIRROR, Array, BifurcationKind, Closure, Recurrence, Rule, Terms, henon
 from .search import ROUNDS, Catalogue, Found, Searched, all_cycles
 from .switching import Box, CodimensionOneCurve, Degenerate, Tick, curve, switched
 from .systems import SHAPE, Cycles, reflected, rotations, symmetries, whole

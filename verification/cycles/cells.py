@@ -30,9 +30,8 @@ from symbolic.tables.table import Table
 from verification.arithmetic.balls import ARRAYS
 from verification.arithmetic.iteration import Stop, in_rows
 from verification.cycles.chords import Chords, chord_angles
-from verification.cycles.recurrence import Closure, Terms
+from verification.cycles.recurrence import Array, Closure, Terms
 
-Array = NDArray[np.float64]
 DENSE = 96  # unknowns up to which a dense factorisation is the faster one
 
 

@@ -31,12 +31,12 @@ from symbolic.tables.table import eta as angle
 from symbolic.tables.table import lam as contraction
 from symbolic.tables.table import theta as place
 from verification.arithmetic.balls import FLOAT64, multiprecision
-from verification.cycles.cells import Array, Corrector, CycleType, MonodromyDeterminants, spectrum
+from verification.cycles.cells import Corrector, CycleType, MonodromyDeterminants, spectrum
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.chords import Chords
 from verification.cycles.newton import refined
 from verification.cycles.problem import Linearised, Problem
-from verification.cycles.recurrence import MIRROR
+from verification.cycles.recurrence import MIRROR, Array
 from verification.cycles.systems import symmetries
 from verification.maps.first_hit import closes_smoothly, convex
 from verification.maps.joins import joins

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from numeric import Exponents, PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.phase_points import advanced, phase_points
+from numeric.dynamics.phase_points import Array, advanced, phase_points
 
 BALLS, PART, TRANSIENT = 4096, 200, 2000
 MANY = 400  # particles that left, from which the mean stay is known to 5 per cent
@@ -31,7 +31,6 @@ ORBITS, LONG, RECORDED = 400, 20_000, 500  # particles, bounces before their orb
 CELLS = 500  # cells per radian, by which an area is counted
 CHAOTIC = 0.02  # growth from which an orbit counts as chaotic
 AT_ONCE = 0.01  # relative growth of an extent in one small step that is more than steady growth
-Array = NDArray[np.float64]
 Left = Callable[[Exponents], NDArray[np.bool_]]
 
 

@@ -20,9 +20,8 @@ from symbolic.tables.law import PAPERS_LAW, Law
 from verification.arithmetic.balls import ARRAYS, FLOAT64
 from verification.cycles.arc import Steps
 from verification.cycles.branch import Branch, spectrum_of, through
-from verification.cycles.cells import Array
 from verification.cycles.chords import Chords
-from verification.cycles.recurrence import BifurcationKind, Closure
+from verification.cycles.recurrence import Array, BifurcationKind, Closure
 from verification.cycles.systems import Cycles
 from verification.named.curves import AccumulationCurve as Accumulation
 from verification.named.curves import BifurcationCurve, accumulation_curve, cascade, fold, largest_shape

@@ -13,13 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from verification.arithmetic.arrays import Array, Indices, Mask
 from verification.rigorous.boxes import Boxes, BoxMap, Images
 from verification.rigorous.graph import BLOCK, CELLS, LARGEST, Cells, Grid, Rectangles, mapped, ranges
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 MOST = 1 << 22  # the most cells that a growing set may have
 BESIDE = (-1, 0, 1)
 
@@ -73,7 +71,7 @@ def _ordered(numbers: Indices) -> Indices:
     return found[np.append(True, found[1:] != found[:-1])] if found.size else found
 
 
-def _held(some: Indices, ordered: Indices) -> NDArray[np.bool_]:
+def _held(some: Indices, ordered: Indices) -> Mask:
     """A mask of those numbers in `some` that are in the sorted array `ordered`."""
     if not ordered.size:
         return np.zeros(some.shape, dtype=bool)

@@ -8,12 +8,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, WideOps, hull
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, WideOps, hull
 
 
 class Boxes(NamedTuple):
@@ -23,7 +19,7 @@ class Boxes(NamedTuple):
     x: tuple[Array, Array]
     y: tuple[Array, Array]
 
-    def chosen(self, which: Indices | NDArray[np.bool_] | slice) -> "Boxes":
+    def chosen(self, which: Indices | Mask | slice) -> "Boxes":
         """Some of the boxes, by their indices, a mask or a slice."""
         return Boxes(self.chart[which], *((low[which], high[which]) for low, high in (self.x, self.y)))
 

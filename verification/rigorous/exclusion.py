@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from verification.arithmetic.arrays import Array, Mask
+
 CHUNK = 4096  # boxes in one call of the test
 
 
@@ -58,7 +58,7 @@ class Search(NamedTuple):
 
 def exclude(
     start: Cuboids,
-    nothing_in: Callable[[Cuboids], NDArray[np.bool_]],
+    nothing_in: Callable[[Cuboids], Mask],
     budget: int,
     smallest: float,
     tick: Callable[[int], None] = lambda boxes: None,

@@ -21,11 +21,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from numeric.pinball.states import equal, many
+from verification.arithmetic.arrays import Indices, Mask
 from verification.rigorous.boxes import Boxes, BoxMap, Chart, Images
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 BLOCK = 1 << 14  # boxes mapped in one call: their arrays fit in the cache
 PAD = 1e-7  # in cells: more than the rounding of an index, up to LARGEST columns or rows
 TURNED, FAR = 2.0**-44, 2.0**50  # many turns away: the relative rounding of an index, and where one is not known

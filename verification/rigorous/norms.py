@@ -1,18 +1,16 @@
 """Contraction in a norm: derivatives in other coordinates, and weights for which derivatives shrink vectors."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray
+from verification.arithmetic.arrays import Array, BallArray, Indices
 
-Array = NDArray[np.float64]
 Matrix = list[list[BallArray]]
 ROUNDS = 400  # of power iterations
 LEAST = 1e-250  # an entry of a vector: products with smaller ones underflow
 SLACK = 1e-9  # relative; more than the rounding of a dozen operations
 
 
-def shrinkage(size: Array, target: NDArray[np.int64]) -> float:
+def shrinkage(size: Array, target: Indices) -> float:
     """A number `q` such that `size*v <= q*v'` for vectors `v > 0`, one for each set; `v'` is that of the set's target.
 
     `size` has shape `(2, 2, sets)` and bounds the derivative's entries in modulus over each set; set `i` is mapped to

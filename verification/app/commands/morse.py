@@ -27,10 +27,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from numeric.sweeps.store import Memory, Stored
+    from verification.arithmetic.arrays import Mask
     from verification.proofs.global_dynamics.database import Numbers
     from verification.proofs.global_dynamics.images import PinballImages
     from verification.proofs.global_dynamics.regions import Region
-    from verification.rigorous.graph import Mask, MorseGraph
+    from verification.rigorous.graph import MorseGraph
 
 WINDOW = 12  # columns beside a join in which the density at a cut is measured
 SHOWN = 24  # Morse sets in the table for people

@@ -17,13 +17,13 @@ from itertools import combinations, pairwise
 from math import asin, ceil, floor, inf
 
 import numpy as np
-from numpy.typing import NDArray
 from sympy import Rational
 
 from symbolic.expressions.signs import SignFinding
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha as shape
 from symbolic.tables.table import lam as letter
+from verification.arithmetic.arrays import Array, Mask
 from verification.arithmetic.balls import balls, working
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
@@ -44,7 +44,6 @@ SADDLE, NAME = "0.506", "window-end-9"  # a contraction, and the tangency of its
 WINDOW, PERIOD, COUNT, STARTS = "0.641", 18, 3, 40  # a contraction, and the period and number of attracting cycles
 SEEN, BITS = "0.66", 160  # where chaotic orbits are sampled
 REST = 1e-12  # above the rounding of a full turn
-Array = NDArray[np.float64]
 
 
 @cache
@@ -123,7 +122,7 @@ def meet(one: Boxes, other: Boxes) -> bool:
     (True, False)
     """
 
-    def near(here: tuple[Array, Array], there: tuple[Array, Array], shift: float) -> NDArray[np.bool_]:
+    def near(here: tuple[Array, Array], there: tuple[Array, Array], shift: float) -> Mask:
         low, high = (end[:, None] + shift for end in here)
         return (low <= there[1] + REST) & (there[0] - REST <= high)
 

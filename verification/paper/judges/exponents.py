@@ -11,12 +11,11 @@ from itertools import islice
 
 import numpy as np
 from flint import arb
-from numpy.typing import NDArray
 from sympy import Expr, Rational, S, log, pi, sqrt
 
 from numeric import PinballMap
 from numeric.backends import elementary
-from numeric.dynamics.phase_points import phase_points
+from numeric.dynamics.phase_points import Array, phase_points
 from numeric.pinball.sampling import Growth, interior_starts, phase_starts
 from symbolic import tables
 from symbolic.cycles.cycle import contracting_norm, major_axis
@@ -55,7 +54,6 @@ def end_of_period_3(claim: Claim) -> Judgement:
 
 SPECTRA_SEED, BALLS, BOUNCES, EARLY = 1, 48, 2000, 500
 CELLS = 24  # along each side of phase space, in (s, sin(phi))
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

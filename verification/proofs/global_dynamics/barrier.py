@@ -18,19 +18,17 @@ from functools import cached_property
 
 import numpy as np
 from flint import arb
-from numpy.typing import NDArray
 
 from symbolic.tables.scene import Scene
+from verification.arithmetic.arrays import Array, Mask
 from verification.cycles.systems import rotations
 from verification.proofs.global_dynamics.crisis import enters
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.rigorous.absorbing import AbsorbingSet, grown
 from verification.rigorous.boxes import Boxes, Images
-from verification.rigorous.graph import BLOCK, Cells, Grid, Mask
+from verification.rigorous.graph import BLOCK, Cells, Grid
 from verification.rigorous.theorem import Theorem, hypothesis
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 ROUNDS = 200  # the most rounds in which steps are raised, by sample points and then by boxes
 ABOVE, THICK, BORDER = 1e-7, 1e-7, 1e-12  # radians: margin of a step, half a box's height, half a border's width
 COLUMNS = 8192

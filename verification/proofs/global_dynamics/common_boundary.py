@@ -19,11 +19,10 @@ from functools import cached_property
 
 import numpy as np
 from flint import arb, fmpq
-from numpy.typing import NDArray
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.arithmetic.arrays import BallArray
+from verification.arithmetic.arrays import Array, BallArray
 from verification.arithmetic.balls import working
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap
@@ -37,7 +36,6 @@ from verification.rigorous.boxes import Boxes
 from verification.rigorous.norms import in_frame, times
 from verification.rigorous.theorem import Theorem, Verdict, hypothesis
 
-Array = NDArray[np.float64]
 BITS = 320  # of the balls in which orbits are followed
 MOST_BOUNCES = 100
 SMALL = 1e-80  # radians: half the width of a box around a start

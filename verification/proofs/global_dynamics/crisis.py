@@ -25,7 +25,6 @@ from itertools import pairwise
 
 import numpy as np
 from flint import acb, arb
-from numpy.typing import NDArray
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
@@ -56,7 +55,6 @@ MOST_BOUNCES, SAMPLES = 400, 20_000
 SOON, SEEN, AT_REST = (30, 60, 120, 300), 200, -0.02  # bounces before and for an exponent, and its bound on cycles
 SLACK = 1e-14  # for each turn of 2*pi subtracted: more than its rounding error
 FAR, NEAR = 10.0, 1e-5  # radians: the largest start, and the largest distance of the saddle at LOW from its given start
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

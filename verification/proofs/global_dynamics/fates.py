@@ -30,23 +30,20 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from numeric.backends import elementary
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, hull
 from verification.proofs.global_dynamics.flights import Slopes, matrix
 from verification.proofs.global_dynamics.images import PinballImages, RangeTheorem, invertible
 from verification.proofs.global_dynamics.regions import Derivatives, factors, grown_cones, least_mean, push_slopes
 from verification.rigorous.boxes import Boxes
-from verification.rigorous.graph import Cells, Grid, Mask, Transitions, refined, sparse
+from verification.rigorous.graph import Cells, Grid, Transitions, refined, sparse
 from verification.rigorous.norms import shrinkage
 from verification.rigorous.theorem import hypothesis
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 Point = tuple[int, float, float]  # component, theta, phi
 ROUNDS = 400  # the most rounds in which boxes around a cycle grow
 SLACK = 1e-9  # relative; more than the rounding of a dozen operations
@@ -338,7 +335,7 @@ def holding(parts: Sequence[Cluster], points: Sequence[Point]) -> Cluster | None
     return None
 
 
-def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> NDArray[np.bool_]:
+def _held(part: Cluster, points: Sequence[Point], below: np.ufunc) -> Mask:
     """A matrix that says which cluster (column) holds which point (row); `below` is `np.less` or `np.less_equal`."""
     (left, right), (bottom, top) = part.boxes.x, part.boxes.y
     rows = [

@@ -10,19 +10,27 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from sympy import Rational, simplify
 
 from symbolic.tables.geometry import velocity
 from symbolic.tables.table import Table, theta
-from verification.arithmetic.arrays import ROUNDING, ArrayOps, BallArray, Compiled, common_part, direction, hull, turned
+from verification.arithmetic.arrays import (
+    ROUNDING,
+    Array,
+    ArrayOps,
+    BallArray,
+    Compiled,
+    Indices,
+    common_part,
+    direction,
+    hull,
+    turned,
+)
 from verification.rigorous.boxes import Boxes, centred
 
 if TYPE_CHECKING:
     from verification.proofs.global_dynamics.images import PinballImages
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 TRIES = 7  # the most widenings of a guessed arc
 SIDES = "x", "y", "v", "w", "cos", "speed", "bend"  # what the side of a flight depends on
 CENTRE = 1e-10  # half the length, in the parameter, of the arc guessed around one landing

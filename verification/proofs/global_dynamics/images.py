@@ -20,14 +20,23 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric import PinballMap
 from numeric.lowering.lower import lower_law
 from numeric.lowering.program import Program
 from symbolic.tables.curves import is_periodic
 from symbolic.tables.scene import Scene
-from verification.arithmetic.arrays import ArrayOps, BallArray, Compiled, common_part, exactly, hull, spread
+from verification.arithmetic.arrays import (
+    Array,
+    ArrayOps,
+    BallArray,
+    Compiled,
+    Indices,
+    common_part,
+    exactly,
+    hull,
+    spread,
+)
 from verification.cycles.systems import reflected
 from verification.maps.first_hit import closes_smoothly, convex, tangents
 from verification.proofs.global_dynamics.flights import Flights, LandingArcs, Slopes
@@ -35,8 +44,6 @@ from verification.rigorous.boxes import Boxes, Chart, Images, Row, collected
 from verification.rigorous.certificate import RANGE, entry
 from verification.rigorous.theorem import Theorem
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 STEPS, PLACES = 1 << 12, 1 << 6  # pieces of the incidence angles, and of each component for a law of the place
 QUARTER = 1.5707963267948966  # below pi/2
 SCENE = entry(lambda given, _: Scene.of(given), lambda scene: scene.document)  # an entry of certificates

@@ -19,18 +19,10 @@ from numeric.lowering.program import Builder, Program
 from symbolic.tables.law import parameters_of_law
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table, theta
-from verification.arithmetic.arrays import BallArray, common_part, exactly, hull, spread
+from verification.arithmetic.arrays import Array, BallArray, Indices, common_part, exactly, hull, spread
 from verification.cycles.systems import rotations
 from verification.maps.first_hit import closes_smoothly, convex
-from verification.proofs.global_dynamics.flights import (
-    Array,
-    Flights,
-    Indices,
-    Landing,
-    LandingArcs,
-    incidence,
-    turn_between,
-)
+from verification.proofs.global_dynamics.flights import Flights, Landing, LandingArcs, incidence, turn_between
 from verification.proofs.global_dynamics.images import QUARTER, PinballImages
 from verification.rigorous.boxes import Boxes, Chart, Images, collected
 

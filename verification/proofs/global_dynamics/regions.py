@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from numeric.backends import elementary
-from verification.arithmetic.arrays import BallArray, hull, paired, spread, unpaired
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, hull, paired, spread, unpaired
 from verification.proofs.global_dynamics.flights import LandingArcs, Slopes
 from verification.proofs.global_dynamics.images import PinballImages, RangeTheorem
 from verification.rigorous.boxes import Boxes, BoxMap, Images
@@ -38,8 +38,6 @@ from verification.rigorous.graph import (
     LARGEST,
     Cells,
     Grid,
-    Indices,
-    Mask,
     MorseGraph,
     Rectangles,
     Transitions,
@@ -181,7 +179,6 @@ def sampled_share(map: PinballImages, graph: MorseGraph, index: int) -> tuple[fl
     return share, float(np.sqrt(max(share * (1 - share), 1 / STARTS) / STARTS))
 
 
-Array = NDArray[np.float64]
 SLACK = 1e-12  # for each step: above the rounding of logarithms below a hundred, and of their sums
 ROUNDS = 40  # the most rounds in which cones grow
 WIDENED = 1.02  # by which a cone that grows is widened, so that fewer rounds are needed

@@ -3,21 +3,7 @@
 from .certificate import Tangency, contact_of, contact_said, orbit_of, orbit_said
 from .enclosed import Enclosed, TooWideError, attracting, complex_balls, enclosed_cycle, enclosed_saddle, remainder
 from .grow import branch, touches
-from .known import (
-    CONTACTS,
-    SEARCHED,
-    SHAPE,
-    TRIANGLE,
-    KnownCrisis,
-    bands,
-    boundary,
-    contact,
-    crisis,
-    decimals,
-    earliest,
-    settled,
-    table,
-)
+from .known import CONTACTS, SEARCHED, SHAPE, TRIANGLE, KnownCrisis, boundary, contact, crisis, decimals, settled, table
 from .plane_map import Pinball, pinball
 from .proof import LEAST_DIGITS, objection, sharpened, smooth
 from .saddle import Saddle, SaddleCycle, horner, local, padded
@@ -41,7 +27,6 @@ __all__ = [
     "TooWideError",
     "Touch",
     "attracting",
-    "bands",
     "bounce",
     "boundary",
     "branch",
@@ -51,7 +36,6 @@ __all__ = [
     "contact_said",
     "crisis",
     "decimals",
-    "earliest",
     "enclosed_cycle",
     "enclosed_saddle",
     "horner",

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from numeric.backends import elementary
 from verification.arithmetic.balls import ARRAYS, FLOAT64
+from verification.cycles.recurrence import Array
 from verification.proofs.manifolds.grow import INSIDE, gaps, turning
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import local, saddle
@@ -40,7 +41,6 @@ STEP = 1e-9  # the step in the parameter for the derivative of an extremum
 TRIED = 4  # the most extrema, those with the smallest extrapolated parameters, whose contact is computed
 ALIKE = 1e-11  # the distance up to which extrema count as one, that with the fewest bounces
 RESOLUTION = 1e-12  # in the parameter, for contacts in float64
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric.backends import elementary
 from verification.arithmetic.balls import ARRAYS, FLOAT64
+from verification.cycles.recurrence import Array
 from verification.proofs.manifolds.plane_map import PlaneMap
 from verification.proofs.manifolds.saddle import Local, SaddleCycle, local, saddle
 from verification.proofs.manifolds.tangency import Contact, Touch, tangency
@@ -27,7 +27,6 @@ from verification.proofs.manifolds.tangency import Contact, Touch, tangency
 FIRST = 24  # points of a round before any is added
 PASSES = 14  # the most passes that insert points
 SETTLED = 3.0  # a short round beyond this `ln(abs(z))` means a sink
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

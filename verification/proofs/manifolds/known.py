@@ -43,7 +43,6 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from numpy.typing import NDArray
 from sympy import Expr, Rational
 
 from numeric.backends import elementary
@@ -53,7 +52,7 @@ from verification.arithmetic.balls import FLOAT64
 from verification.arithmetic.iteration import telling
 from verification.cycles.newton import refined
 from verification.cycles.problem import Problem
-from verification.cycles.recurrence import BifurcationKind, Closure
+from verification.cycles.recurrence import Array, BifurcationKind, Closure
 from verification.proofs.manifolds.certificate import Tangency
 from verification.proofs.manifolds.plane_map import Pinball, pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened
@@ -126,7 +125,6 @@ def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
 
 
 TRIED = 1500
-Array = NDArray[np.float64]
 
 
 def log_stay(distance: float, stable: float, unstable: float) -> float:

@@ -12,7 +12,6 @@ from functools import cache, cached_property, lru_cache
 from typing import Any, ClassVar, Protocol, Self, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from sympy import Expr
 
 from numeric import PinballMap
@@ -25,13 +24,12 @@ from verification.arithmetic.balls import ARRAYS, Arithmetic
 from verification.arithmetic.iteration import Stop, Vector, iterated, largest
 from verification.arithmetic.series import SERIES, Jet, along, in_series, jets
 from verification.cycles.chords import Chords, chord_angles, landing
-from verification.cycles.recurrence import Recurrence, Rule, henon
+from verification.cycles.recurrence import Array, Recurrence, Rule, henon
 from verification.cycles.systems import rotations
 from verification.maps.first_hit import convex
 
 NEWTON = Stop(small=1e-13, steps=60)  # from a landing in float64 to other numbers, and order by order in jets
 HALVINGS = 54  # halvings of the incidence angles
-Array = NDArray[np.float64]
 
 
 class PlaneMap(Protocol):

@@ -26,7 +26,6 @@ from typing import Any
 
 import numpy as np
 from flint import arb
-from numpy.typing import NDArray
 from sympy import Expr, S
 
 from symbolic.expressions.text import kernel, load
@@ -36,7 +35,7 @@ from symbolic.tables.joins import contacts
 from symbolic.tables.law import Law
 from symbolic.tables.table import Component, Table
 from symbolic.tables.table import theta as letter
-from verification.arithmetic.arrays import BallArray, WideOps, hull, spread
+from verification.arithmetic.arrays import Array, BallArray, Mask, WideOps, hull, spread
 from verification.arithmetic.balls import FLOAT64, real_ball, working
 from verification.cycles.problem import Problem
 from verification.cycles.search import Catalogue
@@ -47,8 +46,6 @@ from verification.maps.measured import Lengths, arc_length
 from verification.proofs.periodic.interval_newton import ZeroStatus, krawczyk
 from verification.rigorous.exclusion import Cuboids, exclude
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 WIDE = WideOps()
 BITS = 64
 SMALLEST = 2.0**-30

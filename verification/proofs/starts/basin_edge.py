@@ -26,9 +26,8 @@ from functools import cached_property
 
 import numpy as np
 from flint import acb, arb, fmpq
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray
+from verification.arithmetic.arrays import Array, BallArray, Mask
 from verification.arithmetic.balls import balls, working
 from verification.proofs.global_dynamics.barrier import Barrier
 from verification.proofs.global_dynamics.common_boundary import Disc, attracts, disc
@@ -37,11 +36,10 @@ from verification.proofs.manifolds.enclosed import TooWideError, complex_balls, 
 from verification.proofs.manifolds.plane_map import Pinball
 from verification.proofs.manifolds.saddle import SaddleCycle
 from verification.rigorous.boxes import Boxes, Turned
-from verification.rigorous.graph import LARGEST, Grid, Mask, refined
+from verification.rigorous.graph import LARGEST, Grid, refined
 from verification.rigorous.norms import in_frame, times
 from verification.rigorous.theorem import Theorem, hypothesis
 
-Array = NDArray[np.float64]
 BITS = 128
 CELLS, COARSEST = (65536, 65536), 1024  # columns and rows of a rotation's share; size of the first blocks
 PARTS = 2  # each cell is cut into PARTS by PARTS before it is mapped

@@ -39,9 +39,9 @@ from functools import cached_property
 
 import numpy as np
 from flint import arb
-from numpy.typing import NDArray
 
 from symbolic import Scene
+from verification.arithmetic.arrays import Mask
 from verification.arithmetic.balls import cuts, joined, working
 from verification.proofs.corner.corner import (
     ARC,
@@ -77,8 +77,6 @@ SIDES = 1e-2, 2e-3, 5e-4  # sides of the boxes of U, V and e over which derivati
 MOST_BOUNCES, SLICES = 60, 64
 MIDDLE = 0.9  # in the arc's parameter: cells closer to its middle are away from the vertical orbit, at pi/3
 Hull = list[list[arb]]
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 def join_orbits_end_on_axis(one: AlmostEveryOrbit, tube: AbsorbingTube | None) -> bool:

@@ -4,14 +4,10 @@ The landing of the float64 kernel is the centre at which landing and derivative 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, hull
 from verification.proofs.global_dynamics.flights import End, Flights, LandingArcs, incidence, turn_between
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 NEARLY = 1 - 2.0**-40  # below 1 by more than the rounding of a comparison
 DOUBLINGS = 4  # how often the continuation of an arc is doubled
 REACH = 3.0  # the approximate length of a flight

@@ -18,17 +18,14 @@ that converges to the cycle are at most those of the cycle. Paper: section 5.3.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray
+from verification.arithmetic.arrays import Array, BallArray, Mask
 from verification.proofs.global_dynamics.flights import Matrix, matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.parallelograms import Parallelograms, push_forward
 from verification.rigorous.boxes import Boxes
 from verification.rigorous.norms import shrinkage, times
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 ROUND = 2  # bounces of the cycle
 NEARLY = 1 - 2.0**-40  # below 1 by more than the rounding of a comparison
 CUT = 64, 4  # a rectangle is cut into so many parts to enclose the derivative

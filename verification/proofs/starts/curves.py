@@ -17,16 +17,11 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, common_part, hull, paired, spread, turned, unpaired
+from verification.arithmetic.arrays import BallArray, Indices, Mask, common_part, hull, paired, spread, turned, unpaired
 from verification.proofs.global_dynamics.flights import OPS, constant_bends, norm
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.rigorous.boxes import Boxes, Chart
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 
 class Landed(NamedTuple):

@@ -21,17 +21,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import BallArray, Indices, Mask, hull
 from verification.proofs.global_dynamics.fates import NEAR, clusters
 from verification.proofs.global_dynamics.images import PinballImages, RangeTheorem, invertible
 from verification.proofs.global_dynamics.regions import expansion
 from verification.proofs.starts.core import NEARLY, AbsorbingTube, attracts, derivative
 from verification.proofs.starts.parallelograms import Parallelograms, push_forward
 from verification.rigorous.boxes import Boxes
-from verification.rigorous.graph import Grid, Mask, MorseGraph, morse_graph, refined
+from verification.rigorous.graph import Grid, MorseGraph, morse_graph, refined
 from verification.rigorous.theorem import hypothesis
 
 LONG = 200  # the length of walks whose least mean bounds the exponent
@@ -66,7 +65,7 @@ class ExpandingAnnulus:
         wide = [(a - slack, b + slack) for a, b in (x, y)]
         return Boxes(np.full(PARTS, chart), *wide)
 
-    def sides(self, boxes: Boxes, chart: int) -> NDArray[np.int64]:
+    def sides(self, boxes: Boxes, chart: int) -> Indices:
         """For each box, the part of the annulus in which it lies: 1, -1, or 0 for neither."""
         found = np.zeros(boxes.chart.size, dtype=np.int64)
         for side in (1, -1):

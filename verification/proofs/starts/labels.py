@@ -15,16 +15,12 @@ the cones of all labels that the images may have. Then `pairs` finds the ranges 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, hull
 from verification.proofs.starts.curves import CurveMap, Landed
 from verification.rigorous.boxes import Boxes
 from verification.rigorous.graph import BLOCK, ranges
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Range = tuple[Array, Array]
 PAD, SLOP = 1e-7, 1e-12  # in cells; in landings: both above the rounding of float64
 MOST = 1 << 19  # the most labels

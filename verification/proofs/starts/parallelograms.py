@@ -21,17 +21,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, hull
 from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import ChordFlights
 from verification.rigorous.boxes import Boxes
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 OUTWARDS = 1 + 2.0**-46  # above the rounding of a sum of six doubles
 PAD = 1e-300
 WIDER = 1.5  # the largest ratio of its width to a rectangle's at which a parallelogram is kept
@@ -65,7 +61,7 @@ class Parallelograms:
         """The sets of all arrays in a list, as one array."""
         return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in FIELDS))
 
-    def __getitem__(self, chosen: NDArray[np.bool_] | Indices) -> "Parallelograms":
+    def __getitem__(self, chosen: Mask | Indices) -> "Parallelograms":
         return Parallelograms(
             self.chart[chosen], self.middle[:, chosen], self.sides[:, :, chosen], self.rest[:, chosen]
         )
@@ -157,7 +153,7 @@ def _on_the_table(map: PinballImages, boxes: Boxes) -> Boxes:
 
 def _image(
     flights: ChordFlights, sets: Parallelograms, on: Indices, chart: Indices, arc: BallArray, smooth: bool
-) -> tuple[Parallelograms, NDArray[np.bool_]]:
+) -> tuple[Parallelograms, Mask]:
     """The images of sets whose landings lie in one arc of one component, and a mask of the sets that have an image.
 
     Images are parallelograms if the arc holds all landings (`smooth`), else rectangles. Rectangles are cut off at the

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from verification.arithmetic.arrays import BallArray, hull
+from verification.arithmetic.arrays import Array, BallArray, Indices, hull
 from verification.proofs.starts.curves import CurveMap, Landed
-from verification.proofs.starts.labels import Array, Cast, Indices, Labels, Range, Spread, Targets, reduced
+from verification.proofs.starts.labels import Cast, Labels, Range, Spread, Targets, reduced
 from verification.rigorous.boxes import Boxes, Images
 from verification.rigorous.graph import Cells, Grid, ranges
 

@@ -21,10 +21,9 @@ from math import exp
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric import PinballMap
-from verification.arithmetic.arrays import BallArray, hull, turned
+from verification.arithmetic.arrays import Array, BallArray, Indices, Mask, hull, turned
 from verification.proofs.global_dynamics.flights import Matrix, matrix, norm
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.chords import ChordFlights
@@ -33,9 +32,6 @@ from verification.proofs.starts.parallelograms import Parallelograms, push_forwa
 from verification.rigorous.boxes import Boxes
 from verification.rigorous.norms import times
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 SLACK = 1 + 2.0**-40  # above 1 by more than the rounding of a sum
 MIDDLE = 1e-14  # above the rounding of a midpoint
 WIDE = 0.05  # the largest distance between corner orbits

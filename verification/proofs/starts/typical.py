@@ -30,8 +30,8 @@ from math import ceil, floor
 import numpy as np
 
 from numeric.backends import elementary
+from verification.arithmetic.arrays import Array, Indices
 from verification.proofs.starts.curves import CurveMap
-from verification.proofs.starts.labels import Array, Indices
 from verification.proofs.starts.standard_pairs import Pairs, pairs
 from verification.rigorous.graph import Cells, Grid
 from verification.rigorous.theorem import Theorem, hypothesis

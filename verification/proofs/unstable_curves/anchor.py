@@ -24,7 +24,6 @@ The last statement is the inclination lemma; here the map must be smooth only on
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from verification.arithmetic.arrays import BallArray, hull
 from verification.proofs.global_dynamics.flights import Matrix, matrix
@@ -33,7 +32,6 @@ from verification.proofs.unstable_curves.spans import SpanMap
 from verification.rigorous.boxes import Boxes
 from verification.rigorous.norms import times
 
-Array = NDArray[np.float64]
 CUTS = 6  # a box is cut into CUTS by CUTS parts before it is mapped
 
 

@@ -10,10 +10,9 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from verification.arithmetic.arrays import hull
+from verification.arithmetic.arrays import Array, hull
 from verification.proofs.global_dynamics.flights import matrix
 from verification.proofs.global_dynamics.regions import (
     SmoothMap,
@@ -27,7 +26,6 @@ from verification.rigorous.absorbing import reached
 from verification.rigorous.boxes import Boxes
 from verification.rigorous.graph import Cells, Grid, transitions
 
-Array = NDArray[np.float64]
 MOST, ROUNDS, WIDENED, LEAST = 1 << 20, 60, 0.05, 1e-9  # the most cells and rounds; how much cones are widened
 CLOSER = 6  # bounces by which cones are tightened
 

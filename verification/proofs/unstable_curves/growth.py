@@ -26,12 +26,11 @@ image with a smooth part that crosses a column.* Otherwise the longest part woul
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric.backends import elementary
+from verification.arithmetic.arrays import Array
 from verification.proofs.unstable_curves.cover import ConeField
 
-Array = NDArray[np.float64]
 LONGEST = 60  # the most bounces over which the sum is taken
 UP = 1 + 1e-13  # above the rounding of a step in float64
 

@@ -12,14 +12,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from numeric.backends import elementary
+from verification.arithmetic.arrays import Array, Indices, Mask
 from verification.proofs.unstable_curves.cover import ConeField
 from verification.rigorous.boxes import Boxes
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 PAD = 1e-12  # above the rounding of places along the charts
 WIDEST = 1e300
 
@@ -34,14 +32,14 @@ class Spans(NamedTuple):
     first: tuple[Array, Array]
     last: tuple[Array, Array]
 
-    def chosen(self, which: Indices | NDArray[np.bool_]) -> "Spans":
+    def chosen(self, which: Indices | Mask) -> "Spans":
         """The spans selected by indices or a mask."""
         ends = ((bottom[which], top[which]) for bottom, top in (self.first, self.last))
         return Spans(self.origin[which], self.chart[which], self.low[which], self.high[which], *ends)
 
-    def crossing(self, chart: int, low: float, high: float) -> NDArray[np.bool_]:
+    def crossing(self, chart: int, low: float, high: float) -> Mask:
         """A mask of the spans that cover the whole interval from `low` to `high`."""
-        found: NDArray[np.bool_] = (self.chart == chart) & (self.low <= low) & (self.high >= high)
+        found: Mask = (self.chart == chart) & (self.low <= low) & (self.high >= high)
         return found
 
 

@@ -79,7 +79,7 @@ def certified_exponents(
     ('-0.3465735902799', '-0.3465735902799')
     """
     proof = certificate(table, lam, near, digits, law)
-    if not all(proof.checks[name] for name in ("exists", "unique", "admissible", "minimal_period")):
+    if not proof.is_cycle:
         return None
     with working(bits_of(digits, 64)):
         if lam == 0 and law.uniform:

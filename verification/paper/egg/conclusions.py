@@ -181,9 +181,8 @@ def weak_shows_elliptic(claim: Claim) -> Judgement:
 def elastic(cycle: Attractor) -> bool:
     """True if a cycle of the elastic map is proved to exist near an attracting cycle, and to be elliptic."""
     proof = certificate(tables.egg(3).at(alpha=SHAPE), S.One, cycle.points, 20)
-    discrete = all(proof.checks[item] is True for item in ("exists", "unique", "admissible", "minimal_period"))
     apart = max(abs(near(theta, x)) for theta, x in zip(proof.theta, cycle.points.theta, strict=True))
-    return discrete and bool(abs(proof.trace) < 2) and apart < 0.2
+    return proof.is_cycle and bool(abs(proof.trace) < 2) and apart < 0.2
 
 
 def near(theta: arb, x: float) -> float:

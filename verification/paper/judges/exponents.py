@@ -30,7 +30,6 @@ from verification.named.attractors import certificate, exponents
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, digits, greater, judges, rounded, sampled, zero
 from verification.paper.judges.attractors import strange
-from verification.proofs.periodic.cycle_in_box import AttractingCycle
 
 SHAPE = Rational(2, 25)
 SEED = 1
@@ -121,12 +120,6 @@ def uneven(counts: Array) -> float:
 
 
 BITS = 128
-DISCRETE = ("exists", "unique", "admissible", "minimal_period")
-
-
-def proved(proof: AttractingCycle) -> bool:
-    """True if the cycle is proved to exist, to be admissible, and to have the stated minimal period."""
-    return all(proof.checks[name] is True for name in DISCRETE)
 
 
 @judges("cuspless.lyapunov_signs")
@@ -211,7 +204,7 @@ def period3(claim: Claim) -> Judgement:
         by(
             "at lam = 0.3937, from the certified cycle and in closed form",
             finding,
-            answer(proved(proof), "proved"),
+            answer(proof.is_cycle, "proved"),
             same,
         ),
         "nu = log(lam*cos(lam*eta)/cos(eta))/2 with eta = pi/(3*(1 + lam)) while the multipliers are complex: -0.3314 "
@@ -233,7 +226,7 @@ def period_32(share: Fraction) -> tuple[bool, Rational, arb]:
     exact = Rational(Fraction(target).limit_denominator(10**7))
     proof = certificate(table, exact, phase_points(theta, 0.0), 20)
     with working(BITS):
-        return proved(proof), exact, exponents(proof.trace, proof.determinant, len(theta))[0]
+        return proof.is_cycle, exact, exponents(proof.trace, proof.determinant, len(theta))[0]
 
 
 @cache
@@ -290,7 +283,7 @@ def weak_dissipation_attracts(claim: Claim) -> Judgement:
         counterexample(
             "at alpha = 1/20 a cycle of period 6 is elliptic at lam = 1, and at lam = 99/100 a repeller with complex "
             f"multipliers, |mu|^2 = {size}",
-            answer(proved(damped) and proved(elastic), "both cycles are proved"),
+            answer(damped.is_cycle and elastic.is_cycle, "both cycles are proved"),
             answer(all(turning), "complex multipliers at both"),
             answer(repels, "det > 1 at lam = 99/100"),
             at={alpha: Rational(1, 20), lam: Rational(99, 100)},

@@ -197,6 +197,11 @@ class UniqueCycle(SolutionInBox):
             on_sides = [minimal(self.problem.table, parts, theta) for parts, theta, _ in self.sides if self.found]
             return all(on_sides) if on_sides else None
 
+    @property
+    def is_cycle(self) -> bool:
+        """True if the box is proved to hold exactly one solution, a cycle of the table with this minimal period."""
+        return self.exists is self.unique is self.admissible is self.minimal_period is True
+
     @cached_property
     def sides(self) -> list[Side]:
         """The ways to assign the bounces to components on which they may lie; several if the box reaches over joins.

@@ -20,7 +20,6 @@ from verification.proofs.manifolds.known import (
     TRIANGLE,
     contact,
     crisis,
-    heteroclinic_exponent,
     homoclinic_exponent,
     shadow,
     table,
@@ -132,9 +131,8 @@ def test_manifolds_cross_beyond_the_boundary_crisis():
     assert below[2] > 0
 
 
-def test_the_exponents_are_those_of_grebogi_ott_and_yorke():
+def test_the_exponent_is_that_of_grebogi_ott_and_yorke():
     assert homoclinic_exponent(0.01, 3) == pytest.approx(math.log(0.01) / math.log((0.01 * 3) ** 2))
-    assert heteroclinic_exponent(0.01, 3) == pytest.approx(0.5 + math.log(3) / -math.log(0.01))
 
 
 def test_bad_requests_are_one_sentence():

@@ -56,9 +56,9 @@ from verification.cycles.recurrence import Array, BifurcationKind, Closure
 from verification.proofs.manifolds.certificate import Tangency
 from verification.proofs.manifolds.plane_map import Pinball, pinball
 from verification.proofs.manifolds.proof import LEAST_DIGITS, objection, sharpened
-from verification.proofs.manifolds.saddle import SaddleCycle, horner
+from verification.proofs.manifolds.saddle import SaddleCycle
 from verification.proofs.manifolds.tangency import Contact, Gap, Touch, tangency
-from verification.proofs.manifolds.touching import composed
+from verification.proofs.manifolds.touching import passage
 
 
 @dataclass(frozen=True)
@@ -99,29 +99,11 @@ def closed(points: list[float], bent: int, image: tuple[int, int], map: Pinball,
 
 def period(gap: Gap, rounds: int) -> tuple[list[float], int, tuple[int, int]]:
     """One period of the cycle, the index of its most sensitive bounce, and the symmetry by which it continues."""
-    turn, orbit = gap.map.turn, gap.out.saddle.orbit
-    unit = 2 * gap.map.words.pi / turn
-    p, q = orbit.closure.shift
-    once = orbit.closure.turn, p * turn // q
     z, _, end = gap.extremum()
-    points: list[float] = []
-    image = 1, 0
-
-    def extend(round: list[Any]) -> None:
-        points.extend(float(image[0] * x + image[1] * unit) for x in round)
-
-    for k in range(rounds // 2, 0, -1):
-        extend([horner(c, z / gap.out.factor**k) for c in gap.out.coefficients])
-        image = composed(image, once)
-    flight = gap.orbit(z)
-    bent = len(points) + max(range(gap.bounces), key=lambda i: abs(flight[i].c[1]))
-    extend([jet.c[0] for jet in flight[: gap.bounces]])
-    target = gap.into.points(end.c[0])[0]
-    image = composed(image, (gap.sign, round((flight[-2].c[0] - gap.sign * target) / unit)))
-    for k in range(rounds - rounds // 2):
-        extend([horner(c, end.c[0] * gap.into.factor**k) for c in gap.into.coefficients])
-        image = composed(image, once)
-    return points, bent, image
+    early = rounds // 2
+    points, flight, image = passage(gap, z, end.c[0], early, rounds - early)
+    bent = early * len(gap.out.coefficients) + max(range(gap.bounces), key=lambda i: abs(flight[i].c[1]))
+    return [float(x) for x in points], bent, image
 
 
 TRIED = 1500
@@ -305,15 +287,6 @@ def homoclinic_exponent(stable: float, unstable: float) -> float:
     1.0
     """
     return math.log(abs(stable)) / (2 * math.log(abs(stable * unstable)))
-
-
-def heteroclinic_exponent(stable: float, unstable: float) -> float:
-    """The limit exponent at a heteroclinic crisis, `1/2 + ln|unstable|/|ln|stable||`, for the saddle on the attractor.
-
-    >>> heteroclinic_exponent(1 / 16, 4)
-    1.0
-    """
-    return 0.5 + math.log(abs(unstable)) / abs(math.log(abs(stable)))
 
 
 def crisis(kind: str, alpha: Expr, digits: int, law: Law = PAPERS_LAW) -> KnownCrisis:

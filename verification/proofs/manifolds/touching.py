@@ -276,6 +276,38 @@ def composed(first: Image, second: Image) -> Image:
     return first[0] * second[0], first[0] * second[1] + first[1]
 
 
+def repeating(local: Local) -> Image:
+    """The symmetry by which the bounces of a saddle repeat after one round."""
+    closure = local.saddle.orbit.closure
+    p, q = closure.shift
+    return closure.turn, p * local.saddle.map.turn // q
+
+
+def passage(gap: Gap, z: Any, end: Any, before: int, after: int) -> tuple[list[Any], list[Jet], Image]:
+    """The bounces of an orbit from saddle to saddle, its flight in between as jets, and the symmetry at its end.
+
+    It leaves the unstable manifold at `z` after `before` rounds there, and makes `after` rounds on the stable manifold
+    from `end` on.
+    """
+    out, into, unit = gap.out, gap.into, 2 * gap.map.words.pi / gap.map.turn
+    image, found = (1, 0), list[Any]()
+
+    def extend(points: Sequence[Any]) -> None:
+        found.extend(image[0] * x + image[1] * unit for x in points)
+
+    for k in range(before, 0, -1):
+        extend([horner(c, z / out.factor**k) for c in out.coefficients])
+        image = composed(image, repeating(out))
+    flight = gap.orbit(z)
+    extend([jet.c[0] for jet in flight[: gap.bounces]])
+    apart = flight[-2].c[0] - gap.sign * into.points(end)[0]
+    image = composed(image, (gap.sign, round(float(apart / unit))))
+    for k in range(after):
+        extend([horner(c, end * into.factor**k) for c in into.coefficients])
+        image = composed(image, repeating(into))
+    return found, flight, image
+
+
 def exact_number(x: Any, bits: int) -> list[str]:
     """The multiple `m*2**e` of `2**-bits` nearest to an mpmath number, as `[m, e]` in decimal text."""
     m = int(x.context.nint(x.context.ldexp(x, bits)))
@@ -337,31 +369,12 @@ class ContactChain:
 
     def _orbit(self) -> tuple[list[Any], int, Image]:
         """Bounces from saddle to saddle, the index of a bounce far from both, and the symmetry at the second saddle."""
-        gap, out, into = self.gap, self.gap.out, self.gap.into
-        image, found = (1, 0), list[Any]()
-
-        def extend(points: Sequence[Any]) -> None:
-            found.extend(image[0] * x + image[1] * self.unit for x in points)
-
-        for k in range(rounds(float(self.z) * out.unit / self.near, float(out.factor)), 0, -1):
-            extend([horner(c, self.z / out.factor**k) for c in out.coefficients])
-            image = composed(image, self._once(out))
-        flight, before = gap.orbit(self.z), len(found)
-        extend([jet.c[0] for jet in flight[: gap.bounces]])
-        apart = flight[-2].c[0] - gap.sign * into.points(self.end)[0]
-        image, meets = composed(image, (gap.sign, round(float(apart / self.unit)))), (before + len(found)) // 2
+        out, into = self.gap.out, self.gap.into
+        early = rounds(float(self.z) * out.unit / self.near, float(out.factor))
         late = rounds(float(self.end) * into.unit / self.near, 1 / float(into.factor))
-        for k in range(late):
-            extend([horner(c, self.end * into.factor**k) for c in into.coefficients])
-            image = composed(image, self._once(into))
-        extend([horner(into.coefficients[0], self.end * into.factor**late)])
-        return found, meets, image
-
-    def _once(self, local: Local) -> Image:
-        """The symmetry by which the bounces of a saddle repeat after one round."""
-        closure = local.saddle.orbit.closure
-        p, q = closure.shift
-        return closure.turn, p * self.map.turn // q
+        found, _, image = passage(self.gap, self.z, self.end, early, late)
+        found.append(image[0] * horner(into.coefficients[0], self.end * into.factor**late) + image[1] * self.unit)
+        return found, early * len(out.coefficients) + self.gap.bounces // 2, image
 
     def _frame(self, side: Local, lam: Any, image: Image, back: bool) -> SaddleFrame:
         """Frame of a saddle; with `back` time is reversed, so that the stable direction is the one that stretches."""
@@ -369,11 +382,11 @@ class ContactChain:
         rows, points, here, count = slopes(made.orbit, self.map, made.points, lam), list[Any](), image, 0
         while not count or here[0] != image[0] or (here[1] - image[1]) % self.map.turn:
             points += [here[0] * x + here[1] * self.unit for x in made.points]
-            here, count = composed(here, self._once(side)), count + 1
+            here, count = composed(here, repeating(side)), count + 1
         angle, by_here, by_there = self.map.angle(points[0], points[-1 if back else 1])[:3]
         tilts = []
         for factor in (made.unstable, made.stable):
-            vector, sign = direction(made, rows, factor), self._once(side)[0]
+            vector, sign = direction(made, rows, factor), repeating(side)[0]
             moves = [(sign * factor) ** k * v for k in range(count) for v in vector]
             there = moves[-1] / (sign * factor) ** count if back else moves[1]
             tilts.append(by_here + by_there * there / moves[0])

@@ -3,7 +3,7 @@
 from .absorbing import AbsorbingSet, cells, grown, kept_apart, reached
 from .boxes import Boxes, BoxMap, Chart, Images, PlaneImages, Row, Turned, centred, collected
 from .certificate import RANGE, SCHEMA, Certified, decimal_result, entry, read_document, whole, whole_number
-from .exclusion import Cuboids, exclude
+from .exclusion import Cuboids, Search, bisect, exclude
 from .graph import (
     BLOCK,
     LARGEST,
@@ -42,10 +42,12 @@ __all__ = [
     "PlaneImages",
     "Rectangles",
     "Row",
+    "Search",
     "Theorem",
     "Transitions",
     "Turned",
     "Verdict",
+    "bisect",
     "cells",
     "centred",
     "check_size",

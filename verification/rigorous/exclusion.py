@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from verification.arithmetic.arrays import Array, Mask
+from verification.arithmetic.balls import Box, bisected
+from verification.arithmetic.iteration import Tick, silent
 
 CHUNK = 4096  # boxes in one call of the test
 
@@ -50,10 +52,14 @@ class Cuboids:
 
 
 class Search(NamedTuple):
-    """Outcome of a search: `empty` is True if the region is proved to hold nothing, None if the search is undecided."""
+    """Outcome of a search: `proved` is True if every box of a cover passed the test, None if the search is undecided.
 
-    empty: bool | None
+    `boxes` is the number of boxes tested, and `share` the part of the region that passed, where it is counted.
+    """
+
+    proved: bool | None
     boxes: int
+    share: float = 0.0
 
 
 def exclude(
@@ -71,9 +77,9 @@ def exclude(
     cover is more likely a mistake than a region.
 
     >>> line = Cuboids(np.array([[0.0]]), np.array([[1.0]]))
-    >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 2) > boxes.half[:, 0], 100, 1e-3).empty
+    >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 2) > boxes.half[:, 0], 100, 1e-3).proved
     True
-    >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 1 / 3) > boxes.half[:, 0], 100, 1e-3).empty is None
+    >>> exclude(line, lambda boxes: np.abs(boxes.middle[:, 0] - 1 / 3) > boxes.half[:, 0], 100, 1e-3).proved is None
     True
     """
     if not start.size:
@@ -97,3 +103,33 @@ def exclude(
         halves = left.halves()
         queue = Cuboids(*(np.concatenate(pair) for pair in ((queue.middle, halves.middle), (queue.half, halves.half))))
     return Search(True, tested)
+
+
+def bisect(
+    start: Box,
+    holds: Callable[[Box], bool],
+    budget: int,
+    smallest: float = 0.0,
+    tick: Tick = silent,
+    halves: Callable[[Box], list[Box]] = bisected,
+) -> Search:
+    """A search like `exclude`, box by box, for tests in balls of any precision.
+
+    A box for which `holds` is False is cut in two. `tick` is called with the share of `start` that each box which holds
+    makes up. The search ends undecided before a box with all sides below `smallest` is tested.
+
+    >>> bisect(((0.0, 1.0),), lambda box: abs(box[0][0] - 2) > box[0][1], 100)
+    Search(proved=True, boxes=1, share=1.0)
+    """
+    queue, boxes, done = [(start, 1.0)], 0, 0.0
+    while queue:
+        box, share = queue.pop()
+        if boxes == budget or max(half for _, half in box) < smallest:
+            return Search(None, boxes, done)
+        boxes += 1
+        if holds(box):
+            done += share
+            tick(share)
+        else:
+            queue += [(half, share / 2) for half in halves(box)]
+    return Search(True, boxes, done)

@@ -146,6 +146,16 @@ def test_a_verdict_rests_on_each_finding_that_its_judge_asks_for(row):
     assert (verdict(name), driven(name, module, word, lambda *_, **__: UNKNOWN)) == verdicts
 
 
+def unproved(real):
+    """Certificates with the numbers of the real ones, but without the proof that there is a cycle."""
+
+    def certificate(*given):
+        found = real(*given)
+        return SimpleNamespace(is_cycle=False, trace=found.trace, determinant=found.determinant)
+
+    return certificate
+
+
 def returns(value):
     """A replacement for a function: it always returns this value."""
     return lambda _: lambda *_, **__: value
@@ -201,8 +211,8 @@ FACTS = [  # claim, verdicts before and after, module, word, what it means of wh
        lambda _, ends=ends: lambda alpha, kind="boundary": (PROVED, arb(ends[kind == "boundary"])),
        ("both_near_tenth",))
       for ends in (("0.29", "0.47"), ("0.3", "0.48"), ("0.3", "0.3"))),  # outside of the range, or no range
-    ("egg.exponent_period3", CONFIRMED, OPEN, exponents, "proved", returns(False)),
-    ("egg.weak_dissipation_attracts", CORRECTED, OPEN, exponents, "proved", returns(False)),
+    ("egg.exponent_period3", CONFIRMED, OPEN, exponents, "certificate", unproved),
+    ("egg.weak_dissipation_attracts", CORRECTED, OPEN, exponents, "certificate", unproved),
     ("egg.chaos_by", CONFIRMED, OPEN, exponents, "strange", returns((UNKNOWN, arb(0.39)))),
     ("egg.chaos_by", CONFIRMED, OPEN, exponents, "strange", returns((PROVED, arb(0.394)))),
     ("cardioid.contraction_implies", CORRECTED, OPEN, located, "expanding_cycle", returns((False, arb(2)))),
@@ -235,7 +245,7 @@ FACTS = [  # claim, verdicts before and after, module, word, what it means of wh
     ("cuspless.fourth_collision_below", CONFIRMED, OPEN, hyperbolicity, "kink_falls", returns(None)),
     ("cuspless.fourth_collision_below", CONFIRMED, OPEN, hyperbolicity, "minimum_at_kink", returns(None)),
     *((f"cuspless.fourth_collision_{side}", before, OPEN, hyperbolicity, "fourth_on_wall",
-       returns(SimpleNamespace(on_wall=None, boxes=1)))
+       returns(SimpleNamespace(proved=None, boxes=1)))
       for side, before in (("above", CORRECTED), ("below", CONFIRMED))),
     *((f"cuspless.{name}", before, after, hyperbolicity, "born",
        lambda real: lambda: replace(real(), budget=1))

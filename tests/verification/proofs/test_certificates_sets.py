@@ -57,7 +57,7 @@ def test_the_egg_has_no_period_3_cycle_below_the_fold():
 def test_what_exists_is_never_excluded():
     found = no_triangles(ALPHA, Rational(45, 100), budget=8_000)
 
-    assert found.excluded is None
+    assert found.proved is None
     assert found.share < 1
 
 
@@ -65,22 +65,22 @@ def test_what_exists_is_never_excluded():
 def test_a_box_that_cannot_be_halved_exactly_ends_the_proof():
     found = no_triangles(ALPHA, Rational(45, 100), budget=10**6)  # the cycles that exist are met by going deep
 
-    assert found.excluded is None
+    assert found.proved is None
     assert found.boxes < 10**5
 
 
 def test_a_budget_that_ends_is_unknown_and_says_how_far_it_came():
     found = no_triangles(ALPHA, Rational(3, 10), budget=100)
 
-    assert found.excluded is None
+    assert found.proved is None
     assert 0 < found.share < 1
     assert found.boxes == 100
 
 
 def test_every_subdivision_whose_budget_ends_leaves_its_question_open():
     assert periodic_points(4, budget=50).stretches is None
-    assert doubling_curve(budget=3).supercritical is None
-    assert fourth_on_wall(0.04, 0.0, 0.06, budget=10).on_wall is None
+    assert doubling_curve(budget=3).proved is None
+    assert fourth_on_wall(0.04, 0.0, 0.06, budget=10).proved is None
     assert flips_nowhere(ALPHA, budget=1) is None
 
 
@@ -157,12 +157,12 @@ def test_more_doublings_agree_with_the_stated_error():
 
 @pytest.mark.slow
 def test_below_lambda_star_the_fourth_collision_is_on_the_wall():
-    assert fourth_on_wall(0.06, 0.0, 0.03).on_wall is True
-    assert fourth_on_wall(0.06, 0.0712, 0.0713, budget=1000).on_wall is None  # lambda-star lies between
+    assert fourth_on_wall(0.06, 0.0, 0.03).proved is True
+    assert fourth_on_wall(0.06, 0.0712, 0.0713, budget=1000).proved is None  # lambda-star lies between
 
 
 def test_the_diameters_double_supercritically_along_the_whole_curve():
-    assert doubling_curve().supercritical is True
+    assert doubling_curve().proved is True
 
 
 @pytest.mark.parametrize(("K", "p", "q"), [(3, 1, 3), (4, 1, 4), (5, 1, 5), (5, 2, 5), (6, 1, 3), (6, 1, 6)])

@@ -25,7 +25,7 @@ def without(point):
 @given(st.floats(-1, 1), st.floats(1e-3, 1), st.fractions(-1, 1))
 def test_a_point_of_the_region_is_in_a_box(middle, half, share):
     for point in (Fraction(middle), Fraction(middle) + share * Fraction(half)):
-        assert exclude(line(middle, half), without(point), 200, 1e-6).empty is None
+        assert exclude(line(middle, half), without(point), 200, 1e-6).proved is None
 
 
 @pytest.mark.parametrize("box", [(0.0, -1.0), (0.0, np.nan), (np.inf, 1.0), (0.0, np.inf)])

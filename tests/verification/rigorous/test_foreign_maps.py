@@ -317,7 +317,7 @@ def test_a_solution_on_the_border_of_boxes_is_in_one_of_them(line, share):
         ends = zip(some.middle[:, 0], some.half[:, 0], strict=True)
         return np.array([abs(Fraction(middle) - point) > Fraction(half) for middle, half in ends])
 
-    assert exclude(Cuboids(*(np.array([[z]]) for z in line)), free, 300, 0.0).empty is None
+    assert exclude(Cuboids(*(np.array([[z]]) for z in line)), free, 300, 0.0).proved is None
 
 
 ONE, TWICE = np.eye(2)[..., None], np.eye(2)[..., None] * [0.5, 0.5]

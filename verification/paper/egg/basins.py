@@ -164,9 +164,9 @@ BELOW = Rational(378, 1000)  # just below lambda_c(0.08) = 0.37812...
 def without_triangles(shape: Expr, most: Expr) -> SignFinding:
     """The finding that no cycle of period 3 exists for `0 <= lam <= most`, proved by interval exclusion."""
     found = no_triangles(shape, most, tick=telling(f"triangles excluded at alpha = {shape}"))
-    if not found.excluded:
+    if not found.proved:
         return answer(None, f"{found.share:.0%} of the triangles excluded")
-    return answer(found.excluded, f"no period 3 at alpha = {shape} for lam <= {most}: {found.boxes} boxes excluded")
+    return answer(found.proved, f"no period 3 at alpha = {shape} for lam <= {most}: {found.boxes} boxes excluded")
 
 
 @judges("egg.slap_no_period3")

@@ -228,7 +228,7 @@ def other_K(claim: Claim) -> Judgement:
         *squares,
     )
     doubles = answer(
-        all(sign.supercritical for sign in odd) or None, "K = 5 and 7: a supercritical doubling for every 0 <= lam < 1"
+        all(sign.proved for sign in odd) or None, "K = 5 and 7: a supercritical doubling for every 0 <= lam < 1"
     )
     return Judgement(
         SignFinding(Outcome.UNKNOWN, f"a question, answered in part: {by('proved', never, doubles).reason}"),

@@ -45,7 +45,7 @@ from verification.paper.claims.judges import (
 )
 
 if TYPE_CHECKING:
-    from verification.proofs.slap_map.exponent import OneZero
+    from verification.rigorous.exclusion import Search
 
 SHAPES = Interval(0, Rational(1, 10))
 ROUND = Interval.Lopen(0, Rational(1, 10))  # without the circle
@@ -98,7 +98,7 @@ def slap_slope(at_vertex: bool) -> Expr:
 
 
 @cache
-def crossings() -> "OneZero":
+def crossings() -> "Search":
     """The proof that the slap map's slope `T0'` has at most one zero between a flat point and a vertex."""
     from verification.proofs.slap_map.exponent import one_zero  # loaded here: few of these claims need balls
 

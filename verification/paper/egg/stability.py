@@ -45,7 +45,7 @@ PERIOD_4 = 0.2, (0.05, 3.1)  # a contraction, and a start whose orbit converges 
 def period4_created(claim: Claim) -> Judgement:
     """The flip along `alpha-tilde` is supercritical, by the sign of a normal-form coefficient in balls of `lam`."""
     sign = doubling_curve(tick=telling("alpha-tilde"))
-    supercritical = answer(sign.supercritical, f"the flip is supercritical for 0 <= lam < 1, in {sign.balls} balls")
+    supercritical = answer(sign.proved, f"the flip is supercritical for 0 <= lam < 1, in {sign.boxes} balls")
     area = zero("det D(T^2) = 1 at lam = 1", trace_and_determinant(egg_diameter(), S.One)[1] - 1)
     return Judgement(
         counterexample(

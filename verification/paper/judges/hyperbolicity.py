@@ -271,7 +271,7 @@ def fourth_collision_below(claim: Claim) -> Judgement:
     return Judgement(
         by(
             f"for |phi| <= {ANGLE}",
-            answer(far.on_wall, f"s_4 > s* for lam <= 0.06, in {far.boxes} boxes"),
+            answer(far.proved, f"s_4 > s* for lam <= 0.06, in {far.boxes} boxes"),
             answer(near, "for 0.06 <= lam <= 0.0713 s_4 has one kink, and its minimum there"),
             answer(kink_falls(0.06, 0.0713), "s_4 at the kink falls as lam grows"),
             corner("unique", "and is s* at lambda*"),
@@ -288,7 +288,7 @@ def fourth_collision_above(claim: Claim) -> Judgement:
     return Judgement(
         counterexample(
             "lam = 0.9",
-            answer(far.on_wall, "s_4 > s* for every |phi| <= 0.05"),
+            answer(far.proved, "s_4 > s* for every |phi| <= 0.05"),
             at={letter: Rational(9, 10)},
         ),
         f"s_4 < s* at the kink of s_4 for lambda* < lam <= {PROVED_TO}, not near phi = 0 for every lam > lambda*",

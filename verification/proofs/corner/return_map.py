@@ -41,6 +41,7 @@ from verification.proofs.corner.corner import (
     parameter,
 )
 from verification.proofs.periodic.interval_newton import near_guess
+from verification.rigorous.exclusion import Search, bisect
 
 Angle = Callable[..., Any]
 Angles = dict[tuple[int, int], Angle]
@@ -185,14 +186,6 @@ ROUNDING = 2.0**-50  # by which neighbouring boxes overlap
 SMALLEST = 2.0**-40
 
 
-@dataclass(frozen=True)
-class Fourth:
-    """Result of the search: `on_wall` is True if all boxes land inside the wall, else None; `boxes` is their number."""
-
-    on_wall: bool | None
-    boxes: int
-
-
 def fourth_on_wall(
     angle: float,
     lowest: float,
@@ -200,28 +193,22 @@ def fourth_on_wall(
     budget: int = 50_000,
     or_lower: bool = False,
     tick: Tick = silent,
-) -> Fourth:
+) -> Search:
     """The search for a proof that the fourth collision is on the wall if `|phi| <= angle`, `lowest <= lam <= highest`.
 
     With `or_lower` it may also be on the lower half of the arc; `s_4 > s*` on both.
 
-    >>> fourth_on_wall(0.01, 0.0, 0.03).on_wall
+    >>> fourth_on_wall(0.01, 0.0, 0.03).proved
     True
     """
-    queue: list[Box] = [((0.0, angle), ((lowest + highest) / 2, (highest - lowest) / 2))]
-    boxes = 0
-    area = angle * (highest - lowest) / 2 or 1.0
+
+    def lands(box: Box) -> bool:
+        (phi, wide), (lam, half) = box
+        return _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING), or_lower)
+
+    whole = (0.0, angle), ((lowest + highest) / 2, (highest - lowest) / 2)
     with working(BITS):
-        while queue:
-            (phi, wide), (lam, half) = box = queue.pop()
-            boxes += 1
-            if boxes > budget or max(wide, half) < SMALLEST:
-                return Fourth(None, boxes)
-            if _lands_inside(arb(phi, wide + ROUNDING), arb(lam, half + ROUNDING), or_lower):
-                tick(wide * half / area)
-                continue
-            queue += bisected(box, 0 if wide > half else 1)
-    return Fourth(True, boxes)
+        return bisect(whole, lands, budget, SMALLEST, tick, lambda box: bisected(box, int(box[0][1] <= box[1][1])))
 
 
 def _lands_inside(phi: arb, lam: arb, or_lower: bool) -> bool:

@@ -6,7 +6,6 @@ all flights to the wall whose start is not below the axis, since `eta = phi - 3/
 boxes are halved along each side.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
@@ -20,18 +19,11 @@ from symbolic.cycles.returns import HIGHEST, LOWEST, leaves, margins, returns
 from symbolic.expressions.signs import Outcome, SignFinding, conjunction
 from symbolic.tables.table import lam
 from verification.arithmetic.arrays import ArrayOps, exactly, hull
+from verification.rigorous.exclusion import Search
 
 LETTERS = half, leaves, lam
 FIRST, DEPTH, MOST = (16, 16, 32), 10, 1 << 19  # boxes along each side, the most halvings, the most boxes at once
 LEAST = 2.0**-9  # the bound to prove for the margins; it is above 0, so that the search ends
-
-
-@dataclass(frozen=True)
-class Margins:
-    """Result: `positive` is True if both margins are proved to be at least `LEAST`, else None; `boxes` is the count."""
-
-    positive: bool | None
-    boxes: int
 
 
 def program(*formulas: Expr) -> Program:
@@ -41,12 +33,12 @@ def program(*formulas: Expr) -> Program:
     return builder.program(*(converted(builder, formula, nodes) for formula in formulas))
 
 
-def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fraction(str(HIGHEST))) -> Margins:
+def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fraction(str(HIGHEST))) -> Search:
     """The proof that both margins are at least `LEAST` for every contraction from `low` to `high`.
 
-    >>> positive_margins(Fraction(1, 5), Fraction(3, 5)).positive
+    >>> positive_margins(Fraction(1, 5), Fraction(3, 5)).proved
     True
-    >>> print(positive_margins(Fraction(9, 100), Fraction(1, 10)).positive)  # below lambda_c period 2 attracts
+    >>> print(positive_margins(Fraction(9, 100), Fraction(1, 10)).proved)  # below lambda_c period 2 attracts
     None
     """
     ops, run, boxes = ArrayOps(), program(*margins()), 0
@@ -61,12 +53,12 @@ def positive_margins(low: Fraction = Fraction(str(LOWEST)), high: Fraction = Fra
         left = ~np.logical_and.reduce([value.lower() >= LEAST for value in values])
         boxes += left.size
         if not np.any(left):
-            return Margins(True, boxes)
+            return Search(True, boxes)
         if np.count_nonzero(left) > MOST // 8:
             break
         sides = sides / 2
         corners = np.concatenate([corners[:, left] + sides * np.array([k]).T for k in np.ndindex(2, 2, 2)], axis=1)
-    return Margins(None, boxes)
+    return Search(None, boxes)
 
 
 @cache
@@ -77,4 +69,4 @@ def every_return() -> SignFinding:
     """
     found = positive_margins()
     reason = f"both margins by way of the wall are at least {LEAST} in {found.boxes} boxes"
-    return conjunction(returns(), SignFinding(Outcome.PROVED if found.positive else Outcome.UNKNOWN, reason))
+    return conjunction(returns(), SignFinding(Outcome.PROVED if found.proved else Outcome.UNKNOWN, reason))

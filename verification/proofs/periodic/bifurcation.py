@@ -33,7 +33,7 @@ from symbolic.expressions.text import kernel, load
 from symbolic.tables import egg
 from symbolic.tables.table import Table, theta
 from symbolic.tables.table import lam as letter
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import Box, balls, working
 from verification.arithmetic.iteration import Tick, silent
 from verification.arithmetic.series import Jet, jets
 from verification.cycles.chain import trace_and_determinant
@@ -42,6 +42,7 @@ from verification.cycles.problem import Linearised, Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.maps.first_hit import convex, inside, minimal
 from verification.proofs.periodic.interval_newton import ZeroStatus, dense, krawczyk
+from verification.rigorous.exclusion import Search, bisect
 
 Checks = dict[str, bool | None]
 
@@ -119,33 +120,20 @@ BITS = 80
 SMALLEST = 2.0**-40  # above it halves are exact in floats
 
 
-@dataclass(frozen=True)
-class Sign:
-    """Result: `supercritical` is True if proved for all contractions, else None; `balls` is the number of balls."""
-
-    supercritical: bool | None
-    balls: int
-
-
-def doubling_curve(K: int = 3, budget: int = 4000, tick: Tick = silent) -> Sign:
+def doubling_curve(K: int = 3, budget: int = 4000, tick: Tick = silent) -> Search:
     """The proof that the period doubling of the diameters is supercritical for every `0 <= lam < 1`.
 
-    >>> doubling_curve().supercritical
+    >>> doubling_curve().proved
     True
     """
-    queue, spent = [(0.5, 0.5)], 0
     with working(BITS):
         curve = load(kernel("curve", [letter], {"alpha": alpha_tilde(K)}), balls(BITS))
-        while queue:
-            middle, half = queue.pop()
-            spent += 1
-            if spent > budget or half < SMALLEST:
-                return Sign(None, spent)
-            if _supercritical(K, arb(middle, half), curve(arb(middle, half))[0]):
-                tick(2 * half)
-            else:
-                queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
-    return Sign(True, spent)
+
+        def supercritical(box: Box) -> bool:
+            lam = arb(*box[0])
+            return _supercritical(K, lam, curve(lam)[0])
+
+        return bisect(((0.5, 0.5),), supercritical, budget, SMALLEST, tick)
 
 
 def _supercritical(K: int, lam: arb, alpha: arb) -> bool:

@@ -124,7 +124,7 @@ def no_others(
             lambda tested, before=boxes: tick(f"{before + tested} boxes"),  # type: ignore[misc]
         )
         boxes += found.boxes
-        if not found.empty:
+        if not found.proved:
             return Completeness(n, None, boxes, known)
     return Completeness(n, True, boxes, known)
 

@@ -25,7 +25,6 @@ little.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -39,14 +38,16 @@ from symbolic.motion.chords import chord_kernel, polar_polygon_kernel, polygon_k
 from symbolic.tables import egg
 from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import theta
-from verification.arithmetic.balls import Arithmetic, Box, balls, bisected, bits_of, exact_balls, working
+from verification.arithmetic.balls import Arithmetic, Box, balls, bits_of, exact_balls, working
 from verification.arithmetic.iteration import Tick, Vector, silent
 from verification.cycles.critical import Small
 from verification.cycles.newton import refined
 from verification.maps.first_hit import convex
 from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
+from verification.rigorous.exclusion import Search, bisect
 
 BITS = 80
+SMALLEST = 2.0**-36  # above it ends of boxes are exact in floats
 
 
 def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
@@ -60,15 +61,7 @@ def flips_nowhere(alpha: Expr, budget: int = 2000) -> bool | None:
     with working(BITS):
         at = load(kernel("characteristic", [theta], {"value": value}), balls(BITS))
         end = load(kernel("fold", [], {"fold": acos_of(alpha)}), balls(BITS))()[0]
-        queue, spent = [(0.5, 0.5)], 0
-        while queue:
-            middle, half = queue.pop()
-            spent += 1
-            if spent > budget:
-                return None
-            if not at(end * arb(middle, half))[0] > 0:
-                queue += [(middle - half / 2, half / 2), (middle + half / 2, half / 2)]
-    return True
+        return bisect(((0.5, 0.5),), lambda box: bool(at(end * arb(*box[0]))[0] > 0), budget, SMALLEST).proved
 
 
 def acos_of(alpha: Expr) -> Expr:
@@ -152,32 +145,18 @@ def witness(alpha: Expr, lam: Expr, theta0: Rational, near: tuple[float, float])
 
 
 BITS_OF_COVER = 64
-SMALLEST = 2.0**-36  # above it ends of boxes are exact in floats
 
 
-@dataclass(frozen=True)
-class Exclusion:
-    """The result of the search: `excluded` is True if every box was excluded, None if the budget ended.
-
-    `share` is the excluded fraction of the volume, `smallest` the size of the smallest box.
-    """
-
-    excluded: bool | None
-    boxes: int
-    share: float
-    smallest: float
-
-
-def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick: Tick = silent) -> Exclusion:
+def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick: Tick = silent) -> Search:
     """The proof that the egg with `K` vertices has no cycle of period 3 for any `0 <= lam <= most`.
 
     >>> from sympy import Rational
-    >>> no_triangles(Rational(2, 25), Rational(1, 4)).excluded
+    >>> no_triangles(Rational(2, 25), Rational(1, 4)).proved
     True
     """
     table = egg(K).at(alpha=alpha)
     if convex(table) is not True:
-        return Exclusion(None, 0, 0.0, 0.0)
+        return Search(None, 0)
     with working(BITS_OF_COVER):
         arithmetic = balls(BITS_OF_COVER)
         angle = load(chord_kernel(table, 0, 0, 0), arithmetic)
@@ -190,7 +169,7 @@ def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick:
         start: Box = ((turn, turn), (gap + reach, reach), (gap + reach, reach))
         closer = load(polar_polygon_kernel(table, 3), arithmetic)
         excluded = partial(_impossible, angles, slopes, largest, ratio, gap, closer=closer)
-        return _subdivided(excluded, start, budget, tick)
+        return bisect(start, excluded, budget, SMALLEST, tick)
 
 
 def _gap(angle: Any, largest: arb) -> float:
@@ -203,27 +182,6 @@ def _gap(angle: Any, largest: arb) -> float:
             return gap
         gap -= 1 / 16
     return 0.0
-
-
-def _subdivided(impossible: Callable[[Box], bool], start: Box, budget: int, tick: Tick) -> Exclusion:
-    queue, boxes, done, smallest = [start], 0, 0.0, 1.0
-    while queue and boxes < budget:
-        box = queue.pop()
-        boxes += 1
-        share = _volume(box) / _volume(start)
-        if impossible(box):
-            done += share
-            tick(share)
-            continue
-        smallest = min(smallest, *(half for _, half in box))
-        if max(half for _, half in box) < SMALLEST:
-            return Exclusion(None, boxes, done, smallest)
-        queue += bisected(box)
-    return Exclusion(None if queue else True, boxes, done, smallest)
-
-
-def _volume(box: Box) -> float:
-    return box[0][1] * box[1][1] * box[2][1]
 
 
 def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, box: Box, closer: Any = None) -> bool:

@@ -65,6 +65,7 @@ from verification.proofs.corner.return_map import CusplessMap, Departures
 from verification.proofs.periodic.bifurcation import Checks
 from verification.proofs.slap_map.candidate import Judge, PiecewisePolynomial, candidate, precision
 from verification.proofs.slap_map.transfer import Inverted, Variation, inverted, variation
+from verification.rigorous.exclusion import Search, bisect
 
 CELLS = 2048
 MIRRORED = 1024  # cells for odd functions
@@ -148,15 +149,7 @@ SMALLEST = 2.0**-30  # above it halves are exact in floats
 WHOLE: Box = ((0.0, 1.0), (0.0625, 0.0625))  # C and alpha; boxes of shapes above 1/10 are skipped
 
 
-@dataclass(frozen=True)
-class OneZero:
-    """Result: `proved` is True if `k` has at most one zero for each shape and falls there, None if the budget ended."""
-
-    proved: bool | None
-    boxes: int
-
-
-def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
+def one_zero(budget: int = 100_000, tick: Tick = silent) -> Search:
     """The proof that the centre of curvature crosses the boundary at most once between a flat point and a vertex.
 
     >>> one_zero().proved, one_zero(budget=10).proved
@@ -164,23 +157,18 @@ def one_zero(budget: int = 100_000, tick: Tick = silent) -> OneZero:
     """
     beyond = centre_beyond_boundary()
     expressions = {"far": centre_far_inside(), "k": beyond, "slope": beyond.diff(COSINE)}
-    queue, boxes = [WHOLE], 0
     with working(BITS):
         at = load(kernel("centre", [COSINE, alpha], expressions), balls(BITS))
         most = arb(1) / 10
-        while queue:
-            (c, wide), (shape, high) = box = queue.pop()
-            boxes += 1
-            if boxes > budget or max(wide, high) < SMALLEST:
-                return OneZero(None, boxes)
+
+        def crossed_once(box: Box) -> bool:
+            (c, wide), (shape, high) = box
             if arb(shape - high) > most:
-                continue
+                return True
             far, k, slope = at(arb(c, wide), arb(shape, high))
-            if far > 0 or k > 0 or k < 0 or slope < 0:
-                tick(wide * high / (WHOLE[0][1] * WHOLE[1][1]))
-                continue
-            queue += halves(box)
-    return OneZero(True, boxes)
+            return bool(far > 0 or k > 0 or k < 0 or slope < 0)
+
+        return bisect(WHOLE, crossed_once, budget, SMALLEST, tick, halves)
 
 
 def halves(box: Box) -> list[Box]:

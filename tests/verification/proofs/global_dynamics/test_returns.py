@@ -20,7 +20,7 @@ def test_the_steps_are_proved_and_the_margins_positive():
 
 def test_nothing_is_proved_where_the_orbit_of_period_2_attracts():
     assert Fraction(93, 1000) < lambda_c().n()
-    assert positive_margins(Fraction(93, 1000), Fraction(93, 1000)).positive is None
+    assert positive_margins(Fraction(93, 1000), Fraction(93, 1000)).proved is None
 
 
 def grown(contraction):

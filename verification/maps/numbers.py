@@ -3,11 +3,14 @@
 Each has the method `turned`, which gives cosine and sine at the cost of one of them.
 """
 
+from operator import methodcaller
+from types import SimpleNamespace
 from typing import Any
 
 from flint import acb, arb, fmpq
 
 from numeric.backends.scalars import ScalarBackend
+from verification.arithmetic.balls import FUNCTIONS
 
 
 class Numbers(ScalarBackend[Any]):
@@ -22,6 +25,11 @@ class Numbers(ScalarBackend[Any]):
 class Balls(ScalarBackend[Any]):
     """Operations of ball arithmetic that a program calls: constants, roots and elementary functions."""
 
+    context: Any = SimpleNamespace(
+        root=lambda x, n: x.root(n),
+        **{word: methodcaller(word) for word in FUNCTIONS},  # methods of the balls themselves
+    )
+
     def __init__(self) -> None:
         """Accepts no context, unlike the other number systems."""
 
@@ -34,50 +42,10 @@ class Balls(ScalarBackend[Any]):
         """A ball that holds pi."""
         return arb.pi()
 
-    def sqrt(self, x: Any) -> Any:
-        """The square root."""
-        return x.sqrt()
-
-    def sin(self, x: Any) -> Any:
-        """The sine."""
-        return x.sin()
-
-    def cos(self, x: Any) -> Any:
-        """The cosine."""
-        return x.cos()
-
     def turned(self, x: Any) -> tuple[Any, Any]:
         """Cosine and sine."""
         sine, cosine = x.sin_cos()
         return cosine, sine
-
-    def exp(self, x: Any) -> Any:
-        """The exponential."""
-        return x.exp()
-
-    def log(self, x: Any) -> Any:
-        """The natural logarithm."""
-        return x.log()
-
-    def atan(self, x: Any) -> Any:
-        """The arc tangent."""
-        return x.atan()
-
-    def sinh(self, x: Any) -> Any:
-        """The hyperbolic sine."""
-        return x.sinh()
-
-    def cosh(self, x: Any) -> Any:
-        """The hyperbolic cosine."""
-        return x.cosh()
-
-    def tanh(self, x: Any) -> Any:
-        """The hyperbolic tangent."""
-        return x.tanh()
-
-    def root(self, x: Any, n: int) -> Any:
-        """The positive `n`-th root."""
-        return x.root(n)
 
 
 class ComplexBalls(Balls):

@@ -19,6 +19,11 @@ class Boxes(NamedTuple):
     x: tuple[Array, Array]
     y: tuple[Array, Array]
 
+    @classmethod
+    def one(cls, x: tuple[float, float], y: tuple[float, float], *, chart: int = 0) -> "Boxes":
+        """A single box, from the low and high ends of its sides."""
+        return cls(np.array([chart]), *((np.array([low]), np.array([high])) for low, high in (x, y)))
+
     def chosen(self, which: Indices | Mask | slice) -> "Boxes":
         """Some of the boxes, by their indices, a mask or a slice."""
         return Boxes(self.chart[which], *((low[which], high[which]) for low, high in (self.x, self.y)))

@@ -56,8 +56,7 @@ BITS, LONG, MOST_BOUNCES, STARTS = 160, 640, 200, 40
 def about(theta: float = 0.0) -> Boxes:
     """Boxes that cover all phase points within `CLOSE` of `(theta, 0)` in both coordinates."""
     size = float(CLOSE) * (1 + 1e-12)
-    x, y = ((np.array([at - size]), np.array([at + size])) for at in (theta, 0.0))
-    return Boxes(np.zeros(1, dtype=np.int64), x, y).parts(CUT, CUT)[0]
+    return Boxes.one(*((at - size, at + size) for at in (theta, 0.0))).parts(CUT, CUT)[0]
 
 
 def together(first: Boxes, more: Boxes) -> Boxes:

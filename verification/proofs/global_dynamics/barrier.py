@@ -152,8 +152,7 @@ class Barrier:
 
 def point(theta: float, phi: float) -> Boxes:
     """A phase point as an array of one box."""
-    x, y = np.array([theta]), np.array([phi])
-    return Boxes(np.zeros(1, dtype=np.int64), (x, x), (y, y))
+    return Boxes.one((theta, theta), (phi, phi))
 
 
 @dataclass(frozen=True)

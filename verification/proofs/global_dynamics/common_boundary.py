@@ -60,8 +60,7 @@ class Disc:
 
 def disc(map: PinballImages, centre: tuple[float, float], radius: float) -> Disc:
     """A disc in a norm adapted to the derivative at `centre`, so that an attracting map is likely to contract it."""
-    x, y = (np.array([value]) for value in centre)
-    at = Boxes(np.array([0]), (x, x), (y, y))
+    at = Boxes.one(*((value, value) for value in centre))
     (a, b), (c, d) = ((float(np.ravel(x.m)[0]) for x in row) for row in matrix(map.derivatives(at)[0][1]))
     values, vectors = np.linalg.eig(np.array([[a, b], [c, d]]))
     v = vectors[:, 0]
@@ -75,12 +74,12 @@ def attracts(map: PinballImages, disc: Disc, turn: float) -> bool:
     Then the turned-back map has one fixed point in the disc, and every orbit in the disc converges to it.
     """
     (x, y), (width, height) = disc.centre, disc.rectangle
-    whole = Boxes(np.array([0]), *((np.array([c - h]), np.array([c + h])) for c, h in ((x, width), (y, height))))
+    whole = Boxes.one((x - width, x + width), (y - height, y + height))
     parts, _ = whole.parts(CUT, CUT)
     ((piece, slopes),) = map.derivatives(parts)  # one component has one piece
     if not np.array_equal(piece.on, np.arange(CUT * CUT)):
         return False
-    found = map.images(Boxes(np.array([0]), (np.array([x]),) * 2, (np.array([y]),) * 2))
+    found = map.images(Boxes.one((x, x), (y, y)))
     if found.lost.size:
         return False
     off = []

@@ -100,7 +100,7 @@ class BasinEdge(Theorem):
     def disc_attracts(self) -> bool:
         """All orbits that enter the disc converge to the cycle, and the disc lies above the barrier."""
         sides = zip(self.disc.centre, self.disc.rectangle, strict=True)
-        about = Boxes(np.array([0]), *((np.array([c - half]), np.array([c + half])) for c, half in sides))
+        about = Boxes.one(*((c - half, c + half) for c, half in sides))
         return attracts(self.barrier.map, self.disc, self.turn) and bool(np.all(self.barrier.above(about)))
 
     @hypothesis(name="saddle")
@@ -110,7 +110,7 @@ class BasinEdge(Theorem):
 
     def _about(self, half: float) -> Boxes:
         assert self.place is not None
-        return Boxes(np.array([0]), *((np.array([c - half]), np.array([c + half])) for c in self.place))
+        return Boxes.one(*((c - half, c + half) for c in self.place))
 
     @hypothesis
     def hyperbolic(self) -> bool:

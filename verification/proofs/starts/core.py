@@ -127,7 +127,7 @@ def _converges(map: PinballImages, core: AbsorbingTube) -> bool:
     """True if all orbits of the core within `inner` are proved to converge to one orbit."""
     end = core.inner
     top = (abs(core.slope) * end + abs(core.cubic) * end**3 + core.width) * (1 + 1e-9)
-    whole = Boxes(np.array([core.chart]), (np.array([-end]), np.array([end])), (np.array([-top]), np.array([top])))
+    whole = Boxes.one((-end, end), (-top, top), chart=core.chart)
     entries = derivative(map, whole.parts(*CUT)[0])
     if entries is None:
         return False

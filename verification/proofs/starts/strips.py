@@ -292,8 +292,7 @@ def bounded(map: PinballImages, rate: float, bounces: int, weight: float, halvin
     """
     goal, half = exp(rate * bounces) / SLACK, map.mirrored
     for chart, ends in enumerate(map.charts):
-        sides = [(np.array([low]), np.array([high])) for low, high in (ends.x, (0.0, map.top) if half else ends.y)]
-        boxes = Boxes(np.array([chart]), *sides).parts(*FIRST)[0]
+        boxes = Boxes.one(ends.x, (0.0, map.top) if half else ends.y, chart=chart).parts(*FIRST)[0]
         for _ in range(halvings):
             open_ = ~(steepest(map, boxes, bounces, weight) <= goal)
             if not np.any(open_):

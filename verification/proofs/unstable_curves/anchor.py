@@ -86,7 +86,7 @@ def _followed(cover: ConeField, chart: int, box: Box, period: int) -> tuple[int,
     """The chart and image of a box after `period` bounces, and the derivative over the box; None if not proved."""
     product: Matrix = [[BallArray(1.0), BallArray(0.0)], [BallArray(0.0), BallArray(1.0)]]
     for _ in range(period):
-        parts = Boxes(np.array([chart]), *((np.array([a]), np.array([b])) for a, b in box)).parts(CUTS, CUTS)[0]
+        parts = Boxes.one(*box, chart=chart).parts(CUTS, CUTS)[0]
         images, found = cover.map.images(parts), cover.map.derivatives(parts)
         charts = np.unique(images.boxes.chart)
         if images.lost.size or charts.size != 1 or len(found) != 1 or found[0][0].on.size != parts.chart.size:

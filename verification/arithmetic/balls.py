@@ -161,12 +161,17 @@ def ball_arithmetic(digits: int) -> tuple[BallWords[arb], Callable[..., Any]]:
     return balls(bits), run
 
 
+def fraction_ball(x: Fraction) -> arb:
+    """A ball that holds a fraction, at the precision in use."""
+    return arb(fmpq(x.numerator, x.denominator))
+
+
 def _as_given(x: Any) -> arb:
     """A number as a ball: a float stands for its exact value, a text for the decimal number that it shows."""
     if isinstance(x, str):
         found = exact("argument", x)
         return _as_given(found) if isinstance(found, Fraction) else real_ball(found)
-    return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else arb(x)
+    return fraction_ball(x) if isinstance(x, Fraction) else arb(x)
 
 
 def _rows(values: Sequence[Any], shape: Sequence[int]) -> list[list[Any]]:

@@ -15,13 +15,13 @@ from enum import Enum
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb
 
 from numeric.pinball.states import components
 from symbolic.tables.definition import exact
 from symbolic.tables.joins import JoinKind, contacts, following
 from symbolic.tables.law import Law
-from verification.arithmetic.balls import as_ball, bits_of, enclose, joined, working
+from verification.arithmetic.balls import as_ball, bits_of, enclose, fraction_ball, joined, working
 from verification.arithmetic.iteration import Stop, Vector, iterated
 from verification.maps.exact import Bounce, ExactMap, closed_length, float_map
 from verification.maps.first_hit import BITS, BallBoundary, Frame, closes_smoothly, free
@@ -334,7 +334,7 @@ def number(value: Any, bits: int = 0) -> arb:
     if isinstance(value, str):
         value = exact("start", value)
     if isinstance(value, Fraction):
-        return arb(fmpq(value.numerator, value.denominator))
+        return fraction_ball(value)
     if isinstance(value, int | float):
         return arb(value)
     return enclose(value, digits=int(bits / 3.3219) + 2).real

@@ -17,6 +17,7 @@ from itertools import combinations, pairwise
 from math import asin, ceil, floor, inf
 
 import numpy as np
+from flint import acb
 from sympy import Rational
 
 from symbolic.expressions.signs import SignFinding
@@ -24,14 +25,13 @@ from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha as shape
 from symbolic.tables.table import lam as letter
 from verification.arithmetic.arrays import Array, Mask
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import balls, fraction_ball, working
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled
 from verification.paper.egg import crises
 from verification.paper.egg.barriers import barrier, bounces
 from verification.paper.judges.attractors import SHAPE, cycles, egg
 from verification.proofs.global_dynamics.barrier import Barrier
-from verification.proofs.global_dynamics.branch import exact
 from verification.proofs.global_dynamics.crisis import bounding_boxes
 from verification.proofs.manifolds.enclosed import TooWideError, complex_balls, enclosed_cycle
 from verification.proofs.manifolds.known import CONTACTS, table
@@ -52,7 +52,7 @@ def saddle() -> Boxes | None:
     orbit, map = CONTACTS[NAME].unstable, table(Rational(SHAPE))
     with working(BITS):
         try:
-            points = enclosed_cycle(orbit, map.over(complex_balls(BITS)), exact(Fraction(SADDLE)))
+            points = enclosed_cycle(orbit, map.over(complex_balls(BITS)), acb(fraction_ball(Fraction(SADDLE))))
         except TooWideError:
             return None
         real = map.over(balls(BITS))

@@ -12,7 +12,7 @@ from functools import cache, reduce
 from itertools import pairwise
 
 import numpy as np
-from flint import acb, arb, fmpq
+from flint import acb, arb
 from sympy import Rational
 
 from numeric import PinballMap
@@ -21,7 +21,7 @@ from symbolic.cycles.cycle import egg_diameter, is_double_normal
 from symbolic.expressions.signs import SignFinding
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import lam as letter
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import balls, fraction_ball, working
 from verification.maps.enclosed import EnclosedMap
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, judges, sampled, shown
@@ -234,6 +234,5 @@ def merging_crisis(claim: Claim) -> Judgement:
 
 def ball(decimal: str) -> arb:
     """A decimal as a ball."""
-    x = Fraction(decimal)
     with working(BITS):
-        return arb(fmpq(x.numerator, x.denominator))
+        return fraction_ball(Fraction(decimal))

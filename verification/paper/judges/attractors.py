@@ -27,13 +27,12 @@ from symbolic.motion.flight import flight
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import alpha as letter
 from symbolic.tables.table import lam, phi
-from verification.arithmetic.balls import working
+from verification.arithmetic.balls import fraction_ball, working
 from verification.named.attractors import certificate
 from verification.named.curves import invariant_circle
 from verification.paper.claims.claim import Claim, Judgement
 from verification.paper.claims.judges import answer, by, counterexample, equal, greater, judges, sampled, shown
 from verification.paper.judges.ellipse import settles, two_cycles
-from verification.proofs.global_dynamics.branch import exact
 from verification.proofs.global_dynamics.fates import AlmostEveryOrbit
 from verification.proofs.global_dynamics.returns import every_return
 from verification.proofs.manifolds.enclosed import attracting, complex_balls
@@ -290,7 +289,7 @@ def triangles_attract(low: Fraction, high: Fraction) -> SignFinding:
             (a, b), tried = parts.pop(), tried + 1
             middle = (a + b) / 2
             orbit = SaddleCycle("triangle", (complex(bounce(float(middle))).real,), TRIANGLE.closure)
-            if not attracting(orbit, map, acb(exact(a).real.union(exact(b).real))):
+            if not attracting(orbit, map, acb(fraction_ball(a).union(fraction_ball(b)))):
                 parts += [(middle, b), (a, middle)]
     return answer(not parts, f"a triangle of period 3 attracts at every lam from {float(low)} to {float(high)}")
 
@@ -300,7 +299,7 @@ def both_near_tenth() -> tuple[SignFinding, list[arb]]:
     """The finding that strange attractors exist near two contractions at which the triangles of period 3 attract."""
     low, high = RANGE
     (first, one), (last, other) = strange(TENTH, "bands"), strange(TENTH)
-    inside = exact(low).real < one < other < exact(high).real
+    inside = fraction_ball(low) < one < other < fraction_ball(high)
     chaos = by("strange attractors next to two of them", first, last, answer(inside or None, "both within the range"))
     return by(f"at alpha = {TENTH} both, over a range", triangles_attract(low, high), chaos), [one, other]
 

@@ -5,11 +5,11 @@ Each point of the branch is a small box of phase points, whose orbit is followed
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from flint import acb, arb, fmpq
+from flint import acb, arb
 
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import balls, fraction_ball, working
 from verification.proofs.manifolds.enclosed import (
     Enclosed,
     complex_balls,
@@ -56,15 +56,10 @@ def unstable_branch(
     try:
         with working(bits):
             size = scale(orbit, map, float(lam), True, OUTER)
-            at = enclosed_saddle(orbit, map.over(complex_balls(bits)), exact(lam))
+            at = enclosed_saddle(orbit, map.over(complex_balls(bits)), acb(fraction_ball(lam)))
             made = enclosed(at, True, bits // 4, size.unit, size.chief)
             error = remainder(made, OUTER)
             proved = made.factor.real > 1 and (around is None or one_cycle(around, at))  # keeps the sides
             return ManifoldSeries(made, error, bits, map) if proved else None
     except (ValueError, ArithmeticError):
         return None
-
-
-def exact(x: Fraction) -> Any:
-    """A fraction as a complex ball."""
-    return acb(arb(fmpq(x.numerator, x.denominator)))

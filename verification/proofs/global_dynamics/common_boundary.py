@@ -23,7 +23,7 @@ from flint import arb, fmpq
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
 from verification.arithmetic.arrays import Array, BallArray
-from verification.arithmetic.balls import working
+from verification.arithmetic.balls import fraction_ball, working
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap
 from verification.proofs.global_dynamics.branch import ManifoldSeries, unstable_branch
@@ -119,7 +119,7 @@ def enters(scene: Scene, lam: Fraction, start: tuple[arb, arb], disc: Disc, turn
 def entered_around(found: "CommonBoundary", which: int, theta: Fraction, phi: Fraction) -> bool:
     """True if all orbits from a small box around a point are proved to enter the disc `which` or a rotated copy."""
     with working(BITS):
-        x, y = (arb(fmpq(value.numerator, value.denominator)) + arb(0, SMALL) for value in (theta, phi))
+        x, y = (fraction_ball(value) + arb(0, SMALL) for value in (theta, phi))
     return enters(found.scene, found.lam, (x, y), found.discs[which], found.turns)
 
 

@@ -28,11 +28,11 @@ from flint import acb, arb
 
 from numeric import PinballMap
 from symbolic.tables.scene import Scene
-from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, working
+from verification.arithmetic.balls import ARRAYS, FLOAT64, balls, fraction_ball, working
 from verification.arithmetic.series import Jet
 from verification.cycles.systems import symmetries
 from verification.maps.enclosed import EnclosedMap
-from verification.proofs.global_dynamics.branch import OUTER, ManifoldSeries, exact, unstable_branch
+from verification.proofs.global_dynamics.branch import OUTER, ManifoldSeries, unstable_branch
 from verification.proofs.global_dynamics.images import SCENE, PinballImages
 from verification.proofs.manifolds.certificate import orbit_of, orbit_said
 from verification.proofs.manifolds.enclosed import (
@@ -189,13 +189,13 @@ class BoundaryCrisis(Certified):
         map, orbit, parts = self.map.over(complex_balls(BITS)), self.saddle, list[Saddle]()
         try:
             with working(BITS):
-                before = enclosed_saddle(orbit, map, exact(ends[0]))
+                before = enclosed_saddle(orbit, map, acb(fraction_ball(ends[0])))
                 if not abs(before.points[0] - orbit.start[0]) < NEAR:
                     return None
                 for a, b in pairwise(ends):
-                    around = enclosed_saddle(orbit, map, acb(exact(a).real.union(exact(b).real)))
+                    around = enclosed_saddle(orbit, map, acb(fraction_ball(a).union(fraction_ball(b))))
                     orbit = replace(orbit, start=tuple(float(x.real.mid()) for x in around.points))
-                    after = enclosed_saddle(orbit, map, exact(b))
+                    after = enclosed_saddle(orbit, map, acb(fraction_ball(b)))
                     if not (one_cycle(around, before) and one_cycle(around, after)):
                         return None
                     parts.append(replace(around, orbit=orbit))

@@ -22,11 +22,9 @@ from fractions import Fraction
 from functools import cached_property
 from math import pi
 
-from flint import arb, fmpq
-
 from numeric import PinballMap
 from symbolic import Scene, tables
-from verification.arithmetic.balls import working
+from verification.arithmetic.balls import fraction_ball, working
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import Bounce
 from verification.proofs.corner.border_collision import holds
@@ -97,7 +95,7 @@ class Alternating(Theorem):
     def polygon(self) -> ProvedRange | None:
         """The trapping polygon, in units of `lam - lambda*`; None if it is not proved."""
         with working(BITS):
-            e = float((arb(fmpq(self.lam.numerator, self.lam.denominator)) - enclosed()[1]).mid())
+            e = float((fraction_ball(self.lam) - enclosed()[1]).mid())
             found = step(limit(), (e - WIDE, e + WIDE)) if e > WIDE else None
         return found and found[1]
 
@@ -118,7 +116,7 @@ class Alternating(Theorem):
         if self.polygon is None or before.component != ARC or here.component not in (ARC, WALL):
             return False
         theta1, star = enclosed()
-        e = arb(fmpq(self.lam.numerator, self.lam.denominator)) - star
+        e = fraction_ball(self.lam) - star
         corner = corner_parameters()[here.component]
         for sign in (1, -1):
             point = (sign * before.theta + theta1) / e, (sign * here.theta - corner) / e

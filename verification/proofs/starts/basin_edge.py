@@ -25,10 +25,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from flint import acb, arb, fmpq
+from flint import acb, arb
 
 from verification.arithmetic.arrays import Array, BallArray, Mask
-from verification.arithmetic.balls import balls, working
+from verification.arithmetic.balls import balls, fraction_ball, working
 from verification.proofs.global_dynamics.barrier import Barrier
 from verification.proofs.global_dynamics.common_boundary import Disc, attracts, disc
 from verification.proofs.global_dynamics.flights import matrix
@@ -85,7 +85,7 @@ class BasinEdge(Theorem):
     def place(self) -> tuple[float, float] | None:
         """The phase point of the saddle, enclosed much closer than `NEAR` for all contractions; None if not proved."""
         with working(BITS):
-            low, high = (arb(fmpq(x.numerator, x.denominator)) for x in self.barrier.lam)
+            low, high = (fraction_ball(x) for x in self.barrier.lam)
             map = Pinball(self.barrier.map.map.table, turn=self.barrier.turns)
             try:
                 here = enclosed_saddle(self.saddle, map.over(complex_balls(BITS)), acb(low.union(high))).points[0].real

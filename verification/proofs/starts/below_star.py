@@ -42,7 +42,7 @@ from flint import arb
 
 from symbolic import Scene
 from verification.arithmetic.arrays import Mask
-from verification.arithmetic.balls import cuts, joined, working
+from verification.arithmetic.balls import cuts, fraction_ball, joined, working
 from verification.proofs.corner.corner import (
     ARC,
     BITS,
@@ -58,7 +58,6 @@ from verification.proofs.corner.corner import (
     parameter,
 )
 from verification.proofs.corner.half_return import followed
-from verification.proofs.global_dynamics.branch import exact
 from verification.proofs.global_dynamics.fates import AlmostEveryOrbit, Cluster
 from verification.proofs.global_dynamics.images import PinballImages
 from verification.proofs.starts.core import AbsorbingTube, attracts
@@ -141,7 +140,7 @@ class ConvergenceBelowLambdaStar(Theorem):
     def depth(self) -> arb:
         """The difference `lambda* - NEXT`, as a ball."""
         with working(BITS):
-            above: arb = enclosed()[1] - exact(NEXT).real
+            above: arb = enclosed()[1] - fraction_ball(NEXT)
         return above
 
     @hypothesis
@@ -154,7 +153,7 @@ class ConvergenceBelowLambdaStar(Theorem):
     @hypothesis
     def core(self) -> bool:
         """For `lam` from `NEXT` to `TOP > lambda*`, orbits in the tube converge to the horizontal orbit."""
-        return bool(self.depth < exact(TOP - NEXT).real) and all(attracts(self.map, self.tube).values())
+        return bool(self.depth < fraction_ball(TOP - NEXT)) and all(attracts(self.map, self.tube).values())
 
     @hypothesis
     def inner(self) -> bool:
@@ -167,7 +166,7 @@ class ConvergenceBelowLambdaStar(Theorem):
         """States with `V_HIGH <= V <= FAR`, `-THICK <= U <= LEAN*V + THICK` are in the tube or an entry tube."""
         with working(BITS):
             theta1, _ = enclosed()
-            lam = exact(NEXT).real.union(exact(TOP).real)
+            lam = fraction_ball(NEXT).union(fraction_ball(TOP))
             cells = []
             for v in cuts(V_HIGH, FAR, SIDES[1]):
                 for u in cuts(-THICK, LEAN * float(v.upper()) + THICK, SIDES[0]):
@@ -216,7 +215,7 @@ class AlmostEveryOrbitBesideLambdaStar(AlmostEveryOrbit):
     def depth(self) -> arb:
         """The difference between `lambda*` and the lower end of the range, as a ball."""
         with working(BITS):
-            above: arb = enclosed()[1] - exact(self.lam[0]).real
+            above: arb = enclosed()[1] - fraction_ball(self.lam[0])
         return above
 
     @cached_property
@@ -266,7 +265,7 @@ class AlmostEveryOrbitBelowLambdaStar(Theorem):
         """The ranges cover 0 to a contraction above `lambda*`."""
         ends = [Fraction(0), *(end for one in self.ranges for end in one.lam)]
         gapless = all(a == b for a, b in zip(ends[::2], ends[1::2], strict=False))
-        return gapless and bool(enclosed()[1] < exact(ends[-1]).real)
+        return gapless and bool(enclosed()[1] < fraction_ball(ends[-1]))
 
     @hypothesis
     def each(self) -> bool:

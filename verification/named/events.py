@@ -3,13 +3,9 @@
 The event in float64 is the start of a proof in balls. A fold and a period doubling are proved on the whole cycle; a
 pitchfork on the half cycle that flips, rotated so that the mirror is `theta -> -theta`. Other events have no
 certificate here.
-
-`survey` finds all cycles of the egg up to a period and follows each in `lam`, and every fold, doubling and pitchfork
-on the way as a curve in `(alpha, lam)`, with its points of codimension two. Cycles that a symmetry maps to each other
-count once.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import pi
@@ -25,13 +21,11 @@ from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table
 from verification.arithmetic.balls import decimal
 from verification.cycles.arc import Steps
-from verification.cycles.branch import Branch, Event, branch
+from verification.cycles.branch import Branch, Event
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import IDENTITY, MIRROR, Array, BifurcationKind
-from verification.cycles.search import all_cycles
-from verification.cycles.switching import Box, CodimensionOneCurve, curve, switched
-from verification.cycles.switching import Tick as PointTick
+from verification.cycles.switching import Box, CodimensionOneCurve, Tick, curve, switched
 from verification.cycles.systems import SHAPE, rotations, symmetries
 from verification.named.curves import TWO, largest_shape
 from verification.named.locate import proof_near
@@ -83,52 +77,12 @@ def _centred(ring: Chords, x: Array) -> Array | None:
     return None
 
 
-Tick = Callable[[str], None]
 FOLLOWED = 32  # bounces, at most, that the independent checker follows all round
 SWITCHES = 3  # crossings at which a branch is left for the one that is born there
 BORN = 60  # points of that branch
 SAME = 2e-3  # in parts of the plane's size, and of the determinant: a point so near lies on a curve
 ALIKE = 1e-6  # between the ends of equal curves
 PROVED_AT = (0.2, 0.4, 0.6, 0.8)  # places along the points of a curve where the event is proved
-
-
-@dataclass(frozen=True)
-class Surveyed:
-    """An event on the branch of a cycle of `period` bounces, and its curve (None if it could not be followed)."""
-
-    period: int
-    event: Event
-    curve: CodimensionOneCurve | None
-
-
-def survey(
-    alpha: Expr, lam: Expr, longest: int, K: int = 3, tick: Tick = lambda said: None, steps: Steps | None = None
-) -> Iterator[Surveyed]:
-    """The curves of all events on the branches of the egg's cycles at one shape and contraction.
-
-    >>> from sympy import Rational
-    >>> [(one.period, one.event.kind.value) for one in survey(Rational(7, 100), Rational(1, 20), 2)]
-    [(2, 'period doubling')]
-    """
-    table = egg(K)
-    seen: set[tuple[object, ...]] = set()
-    for cycle in all_cycles(table.at(alpha=alpha), lam, longest).catalogue.cycles:
-        mark = cycle.period, round(cycle.spectrum.trace, 6), round(cycle.spectrum.determinant, 6)
-        if mark in seen:
-            continue
-        seen.add(mark)
-        tick(f"period {cycle.period}")
-        ring, at = Chords(table, (0,) * cycle.period), {"alpha": float(alpha)}
-        try:
-            one = branch(ring, np.array(cycle.theta), "lam", float(lam), (0.0, 1.0), at, steps=Steps(most=250))
-        except ValueError:
-            continue  # at a bifurcation to within rounding: its neighbours lead there too
-        for event in one.events:
-            own = cycle.period, event.kind, round(event.value, 7)
-            if event.kind.solved and own not in seen:
-                seen.add(own)
-                found = curve_of(event, Plane.of_egg(K), (at["alpha"], event.value), steps)
-                yield Surveyed(cycle.period, event, found)
 
 
 @dataclass(frozen=True)
@@ -222,7 +176,7 @@ def curves_along(
     other: float,
     known: Sequence[EventCurve] = (),
     steps: Steps | None = None,
-    tick: PointTick | None = None,
+    tick: Tick | None = None,
 ) -> Iterator[EventCurve]:
     """The curves, in a plane, of events on a branch and on the branches born on it, up to `SWITCHES` generations.
 
@@ -284,7 +238,7 @@ def proved_on(
 
 
 def curve_of(
-    event: Event, plane: Plane, near: tuple[float, float], steps: Steps | None = None, tick: PointTick | None = None
+    event: Event, plane: Plane, near: tuple[float, float], steps: Steps | None = None, tick: Tick | None = None
 ) -> CodimensionOneCurve | None:
     """The curve through an event in a plane of two parameters, met at `near`; None if there is none or it is lost.
 

@@ -57,11 +57,9 @@ def _near(x: float, y: float) -> bool:
     return abs(math.remainder(x - y, 2 * math.pi)) < SAME
 
 
-def characteristic(
-    table: Table, theta: Sequence[float], lam: float, kind: BifurcationKind, components: tuple[int, ...] = ()
-) -> float:
-    """`det(M - mu)` of a cycle's monodromy matrix `M`, up to sign; `mu` is the critical multiplier of `kind`."""
-    free = Problem(table, components or (0,) * len(theta), kind, "lam")
+def characteristic(table: Table, theta: Sequence[float], lam: float) -> float:
+    """`det(M + 1)` of a cycle's monodromy matrix `M`, up to sign."""
+    free = Problem(table, (0,) * len(theta), BifurcationKind.FLIP, "lam")
     found = Linearised(free, FLOAT64, [*theta, lam], slope=False).critical
     value, power = found.bordering / found.chain.upper[-1], 0
     for pivot, upper in zip(found.pivots, found.chain.upper, strict=False):
@@ -75,12 +73,12 @@ def cycle_at(table: Table, theta: Sequence[float], lam: float, components: tuple
     return floats(Problem(table, components or (0,) * len(theta), lam=Rational(lam)), theta)
 
 
-def next_critical(table: Table, theta: Sequence[float], lam: float, step: float, kind: BifurcationKind) -> list[float]:
-    """First flip (or fold) of the cycle near `theta`, as `[*theta, lam]`; followed from `lam` in steps of `step`."""
-    problem = Problem(table, (0,) * len(theta), kind, "lam")
+def next_critical(table: Table, theta: Sequence[float], lam: float, step: float) -> list[float]:
+    """First flip of the cycle near `theta`, as `[*theta, lam]`; followed from `lam` in steps of `step`."""
+    problem = Problem(table, (0,) * len(theta), BifurcationKind.FLIP, "lam")
     before: list[float] = []
     here = cycle_at(table, theta, lam)
-    value = characteristic(table, here, lam, kind)
+    value = characteristic(table, here, lam)
     for _ in range(400):
         guess = here if not before else [2 * x - y for x, y in zip(here, before, strict=True)]
         if not 0 <= lam + step <= 1:
@@ -89,7 +87,7 @@ def next_critical(table: Table, theta: Sequence[float], lam: float, step: float,
         if max(abs(x - y) for x, y in zip(after, guess, strict=True)) > 0.1:
             before, step = [], step / 2
             continue
-        new = characteristic(table, after, lam + step, kind)
+        new = characteristic(table, after, lam + step)
         if value * new <= 0:
             share = value / (value - new)
             start = [x + share * (y - x) for x, y in zip(here, after, strict=True)]
@@ -103,7 +101,7 @@ def next_critical(table: Table, theta: Sequence[float], lam: float, step: float,
             continue
         before, here, value, lam = here, after, new, lam + step
     raise ValueError(
-        f"{table.name}: no {kind.name.lower()} of this cycle of period {len(theta)} was met up to lam = {lam:.6f}, "
+        f"{table.name}: no flip of this cycle of period {len(theta)} was met up to lam = {lam:.6f}, "
         f"followed in steps of {step:.3g}"
     )
 
@@ -153,13 +151,13 @@ class Doubling:
 
 def doublings(table: Table, theta: Sequence[float], lam: float, step: float) -> Iterator[Doubling]:
     """The flips of an attracting cycle and of the cycles born at each, in turn; the first search starts at `lam`."""
-    critical = next_critical(table, theta, lam, step, BifurcationKind.FLIP)
+    critical = next_critical(table, theta, lam, step)
     gap = (critical[-1] - lam) / 4
     while True:
         problem = Problem(table, (0,) * (len(critical) - 1), BifurcationKind.FLIP, "lam")
         yield Doubling(problem, critical)
         theta, lam = doubled(problem, critical, 0.3 * gap)
-        following = next_critical(table, theta, lam, 0.15 * gap, BifurcationKind.FLIP)
+        following = next_critical(table, theta, lam, 0.15 * gap)
         gap, critical = (following[-1] - critical[-1]) / FEIGENBAUM, following
 
 

@@ -104,13 +104,13 @@ def corner_angle(arithmetic: Arithmetic, theta1: Any) -> Any:
     return load(chord_kernel(cuspless, 0, 0, 0), arithmetic)(corner_parameter(arithmetic), theta1)[0]
 
 
-def focus(lam: Expr, K: int = 3) -> Small:
+def focus(lam: Expr) -> Small:
     """System for the `alpha` at which the multipliers of the egg's diameter become complex.
 
     The unknowns are two bounces and `alpha`; the third equation is `trace**2 = 4*determinant` of the monodromy, from
     the chord system.
     """
-    table = egg(K)  # made once: its formulas are simplified, which takes 77 ms
+    table = egg(3)  # made once: its formulas are simplified, which takes 77 ms
 
     def equations(arithmetic: Arithmetic, z: Vector) -> Vector:
         first, second, alpha = z

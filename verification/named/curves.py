@@ -160,27 +160,19 @@ LONG = (  # period 17, rotation number 4/17; then alpha and lam
 TURNING = 0.06873034020024987, 0.9637899755913615  # where its trace is 1/2
 
 
-@dataclass(frozen=True)
-class Expanding:
-    """A cycle that is proved to exist, and its determinant as a ball."""
+def expanding_cycle() -> tuple[bool, arb]:
+    """A hexagon in the egg at `alpha = 0.08`, `lam = 0.95`: True if it is proved to exist, and its determinant.
 
-    certified: bool
-    determinant: arb
-
-
-def expanding_cycle(alpha: str = "2/25", lam: str = "19/20") -> Expanding:
-    """A hexagon in the egg that is proved to exist, and its determinant.
-
-    >>> found = expanding_cycle()
-    >>> found.certified, bool(found.determinant > 1)
+    >>> proved, determinant = expanding_cycle()
+    >>> proved, bool(determinant > 1)
     (True, True)
     """
-    problem = Problem(egg(3).at(alpha=alpha), (0,) * 6, lam=Rational(lam))
+    problem = Problem(egg(3).at(alpha="2/25"), (0,) * 6, lam=Rational(19, 20))
     proof = proof_near(problem, list(HEXAGON), 20)
     with working(BITS):
         chain = Linearised(problem, balls(BITS), proof.enclosure.zero).plain
         _, determinant = trace_and_determinant(chain.rows)
-    return Expanding(proof.proved, determinant)
+    return proof.proved, determinant
 
 
 def resonance(period: int) -> Small:
@@ -214,7 +206,7 @@ def invariant_circle() -> Torus:
     return torus(problem, [*LONG[:17], *TURNING], "lam")
 
 
-def contracting_up_to(alpha: Expr, K: int = 3) -> float:
+def contracting_up_to(alpha: Expr) -> float:
     """A contraction, a multiple of 1/64, up to which the determinant of every cycle of the egg is below 1.
 
     With `d` the largest tilt of the normal and `r` the ratio of the largest and the smallest radius, the sine
@@ -229,7 +221,7 @@ def contracting_up_to(alpha: Expr, K: int = 3) -> float:
     with working(BITS):
         tilt, ratio = load(
             kernel(
-                "egg", [], {"tilt": atan(largest_tilt(K).subs(alpha_symbol, alpha)), "ratio": (1 + alpha) / (1 - alpha)}
+                "egg", [], {"tilt": atan(largest_tilt(3).subs(alpha_symbol, alpha)), "ratio": (1 + alpha) / (1 - alpha)}
             ),
             balls(BITS),
         )()
@@ -240,9 +232,9 @@ def contracting_up_to(alpha: Expr, K: int = 3) -> float:
     return best
 
 
-def _confined(tilt: arb, ratio: arb, lam: arb, pieces: int = 512) -> bool:
+def _confined(tilt: arb, ratio: arb, lam: arb) -> bool:
     """True if `d + asin(r*sin(d + lam*E)) < E` is proved for all `E` from the root of `x*tan(x) = 1` to `pi/2`."""
-    low, high = arb("0.8603"), arb.pi() / 2
+    low, high, pieces = arb("0.8603"), arb.pi() / 2, 512
     for k in range(pieces):
         E = low + (high - low) * arb(2 * k + 1, 1) / (2 * pieces)
         steepest = ratio * (tilt + lam * E).sin()

@@ -67,10 +67,10 @@ def test_an_attractor_of_the_egg_is_a_cycle_of_the_chord_system():
 
 def test_a_followed_cycle_has_the_multiplier_it_was_followed_to():
     theta = attractor(EGG, 0.36, (0.05, 3.1))
-    *cycle, lam_3 = next_critical(EGG, theta, 0.36, 0.005, BifurcationKind.FLIP)
+    *cycle, lam_3 = next_critical(EGG, theta, 0.36, 0.005)
 
     assert abs(lam_3 - 0.371235502528) < 1e-11
-    assert abs(characteristic(EGG, cycle, lam_3, BifurcationKind.FLIP)) < 1e-9
+    assert abs(characteristic(EGG, cycle, lam_3)) < 1e-9
 
 
 @pytest.mark.parametrize("lam", ["1/3", "1"])

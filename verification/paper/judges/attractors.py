@@ -73,12 +73,9 @@ def cycles(attractors: Iterable[Attractor], period: int = 0) -> list[Attractor]:
 
 
 @cache
-def proved_at(
-    contraction: str, period: int, name: str = "egg", alpha: str = SHAPE, starts: int = STARTS
-) -> SignFinding:
-    """The finding that all sampled cycles of a period, and their symmetric images, are proved to attract."""
-    shape = {"alpha": alpha} if name == "egg" else {}
-    table, some = tables.named(name).at(**shape), cycles(found(name, contraction, starts, **shape), period)
+def proved_at(contraction: str, period: int, starts: int = STARTS) -> SignFinding:
+    """The finding that all sampled cycles of a period of the egg, and their images, are proved to attract."""
+    table, some = tables.egg(3).at(alpha=SHAPE), cycles(egg(contraction, starts), period)
     proofs = [certificate(table, Rational(contraction), a.points) for a in some]
     good = bool(proofs) and all(proof.proved for proof in proofs)
     said = f"{len(some)} attracting cycles of period {period} are proved at lam = {contraction}"

@@ -139,9 +139,9 @@ def clipped(polygon: Polygon, low: float, high: float) -> Polygon:
 HAIR = 1e-9  # far above rounding errors, far below the margins of the polygons
 
 
-def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Polygon | None:
+def grown(pieces: Pieces, start: Point, room: float) -> Polygon | None:
     """A polygon around `start` whose image lies within it, at least `room` from its sides; None if it grows beyond
-    `limit`.
+    50.
 
     The polygon is the hull, in floats, of all images of `start`, where each step may err by `room`.
     """
@@ -150,7 +150,7 @@ def grown(pieces: Pieces, start: Point, room: float, limit: float = 50.0) -> Pol
     for _ in range(200):
         images = [image for c in pieces for p in part(polygon, c) for image in _vertices(pieces[c], p)]
         larger = hull(polygon + [(u + a, v + b) for u, v in hull(images) for a, b in around])
-        if max(abs(x) for p in larger for x in p) > limit:
+        if max(abs(x) for p in larger for x in p) > 50.0:
             return None
         if len(larger) == len(polygon) and all(math.dist(p, q) < 1e-9 for p, q in zip(larger, polygon, strict=True)):
             return larger
@@ -313,7 +313,7 @@ class AttractorBounds:
 Segment = tuple[Row, Row]
 
 
-def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 10) -> AttractorBounds | None:
+def extent(pieces: Pieces, folding: int = 0, images: int = 10) -> AttractorBounds | None:
     """Bounds of the attractor; None if not proved. `folding` is the piece with a multiplier below -1."""
     fixed, border = fixed_point(pieces[folding]), _to_border(pieces[folding])
     if border is None or not inward(fixed[1], folding) > 0:
@@ -322,7 +322,7 @@ def extent(pieces: Pieces, folding: int = 0, room: float = 1e-5, images: int = 1
     for _ in range(images):
         manifold = [image for segment in manifold for image in _mapped(pieces, segment)]
         heights += [end[1] for segment in manifold for end in segment]
-    outer = grown(pieces, _middle(pieces[folding].of(border)), room)
+    outer = grown(pieces, _middle(pieces[folding].of(border)), 1e-5)
     if outer is None or not trapped(pieces, outer):
         return None
     inner = min(heights, key=lambda v: float(v.mid())), max(heights, key=lambda v: float(v.mid()))

@@ -168,7 +168,7 @@ def no_triangles(alpha: Expr, most: Expr, K: int = 3, budget: int = 10**6, tick:
         reach = 201.25 / 64 - gap
         start: Box = ((turn, turn), (gap + reach, reach), (gap + reach, reach))
         closer = load(polar_polygon_kernel(table, 3), arithmetic)
-        excluded = partial(_impossible, angles, slopes, largest, ratio, gap, closer=closer)
+        excluded = partial(_impossible, angles, slopes, closer, largest, ratio, gap)
         return bisect(start, excluded, budget, SMALLEST, tick)
 
 
@@ -184,7 +184,7 @@ def _gap(angle: Any, largest: arb) -> float:
     return 0.0
 
 
-def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, box: Box, closer: Any = None) -> bool:
+def _impossible(angles: Any, slopes: Any, closer: Any, largest: arb, ratio: arb, gap: float, box: Box) -> bool:
     """True if it is proved that no triangle in the box whose first gap is the largest obeys the equations.
 
     `angles` returns exit and incidence angles at three bounces; `slopes` returns their derivatives too, and takes twice
@@ -198,7 +198,7 @@ def _impossible(angles: Any, slopes: Any, largest: arb, ratio: arb, gap: float, 
         return True
     theta = [wide[0], wide[0] + wide[1], wide[0] + wide[1] + wide[2]]
     ends = [(0, 1), (1, 2), (2, 0)]
-    found = angles(*theta) if closer is None else _from_gaps(angles, closer, theta, [wide[1], wide[2], rest])
+    found = _from_gaps(angles, closer, theta, [wide[1], wide[2], rest])
     phi, eta = found[:3], found[3:]
     if any(p < 0 or p > largest for p in phi) or phi[0] + phi[1] + phi[2] > largest:
         return True

@@ -91,14 +91,14 @@ class ChaoticProof:
         return all(value is True for value in self.checks.values())
 
 
-def slap_exponent(digits: int = DIGITS, cells: int = CELLS) -> ChaoticProof:
+def slap_exponent(digits: int = DIGITS) -> ChaoticProof:
     """The exponent per bounce of the cardioid at `lam = 0`, from a density of about `digits` digits.
 
     >>> proof = slap_exponent(6)
     >>> proof.certified, bool(abs(proof.value - arb("0.36834079947576")) < 1e-4)
     (True, True)
     """
-    proof = judged(candidate(digits), digits, inverted(cells))
+    proof = judged(candidate(digits), digits, inverted(CELLS))
     return replace(proof, checks=proof.checks | {"symmetric": symmetric(inverted(MIRRORED, sign=-1), variation())})
 
 

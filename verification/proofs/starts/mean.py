@@ -87,13 +87,13 @@ def stable(trace: Expr, det: Expr, low: Fraction, high: Fraction) -> SignFinding
 
 
 @cache
-def average(low: Fraction = LOW, high: Fraction = HIGH) -> Average:
-    """A bound of the mean for every contraction of a range around `lambda*`; infinite if a step of the proof fails."""
-    map = PinballImages(Scene("cuspless", lam=str(high)), (low, high))
+def average() -> Average:
+    """A bound of the mean for each contraction of the range around `lambda*`; infinite if a step of the proof fails."""
+    map = PinballImages(Scene("cuspless", lam=str(HIGH)), (LOW, HIGH))
     trace, det = trace_and_determinant(cuspless_horizontal())
     checks = attracts(map, CORE)
     checks["no orbit grows faster"] = bounded(map, float(RATE), BOUNCES, WEIGHT)
-    checks["period 2 is as stable"] = bool(stable(trace, det, low, high))
+    checks["period 2 is as stable"] = bool(stable(trace, det, LOW, HIGH))
     nu, rate = float(enclose(log(MULTIPLIER) / 2).real.upper()), float(RATE)
     with working(BITS):
         ratio = float((arb(diameter(map)) / (2 * enclose(pi * area(map.map.table)).real)).upper())

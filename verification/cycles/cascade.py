@@ -174,28 +174,27 @@ def cascade(alpha: Expr) -> Iterator[Doubling]:
     yield from doublings(table, theta, lam, 0.005)
 
 
-def _back_after_four(table: Table) -> list[float]:
-    """The contractions in `GRID` for which a particle near a diameter repeats after four bounces, in float64."""
+def _cycles_of_four(table: Table) -> Iterator[tuple[float, list[float]]]:
+    """The contractions in `GRID` for which a particle near a diameter ends on a cycle of period 4, and that cycle."""
     from numeric import PinballMap
 
     theta = np.full(len(GRID), START[1])
     map = PinballMap("egg", lam=np.array(GRID), alpha=str(dict(table.fixed)["alpha"]))
     orbit = map.orbit(theta, 0 * theta, 4000).theta[-5:]
-    return [
-        lam for lam, gap in zip(GRID, orbit[-1] - orbit[0], strict=True) if abs(math.remainder(gap, math.tau)) < SAME
-    ]
+    for lam, gap in zip(GRID, orbit[-1] - orbit[0], strict=True):
+        if abs(math.remainder(gap, math.tau)) < SAME and len(cycle := attractor(table, lam, START, 16)) == 4:
+            yield lam, cycle
 
 
 def stable_four(table: Table) -> tuple[float, list[float]]:
     """The largest contraction of `GRID` with an attracting cycle of period 4 near a diameter, and that cycle."""
-    for lam in _back_after_four(table):
-        cycle = attractor(table, lam, START, 16)
-        if len(cycle) == 4:
-            return lam, cycle
-    raise ValueError(
-        f"egg: alpha = {dict(table.fixed)['alpha']} has no attracting cycle of period 4 near a diameter "
-        f"that {TRIED}; the cascade starts from one"
-    )
+    found = next(_cycles_of_four(table), None)
+    if found is None:
+        raise ValueError(
+            f"egg: alpha = {dict(table.fixed)['alpha']} has no attracting cycle of period 4 near a diameter "
+            f"that {TRIED}; the cascade starts from one"
+        )
+    return found
 
 
 def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
@@ -206,9 +205,8 @@ def symmetry_breaking(alpha: Expr) -> tuple[Problem, list[float]]:
     """
     table = tables.egg(3).at(alpha=alpha)
     problem = Problem(table, (0, 0), BifurcationKind.FLIP, "lam", closure=MIRROR)
-    for lam in _back_after_four(table):
-        cycle = attractor(table, lam, START, 16)
-        if len(cycle) == 4 and abs(math.remainder(cycle[0] + cycle[2], 2 * math.pi)) < 1e-6:
+    for lam, cycle in _cycles_of_four(table):
+        if abs(math.remainder(cycle[0] + cycle[2], 2 * math.pi)) < 1e-6:
             for share in range(1, 12):
                 try:
                     found = floats(problem, [*cycle[:2], lam + share / 100])

@@ -148,7 +148,7 @@ def grown(pieces: Pieces, start: Point, room: float) -> Polygon | None:
     around = [(room * math.cos(k * math.pi / 4), room * math.sin(k * math.pi / 4)) for k in range(8)]
     polygon = hull([(start[0] + a, start[1] + b) for a, b in around])
     for _ in range(200):
-        images = [image for c in pieces for p in part(polygon, c) for image in _vertices(pieces[c], p)]
+        images = [image for c, piece in pieces.items() for image in _image(piece, part(polygon, c), 0.0)]
         larger = hull(polygon + [(u + a, v + b) for u, v in hull(images) for a, b in around])
         if max(abs(x) for p in larger for x in p) > 50.0:
             return None
@@ -167,11 +167,6 @@ def exactly_convex(polygon: Polygon) -> Polygon:
 def part(polygon: Polygon, component: int) -> Polygon:
     """Points whose hull holds the part of the polygon on the component's side of the border."""
     return clipped(polygon, 0.0, math.inf) if SIGNS[component] > 0 else clipped(polygon, -math.inf, 0.0)
-
-
-def _vertices(piece: AffinePiece, point: Point) -> list[Point]:
-    u, v = piece.of((arb(point[0]), arb(point[1])))
-    return [(float(a), float(b)) for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
 
 
 def trapped(pieces: Pieces, polygon: Polygon) -> bool | None:
@@ -360,16 +355,16 @@ def _middle(x: Row) -> Point:
     return float(x[0].mid()), float(x[1].mid())
 
 
-def _image(piece: AffinePiece, points: Polygon) -> Polygon:
-    """Points whose hull holds the image of the hull of `points`; they are moved by `HAIR` to allow for rounding."""
-    images = [piece.of((arb(u) + arb(0, HAIR), arb(v) + arb(0, HAIR))) for u, v in points]
+def _image(piece: AffinePiece, points: Polygon, hair: float = HAIR) -> Polygon:
+    """Points whose hull holds the image of the hull of `points`; they are moved by `hair` to allow for rounding."""
+    images = [piece.of((arb(u) + arb(0, hair), arb(v) + arb(0, hair))) for u, v in points]
     return [(float(a), float(b)) for u, v in images for a in (u.lower(), u.upper()) for b in (v.lower(), v.upper())]
 
 
 def _strip(points: Polygon) -> tuple[float, float]:
     """The length of a set along its longest diagonal, and its width across the diagonal, rounded up."""
     length, p, q = max((math.dist(p, q), p, q) for p in points for q in points)
-    across = [((q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])) / length for x in points]
+    across = [_left(p, q, x) / length for x in points]
     return length + 1e-9, max(across) - min(across) + 1e-9
 
 

@@ -310,10 +310,12 @@ def _same_as(table: Table) -> str:
     """The name of the paper's table with the same boundary, if it has a flight method of its own; else empty."""
     if table.components == tables.cuspless.components:
         return "cuspless"
-    for name, known in (("cardioid", tables.cardioid), ("circle", tables.circle)):
-        if len(table.components) == 1 and table.components[0].point == known.components[0].point:
-            return name
-    return ""
+    if len(table.components) > 1:
+        return ""
+    (part,), (cardioid,), (circle,) = (one.components for one in (table, tables.cardioid, tables.circle))
+    if part.point == cardioid.point and part.start == cardioid.start:  # its arc length has the cusp at the ends
+        return "cardioid"
+    return "circle" if part.point == circle.point else ""
 
 
 def _fourier(table: Table, symbols: list[Symbol]) -> dict[str, Program]:

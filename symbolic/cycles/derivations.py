@@ -4,7 +4,7 @@ A table argument is one of `symbolic.tables`, a scene, or the name of one of the
 the symbolic parameters of the table, and `lam` for the contraction.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import Any, TypeAlias
 
 from sympy import (
+    Abs,
     And,
     Basic,
     CRootOf,
@@ -23,13 +24,16 @@ from sympy import (
     N,
     Piecewise,
     Poly,
+    Rational,
     S,
     Symbol,
+    cos,
     elliptic_e,
     fraction,
     pi,
     roots,
     simplify,
+    sin,
     sqrt,
     together,
 )
@@ -42,12 +46,13 @@ from symbolic.expressions.signs import nonnegative, positive, vanishes
 from symbolic.expressions.text import Kernel, checked, constant, kernel, load
 from symbolic.motion import collision
 from symbolic.tables import geometry, named
-from symbolic.tables.curves import LONG, size
+from symbolic.tables.curves import LONG, curves, is_periodic, size
 from symbolic.tables.definition import POINTS, exact
 from symbolic.tables.scene import Scene, given_table
 from symbolic.tables.table import Component, Table, exact_number, theta
 from symbolic.tables.validity import enclosed_area, parameter_box, root
 
+Bounce: TypeAlias = tuple[int, Expr]  # a component's index and a parameter
 Tabled: TypeAlias = Table | Scene | str  # or a map of `numeric`, which has a scene
 theta0, theta1 = Symbol("theta0", real=True), Symbol("theta1", real=True)  # boundary parameters of a flight's ends
 SMALL = 80  # largest size, in operations, names and numbers, of an expression that is simplified
@@ -238,31 +243,60 @@ def double_normals(table: Tabled) -> tuple[Cycle, ...]:
     for symmetry in geometry.group(whole):
         if symmetry.sign > 0:
             continue
-        bounces = _on_axis(whole, symmetry)
-        cycle = Cycle(f"axis at {symmetry.angle / 2}", whole, tuple(bounces))
-        if len(bounces) == 2 and cycles.is_double_normal(cycle) and not any(_alike(cycle, other) for other in found):
-            found.append(cycle)
+        for bounces in _chords(whole, symmetry):
+            cycle = Cycle(f"axis at {symmetry.angle / 2}", whole, bounces)
+            if cycles.is_double_normal(cycle) and not any(_alike(cycle, other) for other in found):
+                found.append(cycle)
     if not found:
         raise ValueError(
             f"{whole.name}: no axis of symmetry is proved to have a chord along it; accepted: tables with such an axis"
         )
-    middle = {
-        p.symbol: (p.range.start + (p.range.end if p.range.end.is_finite else p.range.start + 2)) / 2
-        for p in whole.shapes
-    }
+    middle = _middle(whole)
     return tuple(sorted(found, key=lambda cycle: -cycle.length(0).subs(middle).evalf()))
 
 
-def _on_axis(table: Table, symmetry: geometry.Symmetry) -> list[tuple[int, Expr]]:
+def _middle(table: Table) -> dict[Symbol, Expr]:
+    """A value inside the range of each free parameter."""
+    ranges = {p.symbol: (p.range.start, p.range.end) for p in table.shapes}
+    return {x: (low + (high if high.is_finite else low + 2)) / 2 for x, (low, high) in ranges.items()}
+
+
+def _chords(table: Table, symmetry: geometry.Symmetry) -> Iterator[tuple[Bounce, ...]]:
+    """The chords along the axis of a reflection whose two ends are neither cusps nor corners.
+
+    A closed curve that is its own mirror image meets the axis in two points, and other curves do not meet it. So the
+    parts of the axis between these points lie in the table, in a hole, in the table, and so on.
+    """
+    smooth = _on_axis(table, symmetry)
+    if len(curves(table)) == 1:
+        yield from [tuple(smooth)] if len(smooth) == 2 else []
+        return
+    c, s, middle = cos(symmetry.angle / 2), sin(symmetry.angle / 2), _middle(table)
+    starts = [(index, part.start, part.at(part.start)) for index, part in enumerate(table.components)]
+    corners = [(index, at) for index, at, (x, y) in starts if vanishes(x * s - y * c) and (index, at) not in smooth]
+
+    def along(bounce: Bounce) -> Expr:
+        x, y = table.components[bounce[0]].at(bounce[1])
+        return (x * c + y * s).subs(middle).evalf()
+
+    ends = sorted({along(bounce): bounce for bounce in (*corners, *smooth)}.items())
+    for (_, one), (_, other) in zip(ends[::2], ends[1::2], strict=False):
+        if one in smooth and other in smooth:
+            yield one, other
+
+
+def _on_axis(table: Table, symmetry: geometry.Symmetry) -> list[Bounce]:
     """The boundary points on the axis of a reflection, as (component, parameter), without cusps and corners."""
     marked = {(mark.component, mark.theta) for mark in table.undefined}
     found = []
+    alone = [ring[0] for ring in curves(table) if len(ring) == 1 and all(map(is_periodic, ring[0].point))]
     for index, (part, onto, shift) in enumerate(zip(table.components, symmetry.onto, symmetry.shift, strict=True)):
-        whole = part.end - part.start == 2 * pi and len(table.components) == 1
+        whole = part.end - part.start == 2 * pi and part in alone
         for at in (shift / 2, shift / 2 + pi) if whole else (shift / 2,):
             at = at - 2 * pi if whole and at > pi else at
             inside = whole or (positive(at - part.start, {}) and positive(part.end - at, {}))
-            if onto == index and inside and (index, at) not in marked and (index, at - 2 * pi) not in marked:
+            bent = any(vanishes(x.args[0].subs(theta, at)) for x in Matrix(part.point).atoms(Abs))
+            if onto == index and inside and not bent and not {(index, at), (index, at - 2 * pi)} & marked:
                 found.append((index, at))
     return found
 
@@ -335,7 +369,7 @@ def _in_square_roots(root: Expr) -> Expr:
     coefficients = root.poly.all_coeffs()
     if len(coefficients) != 5 or coefficients[1] or coefficients[3]:
         return root
-    return next(x for x in roots(root.poly) if abs(N(x - root, 30)) < 1e-20)
+    return next(x for x in roots(root.poly) if abs(N(x - root, 30)) < Rational(1, 10**20))
 
 
 @lru_cache(maxsize=64)

@@ -7,6 +7,7 @@ the paper's tables and plain numbers is read without SymPy.
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -213,6 +214,8 @@ def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[st
         known_entries("scene with a named table", said, ("table", "K"))
         return named_boundary(text_entry("table", said["table"]), said.get("K", POINTS))[0]
     found: dict[str, Any] = {"name": word_entry("name", said["name"])} if "name" in said else {}
+    more = tuple(FIT) if "points" in said else ("undefined", "origin")
+    known_entries("scene", said, ("name", *KINDS, *more))
     if "polar" in said:
         found["polar"] = _formula("polar", said["polar"], parameters)
     elif "points" in said:
@@ -235,6 +238,9 @@ def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[st
     if "origin" in said:
         known_entries("scene: origin", said["origin"], ("component", "theta"))
         found["origin"] = _place("origin", said["origin"])
+    for place in (*found.get("undefined", ()), *([found["origin"]] if "origin" in found else ())):
+        if place["component"] >= (count := len(found.get("component", "1"))):
+            raise ValueError(f"scene: component = {place['component']} does not exist; accepted: 0 to {count - 1}")
     return found
 
 
@@ -313,15 +319,14 @@ def built(document: Mapping[str, Any], free: "Sequence[Shape]" = ()) -> "Table":
         return _parsed("scene", text, texts).subs(values | {symbols[each.symbol.name]: each.symbol for each in free})
 
     marks = [Mark(m["name"], m["component"], formula(m["theta"])) for m in document.get("undefined", ())]
-    name = name_of(document)
-    if "polar" in document:
-        return tables.polar(formula(document["polar"]), name, free, marks)
-    if "parametric" in document:
-        x, y = document["parametric"]
-        return tables.parametric(formula(x), formula(y), name, free, marks)
-    arcs = [tables.arc(p["name"], *(formula(p[key]) for key in PIECE[1:])) for p in document["component"]]
     start = document.get("origin", {"component": 0, "theta": "0"})
-    origin = start["component"], formula(start["theta"])
+    name, origin = name_of(document), (start["component"], formula(start["theta"]))
+    if "polar" in document:
+        return replace(tables.polar(formula(document["polar"]), name, free, marks), origin=origin)
+    if "parametric" in document:
+        x, y = map(formula, document["parametric"])
+        return replace(tables.parametric(x, y, name, free, marks), origin=origin)
+    arcs = [tables.arc(p["name"], *(formula(p[key]) for key in PIECE[1:])) for p in document["component"]]
     table = tables.piecewise(*arcs, name=name, shapes=free, undefined=marks, origin=origin)
     outer = curves(table)[0]
     for n, part in enumerate(document["component"][: len(outer)], 1):

@@ -33,6 +33,7 @@ from sympy import (
     elliptic_e,
     exp,
     expand,
+    floor,
     pi,
     simplify,
     sin,
@@ -143,20 +144,27 @@ def arc_length(component: Component) -> Expr:
     if c is not None and len(c) <= 3 and all(c[-k] == c[k] for k in c):
         p, n = c.get(0, S.Zero), max(c)
         q = 2 * c[n] if n else S.Zero
-        if not n or simplify(squared - p - q * cos(n * theta)) == 0:
-            return _elliptic(p, q, max(n, 1))
+        closed = simplify(squared - p - q * cos(n * theta)) == 0 if n else True
+        if closed and (found := _elliptic(p, q, max(n, 1), component)) is not None:
+            return found
     dummy = Dummy("theta", real=True)
     return Integral(speed(component).subs(theta, dummy), (dummy, 0, theta))
 
 
-def _elliptic(p: Expr, q: Expr, n: int) -> Expr:
-    """The integral of `sqrt(p + q*cos(n*theta))` from 0."""
+def _elliptic(p: Expr, q: Expr, n: int, component: Component) -> Expr | None:
+    """The integral of `sqrt(p + q*cos(n*theta))` from 0; None if this root vanishes inside the component's range."""
     half = Rational(n, 2) * theta
-    parameter = simplify(2 * q / (p + q))
-    if parameter == 0:
+    if simplify(q) == 0:
         return sqrt(p) * theta
-    primitive = sin(half) if parameter == 1 else elliptic_e(half, parameter)
-    return sqrt(p + q) * primitive * Rational(2, n)
+    rises, falls = simplify(p + q) == 0, simplify(p - q) == 0  # the root is that of `2*p`, times `|sin|` or `|cos|`
+    if not (rises or falls):
+        return sqrt(p + q) * elliptic_e(half, simplify(2 * q / (p + q))) * Rational(2, n)
+    first, last = ((half.subs(theta, end) / pi + (S.Half if falls else 0)) for end in (component.start, component.end))
+    turns = floor(first)
+    if (turns + 1 - last).is_nonnegative is not True:
+        return None
+    primitive = sin(half) if falls else 1 - cos(half)
+    return (-1) ** turns * sqrt(2 * p) * primitive * Rational(2, n)
 
 
 def positions(table: Table) -> tuple[Expr, ...]:
@@ -169,8 +177,9 @@ def positions(table: Table) -> tuple[Expr, ...]:
     (4*sin(theta/2) + 9*sqrt(3)/4, theta)
     """
     (first, start), count = table.origin, len(table.components)
-    if (table.components[first].start - start).is_positive:  # the default 0, before the component begins
-        start = table.components[first].start
+    low, high = table.components[first].start, table.components[first].end
+    if (low - start).is_positive or (start - high).is_positive:  # the default 0, which lies beyond an end
+        start = low if (low - start).is_positive else high
     found: dict[int, Expr] = {}
     reached = -arc_length(table.components[first]).subs(theta, start)
     for step in range(count):

@@ -43,6 +43,7 @@ from symbolic.tables.curves import (
     LONG,
     alone,
     curves,
+    is_periodic,
     size,
     trigonometric,
     waves,
@@ -125,7 +126,7 @@ def radius_over(table: Table) -> bool:
     If it is refuted, raises `ValueError` with a value of the parameters.
     """
     rho = table.components[0].radius
-    if rho is None:
+    if rho is None or not all_angles(table.components[0], rho):
         return False
     ranges = {p.symbol: (p.range.start, p.range.end) for p in table.shapes}
     found = sign_in(rho, {theta: (-TURN, TURN), **ranges})
@@ -161,7 +162,8 @@ def _own_letters(table: Table, component: Component) -> Component:
 
 def _finite(table: Table, component: Component) -> None:
     start, end = component.start, component.end
-    if start.has(theta) or end.has(theta) or (end - start).is_nonpositive:
+    box = {p.symbol: p.range for p in table.shapes}
+    if start.has(theta) or end.has(theta) or not ((end - start).is_positive or is_positive(end - start, box)):
         raise ValueError(
             f"{table.name}: {component.name} runs from theta = {start} to {end}; the end must be a larger number"
         )
@@ -278,12 +280,17 @@ def _prove(table: Table, ends: Ranges) -> None:
     whole = table.components[0]
     if len(table.components) == 1 and not table.undefined and whole.end - whole.start == 2 * pi:
         x, y = whole.point
-        if _is_polar(x, y) and _positive_radius(_radius(x, y), ends):
+        if _is_polar(x, y) and all_angles(whole, _radius(x, y)) and _positive_radius(_radius(x, y), ends):
             return
     rings = [[as_bezier(component) for component in ring] for ring in curves(table)]
     known = [[piece for piece in ring if piece is not None] for ring in rings]
     if rings != known or not bound_a_table(known):
         prove_simple(table, ends)
+
+
+def all_angles(component: Component, rho: Expr) -> bool:
+    """Does what holds for the radius from `-TURN` to `TURN` hold on the whole component?"""
+    return is_periodic(rho) or bool(component.start >= -TURN and component.end <= TURN)
 
 
 def _positive_radius(rho: Expr, ranges: Ranges) -> bool:

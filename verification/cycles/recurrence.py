@@ -2,7 +2,7 @@
 
     fold                 det(M - 1) = 0 and the branch turns in the parameter
     pitchfork            det(M - 1) = 0, the branch goes straight on, half of the cycle flips
-    branch point         det(M - 1) = 0, the branch goes straight on, no symmetry is broken
+    branch point         det(M - 1) = 0, the branch goes straight on, no half of the cycle flips
     period doubling      det(M + 1) = 0
     Neimark-Sacker       det M = 1 with multipliers on the unit circle
     neutral saddle       det M = 1 with real multipliers: no bifurcation

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator
 
-from sympy import Expr, Integral, Symbol, cos, pi, simplify, sqrt
+from sympy import Expr, Integral, Symbol, simplify
 
 from numeric import PinballMap
-from symbolic.cycles.cycle import Cycle, is_double_normal
+from symbolic.cycles.cycle import Cycle
+from symbolic.cycles.derivations import double_normals
 from symbolic.cycles.thresholds import flip_contraction, focus_contraction, stability_number
 from symbolic.expressions.signs import Outcome
 from symbolic.expressions.text import kernel, load
@@ -13,10 +14,10 @@ from symbolic.motion.chords import convexity
 from symbolic.motion.collision import derivative_matrix
 from symbolic.tables.curves import LONG, size
 from symbolic.tables.formula import latex
-from symbolic.tables.geometry import Symmetry, arc_length, curvature, group, perimeter, turning
+from symbolic.tables.geometry import arc_length, curvature, group, perimeter, turning
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Table, eta, theta
-from symbolic.tables.validity import enclosed_area, radius_sign, simple
+from symbolic.tables.validity import all_angles, enclosed_area, radius_sign, simple
 from verification.arithmetic.balls import ARRAYS, FLOAT64, decimal
 from verification.arithmetic.iteration import bracketed
 from verification.maps.enclosed import EnclosedMap
@@ -61,7 +62,8 @@ def facts(asked: Asked) -> list[Block]:
         rows.append(("area", ShownNumber(str(area))))
     symmetries = group(table)
     mirrors = sum(symmetry.sign < 0 for symmetry in symmetries)  # a dihedral group has as many turns
-    rows.append(("symmetries", ShownNumber(f"D{mirrors}" if mirrors else f"C{len(symmetries)}", known=Known.PROVED)))
+    at_least = ShownNumber(f"D{mirrors}" if mirrors else f"C{len(symmetries)}", known=Known.PROVED)
+    rows.append(("symmetries about the origin, at least", at_least))
     rows += [(what, ShownNumber(said, known=known)) for what, said, known in properties(table)]
     caption = "What is known of the table. A closed formula is exact; what is proved is proved for the exact boundary."
     return [Listing(caption, ("property", "value"), tuple(rows))]
@@ -80,7 +82,7 @@ def properties(table: Table) -> Iterator[tuple[str, str, Known]]:
     """The properties closed, simple and convex: for each its name, the answer, and how it is known."""
     yield "closed", "yes", Known.PROVED
     rho = table.components[0].radius if len(table.components) == 1 else None
-    if rho is not None and radius_sign(rho) is Outcome.PROVED:
+    if rho is not None and all_angles(table.components[0], rho) and radius_sign(rho) is Outcome.PROVED:
         yield "simple", "yes: the radius is positive for every angle", Known.PROVED
     elif turns_once(table):
         yield "simple", "yes: it bends inwards everywhere, and its tangent turns once", Known.PROVED
@@ -134,59 +136,12 @@ def derivation(asked: Asked) -> list[Block]:
             Paragraph("Closed thresholds of period 2 are known for the law phi = -lam*eta; this scene has another.")
         )
         return blocks
-    cycles = list(double_normals(asked.scene.table))
-    if not cycles:
-        blocks.append(
-            Paragraph(
-                "No axis of symmetry meets the table in two smooth points: no cycle of period 2 has a closed form here."
-            )
-        )
-    for cycle in cycles:
-        blocks += thresholds(cycle)
-    return blocks
-
-
-def double_normals(table: Table) -> Iterator[Cycle]:
-    """The chords along symmetry axes with smooth end points; they are cycles of period 2 for every contraction.
-
-    Chords that a symmetry exchanges are listed once.
-
-    >>> from symbolic.tables import ellipse
-    >>> [cycle.bounces for cycle in double_normals(ellipse.at(a=2))]
-    [((0, 0), (0, pi)), ((0, pi/2), (0, 3*pi/2))]
-    """
-    seen: set[tuple[float, ...]] = set()
-    for symmetry in group(table):
-        ends = [] if symmetry.sign > 0 else _on_axis(table, symmetry)
-        if len(ends) != 2 or any(_marked(table, *end) for end in ends):
-            continue
-        look = _look(table, ends)
-        if look not in seen:
-            seen.add(look)
-            cycle = Cycle(f"axis at {symmetry.angle / 2}", table, tuple(ends))
-            if is_double_normal(cycle):
-                yield cycle
-
-
-def _on_axis(table: Table, mirror: Symmetry) -> list[tuple[int, Expr]]:
-    """The boundary points that a reflection fixes, except end points of pieces."""
-    fixed = [(i, mirror.shift[i] / 2) for i, onto in enumerate(mirror.onto) if onto == i]
-    if len(table.components) == 1:
-        return [*fixed, *((i, at + pi) for i, at in fixed)]
-    return [(i, at) for i, at in fixed if table.components[i].start < at < table.components[i].end]
-
-
-def _look(table: Table, ends: list[tuple[int, Expr]]) -> tuple[float, ...]:
-    """The rounded length of a chord and curvatures at its ends, equal for chords that a symmetry exchanges."""
-    (x0, y0), (x1, y1) = (table.components[i].at(at) for i, at in ends)
-    length = float(sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2))
-    bent = sorted(float(curvature(table.components[i]).subs(theta, at)) for i, at in ends)
-    return tuple(round(value, 9) for value in (length, *bent))
-
-
-def _marked(table: Table, index: int, at: Expr) -> bool:
-    """True if the map is undefined at this boundary point."""
-    return any(mark.component == index and cos(mark.theta - at) == 1 for mark in table.undefined)
+    try:
+        cycles = double_normals(asked.scene.table)
+    except ValueError:  # no such axis
+        said = "No axis of symmetry meets the table in two smooth points: no cycle of period 2 has a closed form here."
+        return [*blocks, Paragraph(said)]
+    return [*blocks, *(block for cycle in cycles for block in thresholds(cycle))]
 
 
 def thresholds(cycle: Cycle) -> list[Block]:
@@ -202,9 +157,8 @@ def thresholds(cycle: Cycle) -> list[Block]:
         blocks.append(Formula(f"{cycle.name}: period doubling", rf"\lambda = {approximated(exact)}"))
         blocks.append(Paragraph(f"{decimals}: stable below this contraction, unstable above it."))
     elif number == 1:
-        blocks.append(
-            Paragraph("P = 1: one of a family of parallel chords, with a multiplier 1 for every contraction.")
-        )
+        said = "P = 1: a multiplier is 1 for every contraction, as for parallel chords and a circle's diameters."
+        blocks.append(Paragraph(said))
     else:
         exact = simplify(focus_contraction(number))
         blocks.append(Formula(f"{cycle.name}: complex multipliers", rf"\lambda > {approximated(exact)}"))

@@ -14,11 +14,10 @@ from numeric import PinballMap
 from numeric.dynamics.recognition import Kind
 from numeric.sweeps.endings import endings
 from numeric.sweeps.sweep import text_of
-from symbolic import Scene
+from symbolic import Scene, double_normals
 from symbolic.cycles.thresholds import flip_contraction, stability_number
 from verification import bifurcations
 from verification.app.cli import main as main_of_app
-from verification.reports.scene import double_normals
 
 LIMACON = Scene.of({"polar": "1 + 3*cos(theta)/10"})
 LENS = Scene.of({

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from sympy import cos, sin
 
-from symbolic import Scene, tables
+from symbolic import Scene, double_normals, tables
 from symbolic.cycles.thresholds import flip_contraction, stability_number
 from symbolic.tables.table import theta
 from verification.app.cli import main
@@ -23,7 +23,7 @@ from verification.reports.asked import Asked, Parts
 from verification.reports.blocks import Certificate, Known, Listing, Picture, Section, ShownNumber
 from verification.reports.page import further
 from verification.reports.report import composed, report
-from verification.reports.scene import double_normals, inflections, properties
+from verification.reports.scene import inflections, properties
 
 ELLIPSE = Scene("ellipse", a="3/2")
 SMALL = {"at": ("1/2",), "period": 2, "digits": 10}

@@ -15,8 +15,27 @@ from sympy import lambdify
 # ---- one bounce
 
 
-def egg_by_brentq(component, theta, phi, lam, alpha, xtol):
-    """One bounce on the egg: `brentq` for the length of the flight, with inside and outside by the radius."""
+def cardioid_by_roots(theta, phi, lam):
+    """One bounce on the cardioid: the cubic of [BackerDullin1997] in `tan(theta1/2)`, solved by `numpy.roots`."""
+    direction = 1.5 * theta + math.pi - phi
+    vx, vy = math.cos(direction), math.sin(direction)
+    r = 1 + math.cos(theta)
+    x, y = r * math.cos(theta), r * math.sin(theta)
+    L, tau = vx * y - vy * x, math.tan(theta / 2)
+    cubic = [-L, -L * tau, 2 * vy - L * (tau**2 + 2), 4 * vx + 2 * vy * tau - L * tau * (tau**2 + 2)]
+    best, found = math.inf, theta
+    for root in np.roots(cubic):
+        if abs(root.imag) < 1e-9:
+            at = 2 * math.atan(root.real)
+            r1 = 1 + math.cos(at)
+            t = (r1 * math.cos(at) - x) * vx + (r1 * math.sin(at) - y) * vy
+            if 1e-9 < t < best:
+                best, found = t, at
+    return found, -lam * math.remainder(1.5 * found - direction, 2 * math.pi)
+
+
+def egg_on_the_ray(theta, phi, lam, alpha):
+    """One bounce on the egg: Newton-Raphson for the length of the flight, from its length in the unit circle."""
 
     def tangent(at):
         r, d = 1 + alpha * math.cos(3 * at), -3 * alpha * math.sin(3 * at)
@@ -26,15 +45,18 @@ def egg_by_brentq(component, theta, phi, lam, alpha, xtol):
     x, y = r * math.cos(theta), r * math.sin(theta)
     direction = tangent(theta) + math.pi / 2 - phi
     vx, vy = math.cos(direction), math.sin(direction)
-
-    def outside(t):
+    b = x * vx + y * vy
+    t = -b + math.sqrt(max(0.0, b * b - x * x - y * y + 1))
+    for _ in range(50):
         px, py = x + t * vx, y + t * vy
-        return math.hypot(px, py) - 1 - alpha * math.cos(3 * math.atan2(py, px))
-
-    t = brentq(outside, 1e-3, 3.0, xtol=xtol, rtol=4 * np.finfo(float).eps)
+        r, at = math.hypot(px, py), math.atan2(py, px)
+        slope = (px * vx + py * vy) / r + 3 * alpha * math.sin(3 * at) * (px * vy - py * vx) / (r * r)
+        step = (r - 1 - alpha * math.cos(3 * at)) / slope
+        t -= step
+        if abs(step) < 1e-15:
+            break
     at = math.atan2(y + t * vy, x + t * vx)
-    eta = math.remainder(tangent(at) - direction - math.pi / 2, 2 * math.pi)
-    return 0, at, -lam * eta
+    return at, -lam * math.remainder(tangent(at) - direction - math.pi / 2, 2 * math.pi)
 
 
 # ---- its derivative

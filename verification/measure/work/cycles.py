@@ -1,7 +1,7 @@
 """Benchmarks on cycles of period 2, 3 and 64, a fold, and doublings; chord equations against shooting and iteration."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from functools import cache, partial
@@ -22,7 +22,7 @@ from verification.cycles.newton import floats
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.measure.work.bench import module
-from verification.measure.work.question import Method, Question
+from verification.measure.work.question import Method, Question, textbook
 from verification.measure.work.sought import DIGITS, Sought, last, to_digits
 from verification.named.locate import proof_near
 from verification.proofs.periodic.cycle_in_box import UniqueCycle, closed_form
@@ -89,20 +89,15 @@ def textbook_cycle(map: PinballMap, particle: tuple[float, float], period: int, 
     if book is None:
         return []
 
-    def bounces(theta: float, phi: float) -> list[float]:
-        orbit = map.orbit(theta, phi, period - 1)
-        return [float(x) for x in orbit.theta]
+    def bounces(start: tuple[float, float]) -> list[float]:
+        return [float(x) for x in map.orbit(*start, period - 1).theta]
 
-    def shot(xtol: float) -> list[float]:
-        return bounces(*book.shooting(map, particle, period, xtol))
-
-    def settled(count: int) -> list[float]:
-        return bounces(*book.iterated(map, *particle, period * count))
-
-    shooting = Method(
-        "single shooting", "float64", "xtol", TOLERANCES, shot, lambda x: Decimal(f"{x:.3g}"), textbook=True
+    shooting = textbook(
+        "single shooting", lambda x: bounces(book.shooting(map, particle, period, x)), "xtol", TOLERANCES
     )
-    waiting = Method("waiting for it", "float64", "turns", (10, 30, 100, 300), settled, textbook=True)
+    waiting = textbook(
+        "waiting for it", lambda n: bounces(book.iterated(map, *particle, period * n)), "turns", (10, 30, 100, 300)
+    )
     return [shooting, waiting] if settles else [shooting]
 
 
@@ -155,22 +150,30 @@ def fold() -> Question:
     exact = polygons.saddle_node().subs(alpha_symbol, ALPHA)
     turn = -float(N(acos(-ALPHA))) / 3
     start = (*(round(turn + math.tau / 3 * k, 3) for k in range(3)), round(float(N(exact)), 3))
-    problem = Problem(EGG, (0, 0, 0), BifurcationKind.FOLD, "lam")
     formula = Method(
         "closed form, arb", "arb", "digits", DIGITS, lambda d: [closed_form(exact, d)], to_digits, proved=True
     )
-    return Question(
+    asked = fold_question(
         "fold-3",
         "The fold of period 3, egg",
         f"the contraction at which cycles of period 3 are born, alpha = {ALPHA}",
-        "in lam",
-        lambda digits: [closed_form(exact, digits)],
-        (
-            *Sought(problem, start, last).methods(lambda d: [whole(proof_near(problem, list(start), d)).value]),
-            formula,
-            *textbook_fold(),
-        ),
+        Problem(EGG, (0, 0, 0), BifurcationKind.FOLD, "lam"),
+        start,
     )
+    methods = (*asked.methods, formula, *textbook_fold())
+    return replace(asked, reference=lambda digits: [closed_form(exact, digits)], methods=methods)
+
+
+def fold_question(
+    name: str, title: str, answers: str, problem: Problem, start: tuple[float, ...], here: bool = False
+) -> Question:
+    """Benchmark on the parameter of a fold, in every arithmetic; if `here`, in this process only."""
+
+    def certified(digits: int) -> list[arb]:
+        return [whole(proof_near(problem, list(start), digits)).value]
+
+    methods = Sought(problem, start, last).methods(certified)
+    return Question(name, title, answers, "in lam", certified, tuple(here_alone(methods) if here else methods))
 
 
 def textbook_fold() -> list[Method]:
@@ -178,15 +181,10 @@ def textbook_fold() -> list[Method]:
     book = module("textbook")
     if book is None:
         return []
-    map = PinballMap("egg", lam=1, alpha="2/25")
-    triangle = triangle_start()
+    map, triangle = PinballMap("egg", lam=1, alpha="2/25"), triangle_start()
     start = triangle[0], first_exit(Problem(EGG, (0, 0, 0), lam=HALF), triangle)
-
-    def seen(xtol: float) -> list[float]:
-        return [book.fold_seen(lambda lam: map.at(lam), start, 3, 0.3, 0.5, xtol)]
-
-    kept = (1e-3, 1e-6, 1e-9)
-    return [Method("last seen, shooting", "float64", "xtol", kept, seen, lambda x: Decimal(f"{x:.3g}"), textbook=True)]
+    seen = partial(book.fold_seen, map.at, start, 3, 0.3, 0.5)
+    return [textbook("last seen, shooting", lambda xtol: [seen(xtol)], "xtol", TOLERANCES[:3])]
 
 
 def doublings() -> Question:
@@ -229,33 +227,16 @@ def textbook_doublings() -> list[Method]:
     book = module("textbook")
     if book is None:
         return []
-    map = PinballMap("egg", lam=1, alpha="2/25")
-    found = members()
+    map, brackets = PinballMap("egg", lam=1, alpha="2/25"), []
+    for each in members():
+        period, gap = 2 ** (each.n - 1), 0.002 / 4.67 ** (each.n - FIRST)
+        phi = first_exit(Problem(EGG, (0,) * period, lam=Rational(each.lam)), tuple(each.start[:-1]))
+        brackets.append(((each.start[0], phi), period, each.lam - gap, each.lam + 0.7 * gap))
 
-    def map_at(lam: float) -> PinballMap:
-        return map.at(lam)
+    def each_by(way: Callable[..., float]) -> Callable[[Any], list[float]]:
+        return lambda setting: [way(map.at, *bracket, setting) for bracket in brackets]
 
-    def brackets() -> list[tuple[int, tuple[float, float], float, float]]:
-        made = []
-        for each in found:
-            period = 2 ** (each.n - 1)
-            gap = 0.002 / 4.67 ** (each.n - FIRST)
-            theta = each.start[0]
-            phi = first_exit(Problem(EGG, (0,) * period, lam=Rational(each.lam)), tuple(each.start[:-1]))
-            made.append((period, (theta, phi), each.lam - gap, each.lam + 0.7 * gap))
-        return made
-
-    def flips(xtol: float) -> list[float]:
-        return [book.flip(map_at, particle, period, low, high, xtol) for period, particle, low, high in brackets()]
-
-    def watched(bounces: int) -> list[float]:
-        return [
-            book.doubling_seen(map_at, particle, period, low, high, bounces)
-            for period, particle, low, high in brackets()
-        ]
-
-    kept = TOLERANCES
     return [
-        Method("brentq, shooting", "float64", "xtol", kept, flips, lambda x: Decimal(f"{x:.3g}"), textbook=True),
-        Method("periods of settled particles", "float64", "bounces", (300, 3_000, 30_000), watched, textbook=True),
+        textbook("brentq, shooting", each_by(book.flip), "xtol", TOLERANCES),
+        textbook("periods of settled particles", each_by(book.doubling_seen), "bounces", (300, 3_000, 30_000)),
     ]

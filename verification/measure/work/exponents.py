@@ -3,7 +3,7 @@
 The inverse of arc length, the parameter at a given arc length, is a benchmark too.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cache
@@ -27,8 +27,8 @@ from verification.arithmetic.iteration import Vector
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.problem import Linearised, Problem
 from verification.measure.work.bench import module
-from verification.measure.work.cycles import EGG, HALF, first_exit, triangle_start, whole
-from verification.measure.work.question import Claimed, Method, Question, available
+from verification.measure.work.cycles import EGG, HALF, first_exit, here_alone, triangle_start, whole
+from verification.measure.work.question import Claimed, Method, Question, available, textbook
 from verification.measure.work.row import WITHOUT
 from verification.measure.work.sought import DIGITS, Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
@@ -49,19 +49,38 @@ def of_a_cycle() -> Question:
     problem = Problem(EGG, (0, 0, 0), lam=HALF)
     map = PinballMap("egg", lam="1/2", alpha="2/25")
     particle = start[0], first_exit(problem, start)
-    read, certified = read_off(problem, start)
-
-    def counted(bounces: int) -> list[float]:
-        return [float(map.exponents(*particle, bounces).nu_plus)]
-
-    own = Method("compiled kernel", "float64", "bounces", MANY, counted)
-    return Question(
+    return of_cycle_exponent(
         "exponent-cycle",
         "The exponent of an attracting cycle, egg",
         "the larger Lyapunov exponent of the attracting triangle of the egg, alpha = 2/25, lam = 1/2",
-        "per bounce",
-        certified,
-        (own, *Sought(problem, start, read).methods(certified), *textbook(map, particle)),
+        problem,
+        start,
+        lambda bounces: map.exponents(*particle, bounces),
+        MANY,
+        textbook_exponents(map, particle),
+    )
+
+
+def of_cycle_exponent(
+    name: str,
+    title: str,
+    answers: str,
+    problem: Problem,
+    start: tuple[float, ...],
+    count: Callable[[int], Any],
+    counts: tuple[int, ...],
+    usual: Sequence[Method] = (),
+    here: bool = False,
+) -> Question:
+    """Benchmark on the larger exponent of a cycle: counted by the kernel, from the cycle's equations, and proved.
+
+    `count` gives the exponents over a number of bounces; if `here`, all methods are in this process.
+    """
+    read, certified = read_off(problem, start)
+    own = Method("compiled kernel", "float64", "bounces", counts, lambda bounces: [float(count(bounces).nu_plus)])
+    solved = Sought(problem, start, read).methods(certified)
+    return Question(
+        name, title, answers, "per bounce", certified, (own, *(here_alone(solved) if here else solved), *usual)
     )
 
 
@@ -97,21 +116,28 @@ def of_chaos() -> Question:
 
     The radius of the reference is below 1e-18, for any number of digits.
     """
-    map = PinballMap("cardioid", lam=0)
+    map, plain = (PinballMap("cardioid", lam=0, kernels=kernels) for kernels in (True, False))
+    starts = interior_starts(map, ORBITS, seed=7)
+    growth = Growth(map, starts.theta, starts.phi, starts.component)
+    growth.skip(EARLY)
+    going = growth.code == 0
+    points = growth.theta[going], growth.phi[going], growth.component[going]
+
+    def started(own: PinballMap) -> Growth:
+        growth = Growth(own, *points)
+        growth.advance(ALIGNED)
+        return growth
 
     def counted(bounces: int) -> Claimed:
-        found = run(map, ORBITS, max(bounces // ORBITS, 8))
+        found = grown(started(map), max(bounces // ORBITS, 8))
         return Claimed([found.mean], found.reach)
 
     def plainly(bounces: int) -> list[float]:
-        growth = Growth(numpy_map(map), *fixed_starts(map, ORBITS))
-        growth.advance(ALIGNED)
+        growth, each = started(plain), max(bounces // ORBITS, 1)
         before = growth.stretch
-        growth.advance(max(bounces // ORBITS, 1))
-        return [float(np.mean(growth.stretch - before) / max(bounces // ORBITS, 1))]
+        growth.advance(each)
+        return [float(np.mean(growth.stretch - before) / each)]
 
-    theta, phi, _ = fixed_starts(map, 1)
-    particle = float(theta[0]), float(phi[0])
     own = [
         Method("compiled kernel, error bar", "float64", "bounces", (1_000, 30_000, 1_000_000, 10_000_000), counted),
         Method("NumPy", "float64", "bounces", (1_000, 10_000, 100_000), plainly),
@@ -123,7 +149,7 @@ def of_chaos() -> Question:
         "the Lyapunov exponent of the cardioid at lam = 0, its slap map",
         "per bounce",
         lambda digits: [sharply()],
-        (*own, *textbook(map, particle)),
+        (*own, *textbook_exponents(map, (float(points[0][0]), float(points[1][0])))),
         most_digits=16,
     )
 
@@ -142,18 +168,6 @@ def sharply() -> arb:
     return proved(SHARP)
 
 
-def numpy_map(map: PinballMap) -> PinballMap:
-    """The map on NumPy arrays, without compiled kernels."""
-    return PinballMap(map.ir.table, lam=float(map.lam), kernels=False)
-
-
-def run(map: PinballMap, orbits: int, bounces: int) -> Estimate:
-    """The exponent over several orbits, with its standard error from batch means."""
-    growth = Growth(map, *fixed_starts(map, orbits))
-    growth.advance(ALIGNED)
-    return grown(growth, bounces)
-
-
 def grown(growth: Growth, bounces: int) -> Estimate:
     """The exponent over the next bounces of each orbit, with its standard error."""
     count = Count(growth, most=64)
@@ -162,51 +176,23 @@ def grown(growth: Growth, bounces: int) -> Estimate:
     return estimate(count.up)
 
 
-@cache
-def _arrived(name: str, lam: float, orbits: int) -> tuple[Any, Any, Any]:
-    map = PinballMap(name, lam=lam)
-    starts = interior_starts(map, orbits, seed=7)
-    growth = Growth(map, starts.theta, starts.phi, starts.component)
-    growth.skip(EARLY)
-    going = growth.code == 0
-    return growth.theta[going], growth.phi[going], growth.component[going]
-
-
-def fixed_starts(map: PinballMap, orbits: int) -> tuple[Any, Any, Any]:
-    """Parameters, exit angles and components of particles on the attractor."""
-    return _arrived(map.ir.table, float(map.lam), orbits)
-
-
-def textbook(map: PinballMap, particle: tuple[float, float]) -> list[Method]:
+def textbook_exponents(map: PinballMap, particle: tuple[float, float]) -> list[Method]:
     """Textbook methods for the exponent: two neighbouring particles; QR of one matrix after the other."""
     book = module("textbook")
     if book is None:
         return []
-    return [
-        Method(
-            "two particles",
-            "float64",
-            "bounces",
-            FEW,
-            lambda n: [book.two_particles(map.step, particle, n)],
-            textbook=True,
-        ),
-        Method(
-            "QR, bounce by bounce",
-            "float64",
-            "bounces",
-            FEW,
-            lambda n: [book.by_qr(map.step, map.derivative, particle, n)],
-            textbook=True,
-        ),
-    ]
+    pair = textbook("two particles", lambda n: [book.two_particles(map.step, particle, n)], "bounces", FEW)
+    by_qr = textbook(
+        "QR, bounce by bounce", lambda n: [book.by_qr(map.step, map.derivative, particle, n)], "bounces", FEW
+    )
+    return [pair, by_qr]
 
 
 ALPHA = Rational(2, 25)
 AT = (-2.5, 1.0)  # parameters and, for the inverse, arc lengths: doubles taken exactly
 COUNTS = (2, 64, 4096)
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
-GRIDS = (100, 5_000, 200_000)
+POINTS, GRIDS = "grid points", (100, 5_000, 200_000)
 ROUNDING = Decimal("1.4e-14")  # 64 units of 2**-52, as the perimeter is 6.5
 GUARD = 15
 
@@ -344,28 +330,23 @@ def _speed(map: PinballMap) -> Any:
 
 def textbook_lengths(map: PinballMap) -> list[Method]:
     """Textbook methods for arc length: `scipy.integrate.quad`, and the trapezoidal rule on a grid."""
-    book, own = module("textbook"), _speed(map)
+    book, own, per = module("textbook"), _speed(map), len(AT)
     if book is None:
         return []
-    return _pair(
-        ("quad", "epsabs", lambda x: [book.length_by_quad(own, at, x) for at in AT]),
-        ("trapezia on a grid", lambda n: [book.length_by_sums(own, at, n) for at in AT]),
-    )
+    return [
+        textbook("quad", lambda x: [book.length_by_quad(own, at, x) for at in AT], "epsabs", TOLERANCES, per),
+        textbook("trapezia on a grid", lambda n: [book.length_by_sums(own, at, n) for at in AT], POINTS, GRIDS, per),
+    ]
 
 
 def textbook_parameters(map: PinballMap) -> list[Method]:
     """Textbook methods for the parameter: `brentq` over `quad`, and interpolation of sums of the trapezoidal rule."""
-    book, own = module("textbook"), _speed(map)
+    book, own, per = module("textbook"), _speed(map), len(AT)
     if book is None:
         return []
-    return _pair(
-        ("brentq over quad", "xtol", lambda x: [book.parameter_by_brentq(own, s, x) for s in AT]),
-        ("interpolated grid", lambda n: [book.parameter_by_sums(own, s, n) for s in AT]),
-    )
-
-
-def _pair(by_tolerance: Any, on_grid: Any) -> list[Method]:
-    name, unit, call = by_tolerance
-    settled = Method(name, "float64", unit, TOLERANCES, call, lambda x: Decimal(f"{x:.3g}"), len(AT), textbook=True)
-    name, call = on_grid
-    return [settled, Method(name, "float64", "grid points", GRIDS, call, per=len(AT), textbook=True)]
+    return [
+        textbook(
+            "brentq over quad", lambda x: [book.parameter_by_brentq(own, s, x) for s in AT], "xtol", TOLERANCES, per
+        ),
+        textbook("interpolated grid", lambda n: [book.parameter_by_sums(own, s, n) for s in AT], POINTS, GRIDS, per),
+    ]

@@ -31,6 +31,7 @@ from verification.arithmetic.iteration import silent
 from verification.measure.work.row import MethodResult, timed
 
 COUNTS = ("particles", "points")  # the units of settings that say how many answers a call gives
+TOLERANCES = ("xtol", "epsabs")  # the units of settings that are the error
 SHOWN = 3  # numbers of a reference in text
 GUARD = 20  # extra digits of a reference
 Answer = Sequence[Any]
@@ -81,6 +82,24 @@ class Method:
     def within(self, most_digits: int) -> tuple[Any, ...]:
         """The settings that need at most `most_digits` digits."""
         return tuple(s for s in self.settings if self.unit != "digits" or s <= most_digits)
+
+
+def textbook(
+    name: str,
+    call: Callable[[Any], Answer],
+    unit: str = "",
+    settings: tuple[Any, ...] = ("to rounding",),
+    per: int = 1,
+) -> Method:
+    """A textbook method: in mpmath if its settings are digits, else in float64.
+
+    An answer to a number of digits, or to a tolerance (`xtol`, `epsabs`), claims that error.
+    """
+    if unit == "digits":
+        return Method(name, "mpmath", unit, settings, call, lambda digits: power(-digits), per, textbook=True)
+    claims = unit in TOLERANCES
+    promise = lambda setting: Decimal(f"{setting:.3g}") if claims else None  # noqa: E731
+    return Method(name, "float64", unit, settings, call, promise, per, textbook=True)
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@
 ['arb', 'float64', 'mpmath']
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from functools import cache
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -16,43 +16,31 @@ import numpy as np
 from flint import arb
 from sympy import S
 
-from numeric import PinballMap, phase_starts
+from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
 from numeric.dynamics.statistics import Estimate
 from numeric.pinball.sampling import ALIGNED, Growth
 from numeric.pinball.states import html_table, many, plotted
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene, as_scene
-from verification.arithmetic.balls import bits_of, working
 from verification.arithmetic.iteration import silent
 from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
-from verification.maps.enclosed import EnclosedMap, Refusal
-from verification.maps.exact import Bounce, ExactMap
-from verification.maps.laws import symbolic_derivative
-from verification.measure.work.cycles import cycle_question, here_alone, textbook_cycle, whole
-from verification.measure.work.exponents import grown, read_off
+from verification.cycles.recurrence import BifurcationKind
+from verification.measure.work.cycles import cycle_question, fold_question, textbook_cycle
+from verification.measure.work.exponents import grown, of_cycle_exponent
+from verification.measure.work.flights import BOUNCES, of_bounces, of_derivative
 from verification.measure.work.question import Answer, Claimed, Method, Question, Say, measured
 from verification.measure.work.row import HEAD, MethodResult, facts, plain, table
-from verification.measure.work.sought import DIGITS, Sought, last, scripted, to_digits
-from verification.named.locate import proof_near
 from verification.named.questions import PeriodicOrbit, find_cycles, follow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-PARTICLES, BOUNCES = 4, 10  # particles of a question on bounces, bounces of an orbit
-COUNTS = (4, 64, 4096)  # particles in a call of the kernels: the first few repeated
-MARGIN = 12  # digits that the flights lose at first in balls
-WIDER = 6  # doublings of MARGIN until an orbit is known well enough, at most
 PERIODS = (2, 3, 4)  # periods at which a cycle is searched for
 BEGINNINGS = ("own", "19/20", "7/10", "1/2", "3/10")  # contractions at which cycles with a fold are searched for
 ORBITS, COUNTED, LONG = 64, (1_000, 30_000, 300_000), 3_000_000  # of an exponent, and bounces in all
-Start = tuple[float, float, int]  # parameter and exit angle, doubles taken exactly, and the component
-Entries = Callable[
-    [Any, list[tuple[Bounce, Bounce]], int], list[Any]
-]  # the entries of a derivative along flights, to so many digits
 
 
 @dataclass(frozen=True, repr=False)
@@ -119,146 +107,6 @@ def work_precision(
     return WorkPrecision(asked, tuple(measured(asked, runs, digits, say)), facts())
 
 
-# ---- bounces
-
-
-def steps(scene: Scene, seed: int) -> Question:
-    """Benchmark: one bounce of a few particles."""
-    return of_flights(scene, seed, "step", "One bounce", 1)
-
-
-def orbits(scene: Scene, seed: int) -> Question:
-    """Benchmark: ten bounces of a few particles."""
-    return of_flights(scene, seed, "orbit", f"An orbit of {BOUNCES} bounces", BOUNCES)
-
-
-def of_flights(scene: Scene, seed: int, name: str, title: str, bounces: int) -> Question:
-    """Benchmark: parameter and exit angle of a few particles after some bounces."""
-    map = PinballMap(scene)
-    starts = tuple(known_starts(scene, map, seed, bounces))
-
-    def landed(own: PinballMap, theta: Any, phi: Any, component: Any) -> list[float]:
-        end = own.orbit(theta, phi, bounces, component)
-        return [float(x) for i in range(len(starts)) for x in (end.theta[-1, i], end.phi[-1, i])]
-
-    def entries(_: Any, flights: list[tuple[Bounce, Bounce]], digits: int) -> list[Any]:
-        return [x for _, end in flights for x in (end.theta, end.phi)]
-
-    return Question(
-        f"{name}-{scene.name}",
-        f"{title}, {scene.name}",
-        f"parameter and exit angle of {len(starts)} particles after {many(bounces, 'bounce')}: {scene}",
-        "radians",
-        lambda digits: enclosed(scene, map, starts, bounces, digits, entries),
-        (*in_every_arithmetic(scene, map, starts, bounces, landed, entries), *scripted(scene, starts, bounces)),
-    )
-
-
-def jacobians(scene: Scene, seed: int) -> Question:
-    """Benchmark: the derivative of one bounce of a few particles."""
-    map = PinballMap(scene)
-    starts = tuple(known_starts(scene, map, seed, 1))
-
-    def turned(own: PinballMap, theta: Any, phi: Any, component: Any) -> list[float]:
-        return [float(x) for x in own.derivative(theta, phi, component)[: len(starts)].ravel()]
-
-    def entries(own: Any, flights: list[tuple[Bounce, Bounce]], digits: int) -> list[Any]:
-        return [x for start, end in flights for x in symbolic_derivative(own, start, end, digits + MARGIN)]
-
-    return Question(
-        f"jacobian-{scene.name}",
-        f"The derivative of one bounce, {scene.name}",
-        f"d(s1, phi1)/d(s0, phi0) of {len(starts)} particles: {scene}",
-        "of an entry",
-        lambda digits: enclosed(scene, map, starts, 1, digits, entries),
-        tuple(in_every_arithmetic(scene, map, starts, 1, turned, entries)),
-    )
-
-
-def known_starts(scene: Scene, map: PinballMap, seed: int, bounces: int) -> Iterator[Start]:
-    """The first few random particles for which every bounce is proved in balls."""
-    drawn, found = phase_starts(map, 16 * PARTICLES, seed), 0
-    own = EnclosedMap(map, scene.lam, 64 + 32 * bounces)
-    for component, theta, phi in zip(drawn.component, drawn.theta, drawn.phi, strict=True):
-        start = (round(float(theta), 3), round(float(phi), 3), int(component))
-        try:
-            flights(own, [start], bounces)
-        except ValueError:
-            continue
-        yield start
-        found += 1
-        if found == PARTICLES:
-            return
-    raise ValueError(f"work: fewer than {PARTICLES} of {16 * PARTICLES} particles have proved bounces in {scene}")
-
-
-def flights(own: ExactMap | EnclosedMap, starts: Sequence[Start], bounces: int) -> list[tuple[Bounce, Bounce]]:
-    """The last of `bounces` flights of each particle under the map `own`: the bounces where it leaves and lands."""
-    found = []
-    for start in starts:
-        before = after = own.start(*start)
-        for _ in range(bounces):
-            before, landed = after, own.bounce(after)
-            if isinstance(landed, Refusal):
-                raise ValueError(landed.value)
-            if landed.code:
-                raise ValueError("the particle stops before its last bounce")
-            after = landed
-        found.append((before, after))
-    return found
-
-
-def enclosed(
-    scene: Scene, map: PinballMap, starts: Sequence[Start], bounces: int, digits: int, entries: Entries
-) -> list[arb]:
-    """Balls that hold the answer, of radius below `10**-digits`; each landing is proved to be the first hit."""
-    more = MARGIN
-    for _ in range(WIDER):
-        bits = bits_of(digits + more, 64)
-        own = EnclosedMap(map, scene.lam, bits)
-        try:
-            landed = flights(own, starts, bounces)
-        except ValueError as why:
-            refused = str(why)
-        else:
-            with working(bits):
-                answer: list[arb] = entries(own, landed, digits + more)
-                if all(x.rad() < arb(10) ** -digits for x in answer):
-                    return answer
-            refused = Refusal.WIDE.value
-        more *= 2
-    raise ValueError(f"{scene.name}: {refused}")
-
-
-def in_every_arithmetic(
-    scene: Scene,
-    map: PinballMap,
-    starts: Sequence[Start],
-    bounces: int,
-    call: Callable[..., list[float]],
-    entries: Entries,
-) -> Iterator[Method]:
-    """Methods in every arithmetic: the compiled kernel, NumPy, mpmath and balls."""
-
-    def ran(own: PinballMap, count: int) -> list[float]:
-        theta, phi, component = np.tile(np.array(starts), (count // len(starts), 1)).T
-        return call(own, theta, phi, component.astype(np.int64))
-
-    for name, kernels in (("compiled kernel", True), ("NumPy", False)):
-        own = map if kernels else PinballMap(scene, kernels=False)
-        yield Method(name, "float64", "particles", COUNTS, partial(ran, own))
-
-    def in_mpmath(digits: int) -> list[Any]:
-        exact = ExactMap(map, digits, scene.lam)
-        return entries(exact, flights(exact, starts, bounces), digits)
-
-    def proved(digits: int) -> list[arb]:
-        return enclosed(scene, map, starts, bounces, digits, entries)
-
-    yield Method("mpmath", "mpmath", "digits", DIGITS, in_mpmath, per=len(starts))
-    yield Method("arb, certified", "arb", "digits", DIGITS, proved, to_digits, len(starts), proved=True)
-
-
 # ---- cycles
 
 
@@ -302,27 +150,16 @@ def of_fold(scene: Scene, seed: int) -> Question:
             for orbit in find_cycles(here, period=period, seed=seed).stable[:2]:
                 folds = follow(orbit, lam=("0", "1")).folds
                 if folds and isinstance(ring := folds[0].event.ring, Chords):
-                    return _fold(scene, period, ring, (*map(float, folds[0].event.x), folds[0].value))
+                    start = tuple(round(float(x), 6) for x in (*folds[0].event.x, folds[0].value))
+                    return fold_question(
+                        f"fold-{scene.name}",
+                        f"A fold of period {period}, {scene.name}",
+                        f"a contraction at which cycles of period {period} are born: {scene}",
+                        Problem(ring.table, ring.components, BifurcationKind.FOLD, "lam", law=ring.law),
+                        start,
+                        here=True,
+                    )
     raise ValueError(f"work: no fold of a cycle of period {PERIODS[1]} or {PERIODS[-1]} is met in {scene}")
-
-
-def _fold(scene: Scene, period: int, ring: Chords, start: tuple[float, ...]) -> Question:
-    from verification.cycles.recurrence import BifurcationKind
-
-    problem = Problem(ring.table, ring.components, BifurcationKind.FOLD, "lam", law=ring.law)
-    near = tuple(round(x, 6) for x in start)
-
-    def certified(digits: int) -> list[arb]:
-        return [whole(proof_near(problem, list(near), digits)).value]
-
-    return Question(
-        f"fold-{scene.name}",
-        f"A fold of period {period}, {scene.name}",
-        f"a contraction at which cycles of period {period} are born: {scene}",
-        "in lam",
-        certified,
-        tuple(here_alone(Sought(problem, near, last).methods(certified))),
-    )
 
 
 # ---- exponents
@@ -341,35 +178,34 @@ def of_exponent(scene: Scene, seed: int) -> Question:
 
 def _of_cycles_exponent(scene: Scene, map: PinballMap, attractor: Attractor) -> Question:
     component, theta, phi = attractor.points
-    parts, period = tuple(int(i) for i in component), attractor.period
-    problem = Problem(scene.table, parts, lam=S(scene.lam), law=scene.law)
-    start = tuple(round(float(x), 6) for x in theta)
-
-    read, certified = read_off(problem, start)
-
-    def run(bounces: int) -> list[float]:
-        return [float(map.exponents(theta[0], phi[0], bounces, component=component[0]).nu_plus)]
-
-    own = Method("compiled kernel", "float64", "bounces", COUNTED, run)
-    name = f"the larger Lyapunov exponent of an attracting cycle of period {period}: {scene}"
-    return Question(
+    problem = Problem(scene.table, tuple(int(i) for i in component), lam=S(scene.lam), law=scene.law)
+    return of_cycle_exponent(
         f"exponent-{scene.name}",
         f"The exponent of a cycle, {scene.name}",
-        name,
-        "per bounce",
-        certified,
-        (own, *here_alone(Sought(problem, start, read).methods(certified))),
+        f"the larger Lyapunov exponent of an attracting cycle of period {attractor.period}: {scene}",
+        problem,
+        tuple(round(float(x), 6) for x in theta),
+        lambda bounces: map.exponents(theta[0], phi[0], bounces, component=component[0]),
+        COUNTED,
+        here=True,
     )
 
 
 def _of_chaos(scene: Scene, map: PinballMap, attractor: Attractor) -> Question:
+    points = attractor.points.only(np.linspace(0, attractor.points.size - 1, ORBITS).astype(int))
+
+    def counted(bounces: int, own: PinballMap = map) -> Estimate:
+        growth = Growth(own, points.theta, points.phi, points.component)
+        growth.settle(ALIGNED)
+        return grown(growth, max(bounces // ORBITS, 8))
+
     def run(bounces: int, own: PinballMap = map) -> Claimed:
-        found = on(own, attractor, bounces)
+        found = counted(bounces, own)
         return Claimed([found.mean], found.reach)
 
     @cache
     def long() -> list[arb]:
-        found = on(map, attractor, LONG)
+        found = counted(LONG)
         return [arb(found.mean, found.reach)]
 
     plainly = PinballMap(scene, kernels=False)
@@ -388,18 +224,10 @@ def _of_chaos(scene: Scene, map: PinballMap, attractor: Attractor) -> Question:
     )
 
 
-def on(map: PinballMap, attractor: Attractor, bounces: int) -> Estimate:
-    """The larger exponent over several orbits on an attractor, with its standard error from batch means."""
-    points = attractor.points.only(np.linspace(0, attractor.points.size - 1, ORBITS).astype(int))
-    growth = Growth(map, points.theta, points.phi, points.component)
-    growth.settle(ALIGNED)
-    return grown(growth, max(bounces // ORBITS, 8))
-
-
 QUESTIONS: dict[str, Callable[[Scene, int], Question]] = {
-    "step": steps,
-    "jacobian": jacobians,
-    "orbit": orbits,
+    "step": lambda scene, seed: of_bounces(scene, seed, "step", "One bounce", 1),
+    "jacobian": of_derivative,
+    "orbit": lambda scene, seed: of_bounces(scene, seed, "orbit", f"An orbit of {BOUNCES} bounces", BOUNCES),
     "cycle": of_cycle,
     "fold": of_fold,
     "exponent": of_exponent,

@@ -46,7 +46,7 @@ from verification.cycles.newton import (
 )
 from verification.measure.work.bench import module
 from verification.measure.work.plain import egg_orbit
-from verification.measure.work.question import Method, Question, available, power
+from verification.measure.work.question import Method, Question, available, power, textbook
 from verification.measure.work.row import WITHOUT
 from verification.named.locate import lambda_star
 from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
@@ -198,16 +198,9 @@ def textbook_corner() -> list[Method]:
     book = module("textbook")
     if book is None:
         return []
-
-    def nested(xtol: float) -> list[float]:
-        return [book.corner_by_brentq(xtol)]
-
-    def secant(digits: int) -> list[Any]:
-        return [book.corner_by_findroot(digits)]
-
     return [
-        Method("brentq in brentq", "float64", "xtol", TOLERANCES, nested, lambda x: Decimal(f"{x:.3g}"), textbook=True),
-        Method("mpmath.findroot", "mpmath", "digits", DIGITS[:4], secant, to_digits, textbook=True),
+        textbook("brentq in brentq", lambda xtol: [book.corner_by_brentq(xtol)], "xtol", TOLERANCES),
+        textbook("mpmath.findroot", lambda digits: [book.corner_by_findroot(digits)], "digits", DIGITS[:4]),
     ]
 
 
@@ -294,27 +287,10 @@ def textbook_infimum() -> list[Method]:
         near = min(real, key=lambda z: abs(z - book.NEAR))
         return expansion(multiprecision(context), [near])
 
-    def promise(x: float) -> Decimal:
-        return Decimal(f"{x:.3g}")
-
+    grid, search = partial(book.expansion_on_grid, map.slap), partial(book.expansion_by_search, map.slap)
     return [
-        Method(
-            "grid",
-            "float64",
-            "grid points",
-            (100, 5_000, 200_000),
-            lambda n: [book.expansion_on_grid(map.slap, n)],
-            textbook=True,
-        ),
-        Method(
-            "minimize_scalar",
-            "float64",
-            "xtol",
-            TOLERANCES,
-            lambda x: [book.expansion_by_search(map.slap, x)],
-            promise,
-            textbook=True,
-        ),
-        Method("numpy.roots", "float64", "", ("to rounding",), roots, textbook=True),
-        Method("mpmath.polyroots", "mpmath", "digits", DIGITS[:3], polyroots, to_digits, textbook=True),
+        textbook("grid", lambda n: [grid(n)], "grid points", (100, 5_000, 200_000)),
+        textbook("minimize_scalar", lambda xtol: [search(xtol)], "xtol", TOLERANCES),
+        textbook("numpy.roots", roots),
+        textbook("mpmath.polyroots", polyroots, "digits", DIGITS[:3]),
     ]

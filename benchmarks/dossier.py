@@ -1,17 +1,13 @@
 """Writes the page `docs/numerics.md` from recorded measurements: `python benchmarks/dossier.py`.
 
-The sources are `bench.json`, `bench_avx2.json` and `work_precision.json` in `benchmarks/records`, `docs/leave_out.md`,
-`verification/measure/extremes/recorded.json` and `tests/symbolic/corpus.json`, each written by the command that the
-page names, and the text in `dossier.md` beside this file. A test compares the page with its sources.
+The sources are `bench.json`, `bench_avx2.json` and `work_precision.json` in `benchmarks/records`, each written by the
+command that the page names, and the text in `dossier.md` beside this file. A test compares the page with its sources.
 """
 
 import json
-import re
 import sys
-from collections import Counter
 from pathlib import Path
 
-from verification.measure.extremes.near import StabilityVerdict
 from verification.measure.extremes.orbits import SCENES
 from verification.measure.work.choice import crossovers, entries
 from verification.measure.work.figure import times
@@ -20,8 +16,7 @@ from verification.measure.work.row import MethodResult, duration, footer, front,
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEXT = ROOT / "docs" / "numerics.md", ROOT / "benchmarks" / "dossier.md"
 KERNEL = "float64 llvm"
-RIVALS = {"float64 numpy + lambdify": "NumPy + lambdify", "float64 numba, one particle at a time": "numba"}
-PLAIN = "float64 the paper's way, in Python"
+RIVAL = "float64 numba, one particle at a time"
 SWEEP = "sweep"  # what rows of sweeps name in place of a table
 BOUNDS = 4, 8  # units of 2**-52: of the place and of the direction
 MANY = 100  # digits
@@ -38,7 +33,7 @@ def table(head, lines):
 
 
 def bounce(bench):
-    """A line for each table: errors, times, and the ratios to the usual alternatives."""
+    """A line for each table: errors, times, and the ratio to scalar numba."""
     lines = []
     for scene, shape in SCENES.items():
         own = {
@@ -47,14 +42,12 @@ def bounce(bench):
         cases = [case for case in bench["accuracy"] if case["scene"] == scene]
         usual = next(case for case in cases if case["case"] == "random")
         hard = max(cases, key=lambda case: max(case["position"] / BOUNDS[0], case["direction"] / BOUNDS[1]))
-        rivals = [times(own[name] / own[KERNEL]) if name in own else "" for name in (*RIVALS, PLAIN)]
         label = ", ".join([scene, *(f"{k} = {v}" for k, v in shape.items())])
         more = f"{own[f'{KERNEL}, exponents'] / own[KERNEL] - 1:+.0%}"
         kept = duration(own[f"{KERNEL}, orbits as angles and points"])
-        lines.append([label, pair(usual), f"{pair(hard)}: {hard['case']}", duration(own[KERNEL]), more, kept, *rivals])
-    head = ["table", "random", "hardest case", "time", "exponents", "kept as angles and points"]
-    head += [f"{name}, times" for name in RIVALS.values()]
-    return table([*head, "plain Python, times"], lines)
+        lines.append([label, pair(usual), f"{pair(hard)}: {hard['case']}", duration(own[KERNEL]), more, kept, times(own[RIVAL] / own[KERNEL])])
+    head = ["table", "random", "hardest case", "time", "exponents", "kept as angles and points", "numba, times"]
+    return table(head, lines)
 
 
 def calls(bench):
@@ -175,59 +168,11 @@ def step(digits, picked):
     return f"from {digits} {picked.method}" if digits > 1 else picked.method
 
 
-def verdicts(record):
-    """The number of cases by method and verdict."""
-    lines = []
-    for kernel in dict.fromkeys(one["kernel"] for one in record):
-        own = Counter(one["verdict"] for one in record if one["kernel"] == kernel)
-        backward = [float(one["backward"]) for one in record if one["kernel"] == kernel and "backward" in one]
-        lines.append([kernel, *(str(own[v.name] or "") for v in StabilityVerdict), f"{max(backward, default=0):.2g}"])
-    return table(["method", *(v.name.lower() for v in StabilityVerdict), "largest backward error"], lines)
-
-
-def exceptions(record):
-    """The unstable, sensitive and stopped cases, grouped by workaround."""
-    kept = {}
-    for one in record:
-        if one["verdict"] != StabilityVerdict.STABLE.name:
-            kept.setdefault((one["verdict"].lower(), one["instead"]), []).append(one)
-    lines = []
-    for (verdict, instead), several in kept.items():
-        names = list(dict.fromkeys(one["case"] for one in several))
-        case = names[0] + (f", and {len(names) - 1} more" if len(names) > 1 else "")
-        lines.append([verdict, "; ".join(dict.fromkeys(one["kernel"] for one in several)), case, instead])
-    return table(["verdict", "methods", "cases", "instead"], lines)
-
-
-def scenes(text):
-    """For each table the lines with the fewest and the most operations."""
-    cells = [
-        [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| ")
-    ]
-    lines = []
-    for scene in SCENES:
-        own = [row for row in cells if row[0] == scene and len(row) == 9]
-        least, most = min(own, key=lambda row: int(row[3])), max(own, key=lambda row: int(row[3]))
-        named = [f"{row[3]}: {row[1]}, {row[2]}" for row in (least, most)]
-        state = " to ".join(sorted({row[5] for row in own}, key=int)[:: max(1, len({row[5] for row in own}) - 1)])
-        lines.append([scene, *named, state, f"{least[7]} to {most[7]}", f"{least[8]} to {most[8]}"])
-    return table(["table", "least operations", "most", "doubles of state", "MB", "ms to the answer"], lines)
-
-
-def fuzz(text, corpus):
-    """The result of the fuzzer."""
-    runs = re.search(r"([\d,]+) executions take[^:]*: ([^.]*)\.", text)
-    return f"{runs[1]} executions, {runs[2]}. The {len(corpus)} texts that reached new code are regression tests"
-
-
 def page():
     """The text of the page."""
     bench, work = load("benchmarks/records/bench.json"), load("benchmarks/records/work_precision.json")
     other = load("benchmarks/records/bench_avx2.json")
-    record, rows = (
-        load("verification/measure/extremes/recorded.json"),
-        [MethodResult.from_dict(row) for row in work["rows"]],
-    )
+    rows = [MethodResult.from_dict(row) for row in work["rows"]]
     loose = [f"`{name}`" for name, about in work["questions"].items() if not about["certified"]]
     return TEXT.read_text().format(
         machine=footer(bench["machine"]),
@@ -247,12 +192,6 @@ def page():
         questions=questions(work, rows),
         usual=broken(rows),
         choice=choice(work, rows),
-        cases=len(record),
-        fixtures=len({one["case"] for one in record}),
-        verdicts=verdicts(record),
-        exceptions=exceptions(record),
-        scenes=scenes((ROOT / "docs" / "leave_out.md").read_text().split("## Before")[0]),
-        fuzz=fuzz((ROOT / "benchmarks" / "fuzz.py").read_text(), load("tests/symbolic/corpus.json")),
     )
 
 

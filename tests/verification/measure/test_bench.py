@@ -94,7 +94,7 @@ def test_a_file_that_is_no_run_is_refused(tmp_path, capsys):
 def test_errors_of_many_digits_are_measured(name):
     """A number below 10, rounded to `n` digits, is off by `10**-n/2` to `5 * 10**-n` if nothing else errs."""
     for row in multiprecision_rows(name, (20, 400)):
-        digits = int(row.kernel.split()[0])
+        digits = int(row.method.split()[0])
         error = magnitude(row.error)
 
         assert -digits - 1.5 < error < -digits + 0.8

@@ -11,22 +11,16 @@ import click
 from numeric.lowering.files import write_whole
 from symbolic.tables.scene import Scene
 from verification.app.cli import DONE, FAILED, Output, Whole, json_option
+from verification.app.lines import table
 from verification.app.scene import optional_scene_options
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from verification.measure.extremes.orbits import Accuracy
-    from verification.measure.work.bench import SceneTiming
     from verification.measure.work.calls import Call
     from verification.measure.work.question import Question
     from verification.measure.work.row import MethodResult
-
-
-HEAD = f"     {'way':<38}{'time a bounce':>13}{'ratio':>10}   error / 2**-52"
-CALLS = f"{'table':<10}{'call':<36}{'time':>12}{'ratio':>8}{'bar':>7}   against"
-TABLES = f"{'table':<20}{'ratio':>8}{'bar':>7}{'':18}{'time a bounce':>13}{'scalar numba':>14}{'times':>8}"
-CASES = f"{'case':<40}{'particles':>6}{'position':>10}{'direction':>11}{'/condition':>19}"
 
 
 @click.command(epilog="Example: pinball bench --scene egg --digits 20 --digits 100 --json bench.json")
@@ -77,7 +71,7 @@ def command(
     unknown = [name for name in scenes if name not in known]
     if unknown:
         raise ValueError(f"--scene = {unknown[0]} is no table; accepted: {', '.join(known)}")
-    rows: list[SceneTiming] = []
+    rows: list[MethodResult] = []
     cases: list[Accuracy] = []
     whole: list[Call] = []
     asked: list[Call] = []
@@ -86,15 +80,14 @@ def command(
     with output.progress("Measuring", 3 * len(chosen) + 2 * (not scenes) + len(known_questions)) as step:
         for name in chosen:
             step(f"{name}, float64")
-            papers = name in labelled.SCENES
-            rows += bench.kernel_rows(name, runs) if papers else bench.own_rows(name, runs)
+            rows += bench.kernel_rows(name, runs)
             rows += baseline_rows(name, runs) if baselines else []
             whole += call_rows(name, runs) if calls else []
             step(f"{name}, multiprecision")
-            rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if papers else []
+            rows += bench.multiprecision_rows(name, digits or (20, 100, 1000), runs) if name in labelled.SCENES else []
             step(f"{name}, hard cases")
             cases += labelled.accuracy(name) if accuracy else []
-        pieces: list[SceneTiming] = []
+        pieces: list[MethodResult] = []
         if not scenes:
             step("tables beside the egg")
             pieces = list(table_rows(runs, baselines))
@@ -105,18 +98,17 @@ def command(
             step(question.typed)
             asked += asked_rows(min(runs, 3), [question])
     facts = bench.machine_facts()
-    measured = [row.as_data() for row in (*rows, *pieces)]
+    measured = [bench.as_data(row) for row in (*rows, *pieces)]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []
     document = {"machine": facts, "rows": measured, "calls": [call.as_data() for call in whole]}
     document["questions"] = [call.as_data() for call in asked]
     document |= {"accuracy": [case._asdict() | {"error_unit": "2**-52"} for case in cases]}
     output.write(document | ({"moved": changes} if compare else {}))
     for name in chosen:
-        show(output.console, name, [row for row in rows if row.scene == name])
-    show_ratios(output.console, rows)
+        show(output.console, name, [row for row in rows if row.question == name])
     good = show_tables(output.console, pieces)
-    show_calls(output.console, whole)
-    show_questions(output.console, asked)
+    show_calls(output.console, "whole calls, compared with the work inside", whole)
+    show_calls(output.console, "questions as processes, compared with plain scripts", asked)
     if baselines and not is_checkout():
         output.console.print(f"\n{MISSING}")
     if cases:
@@ -129,94 +121,80 @@ def command(
     return FAILED if changes or not good or any(call.ratio > call.bar for call in (*whole, *asked)) else DONE
 
 
-def show(console: "Console", name: str, rows: "list[SceneTiming]") -> None:
+def show(console: "Console", name: str, rows: "list[MethodResult]") -> None:
     """Prints a scene's rows, with ratios to the kernel's time and marks on the Pareto front, and two diagrams."""
     from verification.measure.extremes.orbits import RADII, SCENES
-    from verification.measure.work.bench import frontier
-    from verification.measure.work.row import diagram, duration
+    from verification.measure.work.row import diagram, duration, front
 
-    front, reference = frontier(rows), rows[0].seconds_per_bounce
+    best = front(row for row in rows if row.setting == rows[0].setting)
+    on = {i for i, row in enumerate(rows) if row in best}
     shape = ", ".join(f"{key} = {value}" for key, value in SCENES.get(name, {"r(theta)": RADII.get(name)}).items())
     console.print(f"\n{name} {shape}".rstrip())
-    console.print(HEAD)
-    for i, row in enumerate(rows):
-        letter, mark = chr(ord("a") + i), "*" if i in front else " "
-        error = "-" if row.error is None else f"{row.error:.3g}"
-        way, ratio = f"{row.arithmetic} {row.kernel}", row.seconds_per_bounce / reference
-        console.print(f"{mark} {letter}  {way:<38}{duration(row.seconds_per_bounce):>13}{ratio:>10.3g}   {error}")
+    lines = [
+        (
+            f"{'*' if i in on else ' '} {chr(ord('a') + i)}",
+            f"{row.arithmetic} {row.method}",
+            duration(row.seconds),
+            f"{row.seconds / rows[0].seconds:.3g}",
+            "-" if row.error is None else f"{row.error:.3g}",
+        )
+        for i, row in enumerate(rows)
+    ]
+    listed(console, ("", "way", "time a bounce", "ratio", "error / 2**-52"), lines)
     for title, kept in (("every arithmetic", rows), ("float64 alone", [r for r in rows if r.arithmetic == "float64"])):
         console.print(f"  {title}: error of one bounce (upwards) against its time")
-        console.print(diagram([(row.seconds_per_bounce, row.error) for row in kept], front))
+        console.print(diagram([(row.seconds, row.error) for row in kept], on))
 
 
-def show_ratios(console: "Console", rows: "list[SceneTiming]") -> None:
-    """Prints the times of tables that are not in the paper, as multiples of the egg's times in the same run."""
-    from verification.measure.extremes.orbits import RADII
-
-    times = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}
-    own = [name for name in RADII if (name, "llvm") in times]
-    if not own or ("egg", "llvm") not in times:
-        return
-    console.print(f"\n{'times the egg':<20}{'bounces':>10}{'exponents':>12}{'scalar numba':>15}")
-    for name in own:
-        ratios = [
-            times[name, kernel] / times["egg", base] if (name, kernel) in times else None
-            for kernel, base in (("llvm",) * 2, ("llvm, exponents",) * 2, ("numba, one particle at a time", "llvm"))
-        ]
-        shown = [f"{ratio:.2f}" if ratio else "-" for ratio in ratios]
-        console.print(f"{name:<20}{shown[0]:>10}{shown[1]:>12}{shown[2]:>15}")
+def listed(console: "Console", names: Sequence[str], lines: Sequence[Sequence[str]]) -> None:
+    """Prints a table."""
+    for line in table(names, lines):
+        console.print(line)
 
 
-def show_tables(console: "Console", rows: "Sequence[SceneTiming]") -> bool:
+def show_tables(console: "Console", rows: "Sequence[MethodResult]") -> bool:
     """Prints times of many tables as multiples of the egg's or the square's; False if a ratio exceeds its limit."""
     from verification.measure.work.bench import SCALAR
     from verification.measure.work.calls import BARS, KERNEL
     from verification.measure.work.row import duration
 
-    times, good = {(row.scene, row.kernel): row.seconds_per_bounce for row in rows}, True
+    times, good, lines = {(row.question, row.method): row.seconds for row in rows}, True, []
     names = [name for name, kernel in times if kernel == KERNEL]
-    if names:
-        console.print(f"\n{TABLES}   at lam = 0.999999")
     for name in names:
         against, bar = BARS[name]
         spent, scalar = times[name, KERNEL], times.get((name, SCALAR))
         ratio = spent / times[against, KERNEL]
         over = bar is not None and ratio > bar
         good = good and not over
-        limit = f"{'-' if bar is None else f'{bar:g}':>7}{' *' if over else '  '} of the {against:<8}"
-        time = f"{duration(spent):>13}"
-        beside = f"{duration(scalar):>14}{scalar / spent:>8.1f}" if scalar else f"{'-':>14}{'-':>8}"
-        console.print(f"{name:<20}{ratio:>8.2f}{limit}{time}{beside}")
-    if names and (names[0], SCALAR) not in times:
-        console.print("scalar numba was not measured: it needs numba, and a checkout or the source distribution")
+        limit = f"{'-' if bar is None else f'{bar:g}'}{' *' if over else ''}"
+        beside = (duration(scalar), f"{scalar / spent:.1f}") if scalar else ("-", "-")
+        lines.append((name, f"{ratio:.2f}", limit, f"of the {against}", duration(spent), *beside))
+    if names:
+        console.print("\ntables at lam = 0.999999; * marks ratios above the bar")
+        listed(console, ("table", "ratio", "bar", "", "time a bounce", "scalar numba", "times"), lines)
+        if (names[0], SCALAR) not in times:
+            console.print("scalar numba was not measured: it needs numba, and a checkout or the source distribution")
     return good
 
 
-def show_calls(console: "Console", calls: "Sequence[Call]") -> None:
+def show_calls(console: "Console", title: str, calls: "Sequence[Call]") -> None:
     """Prints the times of whole calls with the limits of their ratios, and marks those that exceed them."""
     from verification.measure.work.row import duration
 
-    if calls:
-        console.print(f"\nwhole calls, compared with the work inside; * marks ratios above the bar\n{CALLS}")
-    for call in calls:
-        times = f"{duration(call.seconds):>12}{call.ratio:>8.3g}{call.bar:>7.3g}"
-        console.print(f"{call.scene:<10}{call.call:<36}{times}{' *' if call.ratio > call.bar else '  '} {call.against}")
-
-
-def show_questions(console: "Console", asked: "Sequence[Call]") -> None:
-    """Prints the times of whole commands, from process start to last line, and marks those that exceed their limit."""
-    from verification.measure.work.row import duration
-
-    if asked:
-        console.print(
-            "\nquestions as processes, compared with plain scripts; * marks ratios above the bar"
-            f"\n{'time':>12}{'ratio':>8}{'bar':>7}"
+    if not calls:
+        return
+    console.print(f"\n{title}; * marks ratios above the bar")
+    lines = [
+        (
+            duration(one.seconds),
+            f"{one.ratio:.3g}",
+            f"{one.bar:.3g}{' *' if one.ratio > one.bar else ''}",
+            f"{one.scene} {one.call.splitlines()[-1]}".strip(),
+            one.against,
         )
-    for one in asked:
-        times = f"{duration(one.seconds):>12}{one.ratio:>8.3g}{one.bar:>7.3g}"
-        console.print(
-            f"{times}{' *' if one.ratio > one.bar else '  '} {one.call.splitlines()[-1]}   beside {one.against}"
-        )
+        for one in calls
+    ]
+    listed(console, ("time", "ratio", "bar", "call", "against"), lines)
 
 
 def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
@@ -225,13 +203,19 @@ def show_cases(console: "Console", cases: "Sequence[Accuracy]") -> None:
         "\naccuracy of one bounce in float64, largest errors in units of 2**-52; * marks positions above 4, "
         "directions above 8"
     )
-    console.print(CASES)
-    for case in cases:
-        beyond = case.position > 4 or case.direction > 8
-        label = f"{case.scene}, {case.case}"
-        errors = f"{case.position:>10.3g}{case.direction:>11.3g}"
-        shares = f"{case.position_by_condition:>10.2g}{case.direction_by_condition:>9.2g}"
-        console.print(f"{label:<40}{case.particles:>6}{errors}{shares}{' *' if beyond else ''}".rstrip())
+    lines = [
+        (
+            f"{case.scene}, {case.case}",
+            str(case.particles),
+            f"{case.position:.3g}",
+            f"{case.direction:.3g}",
+            f"{case.position_by_condition:.2g}",
+            f"{case.direction_by_condition:.2g}",
+            "*" if case.position > 4 or case.direction > 8 else "",
+        )
+        for case in cases
+    ]
+    listed(console, ("case", "particles", "position", "direction", "/condition", "/condition", ""), lines)
 
 
 ENDINGS = (".png", ".pdf", ".svg")

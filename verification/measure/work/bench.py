@@ -1,8 +1,8 @@
-"""The measurements of `pinball bench`: error and time of every arithmetic and every kernel, with baselines.
+"""The measurements of `pinball bench`: error and time of every arithmetic and every kernel, with a baseline.
 
-The baselines of the benchmark folder are naive NumPy + lambdify, scalar numba, and the paper's own algorithms in a
-first version. They are not part of the installed package, and need a checkout or the source distribution. Without them,
-or without numba, the benchmark runs with the package's own rows only, and prints a note.
+The baseline is one particle at a time in numba, in the benchmark folder. It is not part of the installed package, and
+needs a checkout or the source distribution. Without it, or without numba, the benchmark runs with the package's own
+rows only, and prints a note.
 """
 
 import importlib.util
@@ -10,7 +10,6 @@ import os
 import platform
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -31,42 +30,40 @@ from numeric.pinball.sampling import phase_starts
 from verification.arithmetic.balls import bits_of, working
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import ExactMap, errors
-from verification.measure.extremes.orbits import DIGITS, RADII, SCENES, scene
+from verification.measure.extremes.orbits import DIGITS, SCENES, scene
+from verification.measure.work.row import MethodResult, written
 
 Array = NDArray[np.float64]
-LAWS: dict[str, str | float] = {"slap": 0, "pinball": "19/20", "elastic": 1}
+PINBALL = "19/20"
+LAWS: dict[str, str | float] = {"slap": 0, "pinball": PINBALL, "elastic": 1}
 FORMULAS = ("-lam*eta*(1 - eta**2/8)", "-lam*eta - sin(2*eta)/50")  # two further laws: a polynomial, and one sine
-PARTICLES, RUNS = 4096, 5
+PARTICLES, BOUNCES, RUNS = 4096, 1000, 5
 WORTH_A_THREAD = 0.2  # seconds of work below which a second thread does not pay
 CHECKED = 24  # particles whose errors are measured
 FEW = 8  # particles in multiprecision
 MORE = 30  # extra digits of the reference
-SMALLEST = Decimal("1e-300")  # smallest error written as a float
 UNIT = "2**-52, largest of position and direction"
 
 
-@dataclass(frozen=True)
-class SceneTiming:
-    """One method for a bounce in one scene: its largest error over random particles, and its time per bounce.
+def timing(
+    scene: str, kernel: str, error: Decimal | None, seconds: float, runs: int, lam: Any = PINBALL, word: str = "float64"
+) -> MethodResult:
+    """One method for a bounce in one scene: its largest error in units of 2**-52, and its least time per bounce.
 
-    Errors are decimals, as they can be smaller than all floats. `lam` is not in the JSON, but part of `kernel` if
-    unusual.
+    The setting is the contraction; `word` names the arithmetic.
     """
+    return MethodResult(scene, kernel, word, f"lam = {lam}", error, None, seconds, (seconds, seconds), runs)
 
-    scene: str
-    arithmetic: str
-    kernel: str
-    error: Decimal | None
-    seconds_per_bounce: float
-    runs: int
-    lam: Any = LAWS["pinball"]
 
-    def as_data(self) -> dict[str, Any]:
-        """The row as JSON; an error outside the range of floats is a decimal string."""
-        small = self.error is not None and 0 < self.error < SMALLEST
-        error = None if self.error is None else str(self.error) if small else float(self.error)
-        names = ("scene", "arithmetic", "kernel", "seconds_per_bounce", "runs")
-        return {name: getattr(self, name) for name in names} | {"error": error, "error_unit": UNIT}
+def as_data(row: MethodResult) -> dict[str, Any]:
+    """A row as JSON; an error outside the range of floats is a decimal string."""
+    said = {"scene": row.question, "arithmetic": row.arithmetic, "kernel": row.method}
+    return said | {
+        "seconds_per_bounce": row.seconds,
+        "runs": row.runs,
+        "error": written(row.error),
+        "error_unit": UNIT,
+    }
 
 
 def machine_facts() -> dict[str, str]:
@@ -98,89 +95,68 @@ def best(action: Callable[[], object], runs: int = RUNS, clock: Callable[[], flo
     return max(min(times), 1e-9)  # for a clock that did not advance
 
 
-def kernel_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
-    """Timings of the LLVM kernels (plain, with exponents, with two threads), and of the same step on NumPy."""
-    for kernels, kernel, particles, bounces in ((True, "llvm", PARTICLES, 1000), (False, "numpy", PARTICLES, 10)):
-        map = PinballMap(name, lam=LAWS["pinball"], kernels=kernels, **_shape(name))
-        own = attracted(map, particles)
-        lam = np.full(particles, float(map.lam))
-        error = worst(map, own)
+def kernel_rows(name: str, runs: int = RUNS) -> Iterable[MethodResult]:
+    """Timings of the LLVM kernels, plain and with exponents; on the paper's tables also of other ways to run them.
 
-        def run(
-            question: KernelSpec,
-            tangent: tuple[Array, ...] = (),
-            threads: int = 1,
-            map: PinballMap = map,
-            own: list[Array] = own,
-            lam: Array = lam,
-            bounces: int = bounces,
-            clock: Callable[[], float] = time.process_time,
-        ) -> float:
-            def once() -> object:
-                return map.engine.run(question, own, lam, map.shape, bounces, tangent, threads)
-
-            once()
-            return best(once, runs, clock) / bounces / own[0].size
-
-        nought = np.zeros(particles)
-        alone = run(KernelSpec(map.law))
-        yield SceneTiming(name, "float64", kernel, error, alone, runs)
-        if kernels:
-            copies = 1 + int(WORTH_A_THREAD / (alone * particles * bounces))  # not more bounces, which would underflow
-            many = [np.tile(field, copies) for field in own]
-            tangent = tuple(starting(nought + 1, nought, nought + 1))
-            yield SceneTiming(
-                name, "float64", "llvm, exponents", error, run(KernelSpec(map.law, exponents=True), tangent), runs
-            )
-            both = run(KernelSpec(map.law), threads=2, own=many, lam=np.tile(lam, copies), clock=time.perf_counter)
-            yield SceneTiming(name, "float64", "llvm, 2 threads", error, both, runs)
-            recorded = run(KernelSpec(map.law, record=True), bounces=100)
-            yield SceneTiming(name, "float64", "llvm, whole orbits kept", error, recorded, runs)
-            yield SceneTiming(
-                name, "float64", "llvm, orbits as angles and points", None, _told(map, own, 100, runs), runs
-            )
-    for law in ("slap", "elastic"):
-        map = PinballMap(name, lam=LAWS[law], **_shape(name))
-        own, lam = attracted(map, PARTICLES, 1), np.full(PARTICLES, float(map.lam))
-        alone = run(KernelSpec(law), map=map, own=own, lam=lam, bounces=1000)
-        yield SceneTiming(name, "float64", f"llvm, lam = {LAWS[law]}", worst(map, own), alone, runs, LAWS[law])
-    for formula in FORMULAS if name == "egg" else ():
-        map = PinballMap(name, lam=LAWS["pinball"], law=formula, **_shape(name))
-        own, lam = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam))
-        alone = run(KernelSpec(map.law), map=map, own=own, lam=lam, bounces=1000)
-        yield SceneTiming(name, "float64", f"llvm, phi = {formula}", worst(map, own), alone, runs)
-
-
-def own_rows(name: str, runs: int = RUNS) -> Iterable[SceneTiming]:
-    """Timings of the kernels, with and without exponents, on a table that is not in the paper."""
+    These are two threads, whole orbits, the same step on NumPy, and other contractions and laws.
+    """
     map = scene(name)
-    own, lam, nought = attracted(map, PARTICLES), np.full(PARTICLES, float(map.lam)), np.zeros(PARTICLES)
+    own, nought = attracted(map, PARTICLES), np.zeros(PARTICLES)
     error = worst(map, own)
-    for kernel, spec in (("llvm", KernelSpec(map.law)), ("llvm, exponents", KernelSpec(map.law, exponents=True))):
-        tangent = tuple(starting(nought + 1, nought, nought + 1)) if spec.exponents else ()
-
-        def once(spec: KernelSpec = spec, tangent: tuple[Array, ...] = tangent) -> object:
-            return map.engine.run(spec, own, lam, map.shape, 300, tangent, 1)
-
-        once()
-        yield SceneTiming(name, "float64", kernel, error, best(once, runs) / 300 / PARTICLES, runs)
-
-
-def _told(map: PinballMap, own: list[Array], bounces: int, runs: int) -> float:
-    """Seconds per bounce of `PinballMap.orbit`, which returns all bounces and not only the last."""
+    tangent = tuple(starting(nought + 1, nought, nought + 1))
+    alone = running(map, own, runs)
+    yield timing(name, "llvm", error, alone, runs)
+    yield timing(name, "llvm, exponents", error, running(map, own, runs, tangent=tangent), runs)
+    if name not in SCENES:
+        return
+    copies = 1 + int(WORTH_A_THREAD / (alone * PARTICLES * BOUNCES))  # not more bounces, which would underflow
+    both = running(map, [np.tile(field, copies) for field in own], runs, threads=2)
+    yield timing(name, "llvm, 2 threads", error, both, runs)
+    yield timing(name, "llvm, whole orbits kept", error, running(map, own, runs, 100, record=True), runs)
     component, theta = map.states.place(own)
     phi = map.states.exit(component, theta, own, map.law)
 
+    def orbits() -> object:
+        return map.orbit(theta, phi, 100, component, threads=1)
+
+    orbits()
+    yield timing(name, "llvm, orbits as angles and points", None, best(orbits, runs) / 100 / PARTICLES, runs)
+    others: list[tuple[str, PinballMap, int, int]] = [
+        ("numpy", PinballMap(map.scene, kernels=False), 100, 10),
+        *((f"llvm, lam = {LAWS[law]}", scene(name, LAWS[law]), 1, BOUNCES) for law in ("slap", "elastic")),
+    ]
+    for formula in FORMULAS if name == "egg" else ():
+        other = PinballMap(name, lam=PINBALL, law=formula, **SCENES[name])
+        others.append((f"llvm, phi = {formula}", other, 100, BOUNCES))
+    for kernel, other, transient, bounces in others:
+        own = attracted(other, PARTICLES, transient)
+        seconds = running(other, own, runs, bounces)
+        yield timing(name, kernel, worst(other, own), seconds, runs, other.scene.lam)
+
+
+def running(
+    map: PinballMap,
+    own: list[Array],
+    runs: int,
+    bounces: int = BOUNCES,
+    tangent: tuple[Array, ...] = (),
+    threads: int = 1,
+    record: bool = False,
+) -> float:
+    """Seconds per bounce of a run of the kernel; of several threads it is the time on the wall."""
+    lam, spec = np.full(own[0].size, float(map.lam)), KernelSpec(map.law, record=record, exponents=bool(tangent))
+
     def once() -> object:
-        return map.orbit(theta, phi, bounces, component, threads=1)
+        return map.engine.run(spec, own, lam, map.shape, bounces, tangent, threads)
 
     once()
-    return best(once, runs) / bounces / theta.size
+    clock = time.process_time if threads == 1 else time.perf_counter
+    return best(once, runs, clock) / bounces / own[0].size
 
 
-def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[SceneTiming]:
+def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iterable[MethodResult]:
     """Timings and errors of mpmath and balls with given digits; errors are against an enclosure with 30 digits more."""
-    map, lam = PinballMap(name, lam=LAWS["pinball"], **_shape(name)), Fraction(str(LAWS["pinball"]))
+    map, lam = scene(name), Fraction(PINBALL)
     component, theta, phi, *_ = phase_starts(map, FEW, seed=3)
     particles = [(float(t), float(p), int(c)) for c, t, p in zip(component, theta, phi, strict=True)]
     for wanted in digits:
@@ -195,7 +171,8 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
             def all_of_them(way: Any = way, starts: Any = starts) -> object:
                 return [way.bounce(start) for start in starts]
 
-            yield SceneTiming(name, arithmetic, f"{wanted} digits", error, best(all_of_them, runs) / FEW, runs)
+            seconds = best(all_of_them, runs) / FEW
+            yield timing(name, f"{wanted} digits", error, seconds, runs, word=arithmetic)
 
 
 def distance(found: Any, truth: Any, digits: int) -> Decimal:
@@ -226,58 +203,24 @@ def worst(map: PinballMap, own: list[Array]) -> Decimal:
     return Decimal(f"{max(position.max(), direction.max()):.3g}")
 
 
-def frontier(rows: list[SceneTiming]) -> set[int]:
-    """Indices of the rows on the Pareto front: no row at the same contraction has both less error and less time.
-
-    >>> row = lambda error, seconds: SceneTiming("s", "a", "k", Decimal(error), seconds, 1)
-    >>> sorted(frontier([row(1, 1.0), row(2, 2.0), row(0, 3.0)]))
-    [0, 2]
-    """
-    front = set()
-    for i, row in enumerate(rows):
-        if (
-            row.error is not None
-            and row.lam == LAWS["pinball"]
-            and not any(
-                other.error is not None
-                and other.lam == row.lam
-                and other.error <= row.error
-                and other.seconds_per_bounce <= row.seconds_per_bounce
-                and (other.error, other.seconds_per_bounce) != (row.error, row.seconds_per_bounce)
-                for other in rows
-            )
-        ):
-            front.add(i)
-    return front
-
-
 def operation_table() -> str:
     """The vector instructions in one bounce, for every scene and type of result, as a table in Markdown."""
     lines = ["| scene | law | question | fma | add | mul | div | sqrt | compare | select |", "|" + "---|" * 10]
     for name in SCENES:
         for law, lam in LAWS.items():
-            map = PinballMap(name, lam=lam, **_shape(name))
+            map = scene(name, lam)
             for question in (KernelSpec(law), KernelSpec(law, record=True), KernelSpec(law, exponents=True)):
                 counts = operations(kernel_text(map.family, map.engine.names, question))
                 asked = question.text.partition("-")[2] or "end"
-                lines.append(f"| {name} | {law} | {asked} | " + " | ".join(map_str(counts.values())) + " |")
+                lines.append(
+                    f"| {name} | {law} | {asked} | " + " | ".join(f"{count}" for count in counts.values()) + " |"
+                )
     return "\n".join(lines) + "\n"
-
-
-def map_str(numbers: Iterable[int]) -> list[str]:
-    """The numbers as text."""
-    return [str(number) for number in numbers]
-
-
-def _shape(name: str) -> dict[str, Any]:
-    return dict(SCENES[name])
 
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "benchmarks"
 MISSING = "The baselines need a checkout, or the source distribution: benchmarks/ is no part of the installed package."
-MEASURED = 24  # particles whose errors are measured
-LAM = 0.95
 SCALAR = "numba, one particle at a time"
 
 
@@ -322,59 +265,24 @@ def scalar_way(scalar: ModuleType, name: str, map: PinballMap) -> Callable[..., 
     return run
 
 
-def baseline_rows(name: str, runs: int) -> Iterable[SceneTiming]:
-    """Timings of the three baselines on a scene; only of the first for a table that is not in the paper."""
-    rng = np.random.default_rng(2)
-    shape: dict[str, Any] = dict(SCENES.get(name, {}))
-    map = scene(name)
-    low, high = map.states.ends[0]
-    theta, phi = rng.uniform(low * 0.99, high * 0.99, 2048), rng.uniform(-1.4, 1.4, 2048)
-    scalar, nought = module("scalar_numba"), np.zeros(2048, dtype=np.int64)
-    if scalar is not None:
-        compiled = scalar_way(scalar, name, map)
-
-        def looped() -> None:
-            compiled(theta[:512], phi[:512], nought[:512], 300)
-
-        _, at, out = compiled(theta[:MEASURED], phi[:MEASURED], nought[:MEASURED], 1)
-        error = _error(map, theta, phi, at, out)
-        yield SceneTiming(name, "float64", SCALAR, error, best(looped, runs) / 512 / 300, runs)
-    if name in RADII:
+def baseline_rows(name: str, runs: int) -> Iterable[MethodResult]:
+    """The timing of scalar numba on a scene; none without numba."""
+    scalar, map = module("scalar_numba"), scene(name)
+    if scalar is None:
         return
-    arrays = module("arrays_lambdify")
-    naive = arrays.baseline(name, shape) if arrays is not None else None
-    if naive is not None:
-        with np.errstate(all="ignore"):
-            error = _error(map, theta, phi, *naive.bounce(theta[:MEASURED], phi[:MEASURED], LAM))
-
-            def lambdified() -> None:
-                at, out = theta, phi
-                for _ in range(10):
-                    at, out = naive.bounce(at, out, LAM)
-
-            yield SceneTiming(
-                name, "float64", "numpy + lambdify", error, best(lambdified, runs) / theta.size / 10, runs
-            )
-    ways = module("paper_ways")
-    if ways is not None:
-        way = getattr(ways, name)
-
-        def papers() -> Any:
-            return [
-                way(0, a, b, LAM, *map.shape)
-                for a, b in zip(theta[:MEASURED].tolist(), phi[:MEASURED].tolist(), strict=True)
-            ]
-
-        _, at, out = (np.array(column, dtype=float) for column in zip(*papers(), strict=True))
-        error = _error(map, theta, phi, at, out)
-        yield SceneTiming(name, "float64", "the paper's way, in Python", error, best(papers, runs) / MEASURED, runs)
+    rng, (low, high), count = np.random.default_rng(2), map.states.ends[0], 512
+    theta, phi = rng.uniform(low * 0.99, high * 0.99, count), rng.uniform(-1.4, 1.4, count)
+    compiled, nought = scalar_way(scalar, name, map), np.zeros(count, dtype=np.int64)
+    _, at, out = compiled(theta[:CHECKED], phi[:CHECKED], nought[:CHECKED], 1)
+    seconds = best(lambda: compiled(theta, phi, nought, 300), runs) / count / 300
+    yield timing(name, SCALAR, _error(map, theta, phi, at, out), seconds, runs)
 
 
 def _error(map: PinballMap, theta: Any, phi: Any, at: Any, out: Any) -> Decimal:
     """The largest error of parameter or exit angle over the first few particles, in units of 2**-52."""
     exact = ExactMap(map, DIGITS)
     mp, worst = exact.context, 0.0
-    for i in range(MEASURED):
+    for i in range(CHECKED):
         truth = exact.bounce(exact.start(theta[i], phi[i]))
         gap = mp.mpf(float(at[i])) - truth.theta
         if truth.component == 0:

@@ -19,15 +19,15 @@ from verification.measure.extremes.by_hand import discs, outline, spikes
 from verification.measure.extremes.orbits import SCENES, scene
 from verification.measure.work.bench import (
     FORMULAS,
-    LAWS,
     PARTICLES,
     SCALAR,
-    SceneTiming,
     attracted,
     best,
     module,
     scalar_way,
+    timing,
 )
+from verification.measure.work.row import MethodResult
 
 LOOP, LONG, MANY, WIDE = 100, 100_000, 100_000, 1_000  # calls in a loop, bounces, particles, both
 REST = 512, 1_000, 100_000  # particles at rest: how many, bounces of a short run, of a long one
@@ -100,14 +100,14 @@ def call_rows(name: str, runs: int) -> Iterable[Call]:
 
 def single_rows(name: str, runs: int) -> Iterable[Call]:
     """Timed calls for one particle, in microseconds, and for its orbit, relative to the kernel."""
-    map = made(name)
+    map = scene(name)
     starts = phase_starts(map, 1, seed=1)
     one = float(starts.theta[0]), float(starts.phi[0]), int(starts.component[0])
     for call, action, bar in (("step", map.step, 8.0), ("derivative", map.derivative, 10.0)):
         action(*one)
         seconds = best(lambda action=action: [action(*one) for _ in range(LOOP)], 20 * runs) / LOOP  # type: ignore[misc]
         yield Call(name, f"{call} of one, in a Python loop", seconds, "a microsecond", 1e-6, bar)
-    yield Call(name, "PinballMap, made again", best(lambda: made(name), 5 * runs), "a millisecond", 1e-3, 1.0)
+    yield Call(name, "PinballMap, made again", best(lambda: scene(name), 5 * runs), "a millisecond", 1e-3, 1.0)
     if name == "circle":  # a bounce is two sums and a product: angles and points cost more
         return
     own = map.states.enter(starts.component, starts.theta, starts.phi, map.law)
@@ -126,7 +126,7 @@ def single_rows(name: str, runs: int) -> Iterable[Call]:
 
 def batch_rows(name: str, runs: int) -> Iterable[Call]:
     """Timed calls for many particles, relative to the kernel; on the circle only `step`, as its bounce is so cheap."""
-    map = made(name)
+    map = scene(name)
     starts = phase_starts(map, MANY, seed=1)
     at, phi, where = starts.theta, starts.phi, starts.component
     few = at[:WIDE], phi[:WIDE], where[:WIDE]
@@ -156,11 +156,6 @@ def batch_rows(name: str, runs: int) -> Iterable[Call]:
             continue
         against = "the kernel with exponents" if exponents else "the kernel"
         yield Call(name, call, seconds / count, against, reference / WIDE**2, bar)
-
-
-def made(name: str) -> PinballMap:
-    """The map of one of the paper's tables at the contraction of the benchmark."""
-    return PinballMap(name, lam=LAWS["pinball"], **dict(SCENES[name]))
 
 
 def pieces_at_rest(runs: int) -> Iterable[Call]:
@@ -211,7 +206,7 @@ def compared(name: str, lam: Any = WANDERING) -> PinballMap:
     return PinballMap(own[name](), lam=lam) if name in own else scene(name, lam)
 
 
-def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[SceneTiming]:
+def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(BARS)) -> Iterable[MethodResult]:
     """Timings of a bounce on every table in `BARS`, by a kernel and in scalar numba alternately.
 
     All are at one contraction close to 1; at a smaller one, particles settle between parallel walls and miss all
@@ -230,4 +225,4 @@ def table_rows(runs: int, baselines: bool = True, names: Iterable[str] = tuple(B
         for way, once in ways.items():
             times[way].append(best(once, 1) / IN_TURN / (PARTICLES if way[1] == KERNEL else SCALAR_PARTICLES))
     for (name, kernel), spent in times.items():
-        yield SceneTiming(name, "float64", kernel, None, min(spent[1:]), runs, WANDERING)
+        yield timing(name, kernel, None, min(spent[1:]), runs, WANDERING)

@@ -45,7 +45,17 @@ def bounce(bench):
         label = ", ".join([scene, *(f"{k} = {v}" for k, v in shape.items())])
         more = f"{own[f'{KERNEL}, exponents'] / own[KERNEL] - 1:+.0%}"
         kept = duration(own[f"{KERNEL}, orbits as angles and points"])
-        lines.append([label, pair(usual), f"{pair(hard)}: {hard['case']}", duration(own[KERNEL]), more, kept, times(own[RIVAL] / own[KERNEL])])
+        lines.append(
+            [
+                label,
+                pair(usual),
+                f"{pair(hard)}: {hard['case']}",
+                duration(own[KERNEL]),
+                more,
+                kept,
+                times(own[RIVAL] / own[KERNEL]),
+            ]
+        )
     head = ["table", "random", "hardest case", "time", "exponents", "kept as angles and points", "numba, times"]
     return table(head, lines)
 

@@ -5,6 +5,7 @@ compiled map with `step` and `orbit`, so that the method is compared and not the
 """
 
 import math
+from functools import partial
 
 import mpmath
 import numpy as np
@@ -196,18 +197,16 @@ def fold_seen(map_at, start, period, low, high, xtol):
     return (low + high) / 2
 
 
+def corner_angle(m, here, there):
+    """The angle on the cardioid's arc from the inward normal at `here` to the chord to `there`, in `math` or mpmath."""
+    (x0, y0), (x1, y1) = (((1 + m.cos(a)) * m.cos(a), (1 + m.cos(a)) * m.sin(a)) for a in (here, there))
+    turned = 3 * here / 2 + m.pi - m.atan2(y1 - y0, x1 - x0)
+    return turned - 2 * m.pi * m.floor(turned / (2 * m.pi) + 0.5)
+
+
 def corner_by_brentq(xtol):
     """The value `lambda*`: a particle from the corner is followed for two bounces on the cardioid's arc."""
-    join = 2 * math.pi / 3
-
-    def point(at):
-        r = 1 + math.cos(at)
-        return r * math.cos(at), r * math.sin(at)
-
-    def angle(here, there):
-        (x0, y0), (x1, y1) = point(here), point(there)
-        direction = math.atan2(y1 - y0, x1 - x0)
-        return math.remainder(1.5 * here + math.pi - direction, 2 * math.pi)
+    join, angle = 2 * math.pi / 3, partial(corner_angle, math)
 
     def landing(lam):
         return brentq(lambda at: angle(join, at) + lam * angle(join, -at), 0.01, 1.0, xtol=xtol)
@@ -223,15 +222,7 @@ def corner_by_findroot(digits):
     """The same two equations by `mpmath.findroot`, whose Jacobian is made of differences."""
     context = mpmath.MPContext()
     context.dps = digits + 5
-    join = 2 * context.pi / 3
-
-    def angle(here, there):
-        (x0, y0), (x1, y1) = (
-            ((1 + context.cos(a)) * context.cos(a), (1 + context.cos(a)) * context.sin(a)) for a in (here, there)
-        )
-        direction = context.atan2(y1 - y0, x1 - x0)
-        turned = 3 * here / 2 + context.pi - direction
-        return turned - 2 * context.pi * context.nint(turned / (2 * context.pi))
+    join, angle = 2 * context.pi / 3, partial(corner_angle, context)
 
     def equations(at, lam):
         return angle(join, at) + lam * angle(join, -at), angle(at, -join) + lam * angle(at, join)
@@ -300,12 +291,6 @@ def parameter_by_sums(speed, s, points):
 
 # ---- the slap map's expansion
 
-# the polynomial in q whose zero it is where the expansion is least, from SymPy's factor_list
-CRITICAL = [12049358475, -289530323390, 2722654500489, -13247710165844, 38562628213529, -72389889488070]
-CRITICAL += [89881598564499, -70682474396912, 25774186427262, 12535834806180, -25042286267894, 18421908768648]
-CRITICAL += [-8219806607806, 2241994345444, -190449013290, -193813670640, 162744480487, -83841956070]
-CRITICAL += [30522599485, -7514085460, 1146892725, -89067550, 1867975]
-
 
 def expansion_on_grid(slap, points):
     """The least `|(T_0^2)'|` over a grid of launching points."""
@@ -322,17 +307,4 @@ def expansion_by_search(slap, xtol):
         there = slap(np.array([theta]))
         return abs(float((there.slope * slap(there.theta[1]).slope)[0]))
 
-    return float(minimize_scalar(expansion, bracket=BRACKET, method="brent", options={"xtol": xtol}).fun)
-
-
-BRACKET = (1.4, 1.53, 1.65)
-
-
-def critical_by_roots():
-    """The zero of the polynomial next to `NEAR`, by `numpy.roots`."""
-    roots = np.roots(CRITICAL)
-    real = roots[np.abs(roots.imag) < 1e-3].real
-    return float(real[np.argmin(np.abs(real - NEAR))])
-
-
-NEAR = -0.4174
+    return float(minimize_scalar(expansion, bracket=(1.4, 1.53, 1.65), method="brent", options={"xtol": xtol}).fun)

@@ -23,6 +23,8 @@ from symbolic.tables.definition import exact
 from symbolic.tables.scene import Scene
 from verification.arithmetic.balls import decimal, working
 from verification.named.attractors import Member, certificate, exponents, joined
+from verification.plots import grids, results
+from verification.plots.sheet import styled
 from verification.reports import pictures
 from verification.reports.asked import DRAWN, Asked, Parts
 from verification.reports.blocks import Block, Effort, Known, Listing, Paragraph, Picture, ShownNumber, sampled, solved
@@ -51,18 +53,13 @@ def slap(asked: Asked, parts: Parts) -> Found:
     share = (np.tile(np.arange(each), len(ends)) + 0.5) / each
     theta = ends[component, 0] + (ends[component, 1] - ends[component, 0]) * share
     found = map.slap(theta, 1, component)
-    half = map.arclength.perimeter / 2
-    s, image = (
-        wrapped(map.arclength.s(at, on), half) for at, on in ((theta, component), (found.theta[1], found.component[1]))
-    )
-    order = np.argsort(s)
-    good = found.code[1] == 0
-    slope = np.where(good, found.slope, np.nan)
-    pictures.slap(parts, "slap", s[order], np.where(good, image, np.nan)[order], slope[order], half)
-    steep = float(np.mean(np.abs(slope[good]) > 1)) if np.any(good) else float("nan")
+    with styled():
+        pictures.saved(parts, "slap", results.slap(map, component, theta, found))
+    slope = found.slope[found.code[1] == 0]
+    steep = float(np.mean(np.abs(slope) > 1)) if slope.size else float("nan")
     caption = (
         "The slap map, the limit of contraction 0, and its derivative, both over arc length. In the grey band the map "
-        f"contracts; it expands at {steep:.0%} of {good.sum()} points of an even grid in the parameter."
+        f"contracts; it expands at {steep:.0%} of {slope.size} points of an even grid in the parameter."
     )
     alt = "Graphs of the slap map and of its derivative"
     return [Picture("slap", caption, alt, asked.command("slap", DRAWN))], [], {}
@@ -398,12 +395,8 @@ def _basins(asked: Asked, parts: Parts, text: str, attractors: list[Attractor], 
     columns, rows = 120 * 2**level, 60 * 2**level
     scene = asked.scene.at(lam=text)
     sweep = basins(text_of(scene), float(scene.lam), columns, rows, None, 0, 500, asked.seed, True, tuple(attractors))
-    label = run(sweep, scheduler=parts.scheduler).label.values
-    half = PinballMap(scene).arclength.perimeter / 2
-    order = sorted(range(len(attractors)), key=lambda i: (attractors[i].family, i))
-    colours = [order.index(i) for i in range(len(attractors))]
-    names = [f"{one.name}, {np.mean(label == i):.0%}" for i, one in enumerate(attractors)]
-    pictures.basins(parts, name, label, colours, names, half, rf"$\lambda = {text}$")
+    with styled():
+        pictures.saved(parts, name, grids.basins(run(sweep, scheduler=parts.scheduler)))
     caption = (
         f"Basins at lambda = {text}: the attractor that each of {columns} x {rows} starts reaches, a colour for "
         f"each of {len(attractors)}, with shares of the cells. Sampled at the centres of the cells."

@@ -4,7 +4,6 @@ The page embeds its pictures and certificates, and has formulas as MathML; the a
 files.
 """
 
-import base64
 import json
 import re
 from collections.abc import Iterable, Sequence
@@ -17,6 +16,7 @@ from markupsafe import Markup
 
 from verification.paper.report.findings import escaped
 from verification.paper.report.mathml import font_style, formula, formulas, mathml, remark
+from verification.paper.report.page import address
 from verification.reports.asked import FILE, Parts
 from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Paragraph, Picture, ShownNumber
 from verification.reports.report import Report
@@ -92,11 +92,6 @@ def again(report: Report) -> list[str]:
     looked = [*at, f"--period {asked.period}", f"--digits {asked.digits}"]
     both = [asked.both] if asked.second else []
     return [asked.varied, *both, *looked, f"--seed {asked.seed}", "--out FILE.html"]
-
-
-def address(kind: str, content: bytes) -> str:
-    """A data URL that contains the content."""
-    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def tag(known: Known) -> Markup:

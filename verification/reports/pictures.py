@@ -51,32 +51,6 @@ def table(parts: Parts, name: str, map: PinballMap, start: float) -> None:
         saved(parts, name, drawn)
 
 
-def slap(parts: Parts, name: str, s: Array, image: Array, slope: Array, half: float) -> None:
-    """Draws the slap map and its derivative over arc length."""
-    with styled():
-        drawn = figure(7.0, 2.9)
-        left, right = drawn.subplots(1, 2)
-        left.plot([-half, half], [-half, half], **FAINT)
-        left.plot(s, _broken(image, half), color=INK)
-        left.set_ylabel("$T_0(s)$")
-        left.set_ylim(-half, half)
-        right.axhspan(-1, 1, color="0.85", lw=0)
-        right.plot(s, slope, color=INK)
-        right.set_ylabel("$T_0'(s)$")
-        bound = float(np.nanquantile(np.abs(slope), 0.98)) * 1.3
-        right.set_ylim(-max(bound, 1.5), max(bound, 1.5))
-        for axes in (left, right):
-            axes.set_xlabel("$s$")
-            axes.set_xlim(-half, half)
-        saved(parts, name, drawn)
-
-
-def _broken(values: Array, half: float) -> Array:
-    """The values, with nan where the graph jumps between the ends of the arc-length range."""
-    jumps = np.abs(np.diff(values, append=values[-1:])) > half
-    return np.where(jumps, np.nan, values)
-
-
 def portraits(parts: Parts, name: str, clouds: Sequence[tuple[str, NDArray[Any]]], half: float) -> None:
     """Draws phase portraits as densities, side by side."""
     with styled():
@@ -288,24 +262,3 @@ def _apart(points: Array, taken: Sequence[Array]) -> Array:
     places = points[6:-6]
     gaps = [np.min([np.hypot(*(place - other)) for other in taken], initial=np.inf) for place in places]
     return np.asarray(places[int(np.argmax(gaps)) if taken else len(places) // 2])
-
-
-def basins(
-    parts: Parts, name: str, label: NDArray[Any], colours: Sequence[int], names: Sequence[str], half: float, title: str
-) -> None:
-    """Draws the attractor that each start reaches: a colour for each attractor, blank for none, and a legend."""
-    from matplotlib.colors import to_rgba
-    from matplotlib.patches import Patch
-
-    paint = np.array([to_rgba(PALETTE[i % len(PALETTE)]) for i in colours] + [(0.0, 0.0, 0.0, 0.0)])
-    with styled():
-        drawn = figure(7.0, 2.6)
-        axes = drawn.add_subplot()
-        axes.imshow(paint[label], origin="lower", extent=(-half, half, -1, 1), aspect="auto", interpolation="nearest")
-        axes.set_title(title, loc="left")
-        axes.set_xlabel("$s$")
-        axes.set_ylabel(AXES["sin_phi"])
-        order = sorted(range(len(colours)), key=lambda i: colours[i])[: len(PALETTE)]
-        handles = [Patch(color=paint[i], label=names[i]) for i in order]
-        drawn.legend(handles=handles, loc="outside right upper", fontsize=6.5)
-        saved(parts, name, drawn)

@@ -150,7 +150,10 @@ TABLE = Path(__file__).with_name("measured.json")
 
 @dataclass(frozen=True)
 class MeasuredWay:
-    """A method that kept its promise: its arithmetic and setting, the digits promised, the seconds for one answer."""
+    """A method that kept its promise: its arithmetic and setting, the digits promised, the seconds for one answer.
+
+    Of a method that was chosen, `why` is the reason.
+    """
 
     method: str
     arithmetic: str
@@ -158,18 +161,7 @@ class MeasuredWay:
     digits: int
     seconds: float
     proved: bool
-
-
-@dataclass(frozen=True)
-class ArithmeticChoice:
-    """The method chosen for a number of digits, and the reason for the choice."""
-
-    arithmetic: str
-    method: str
-    setting: str
-    digits: int
-    seconds: float
-    why: str
+    why: str = ""
 
 
 def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
@@ -188,9 +180,9 @@ def written(rows: Iterable[MethodResult], machine: Mapping[str, str]) -> str:
     """The methods in some rows that may be chosen, as the text of a JSON file."""
     kept: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
-        kept.setdefault(row.question, []).extend(
-            asdict(e) | {"seconds": float(f"{e.seconds:.3g}")} for e in entries([row])
-        )
+        for entry in map(asdict, entries([row])):
+            del entry["why"]
+            kept.setdefault(row.question, []).append(entry | {"seconds": float(f"{entry['seconds']:.3g}")})
     lines = [
         f"  {json.dumps(name)}: [\n" + ",\n".join(f"   {json.dumps(each)}" for each in found) + "\n  ]"
         for name, found in kept.items()
@@ -207,7 +199,7 @@ def table() -> Mapping[str, tuple[MeasuredWay, ...]]:
 
 def cheapest(
     question: str, digits: int, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
-) -> ArithmeticChoice:
+) -> MeasuredWay:
     """The cheapest method for `question` with `digits` decimal digits; with `proof`, the cheapest one that is proved.
 
     If no method has so many digits, the cheapest one with the most digits is taken.
@@ -238,16 +230,16 @@ def cheapest(
         why += f"; {quick.method} is quicker and ends at {reach} digits"
     if digits > most:
         why += f"; the table ends at {most} digits"
-    return ArithmeticChoice(best.arithmetic, best.method, best.setting, best.digits, best.seconds, why)
+    return replace(best, why=why)
 
 
 def crossovers(
     question: str, proof: bool = False, measured: Iterable[MeasuredWay] | None = None
-) -> list[tuple[int, ArithmeticChoice]]:
+) -> list[tuple[int, MeasuredWay]]:
     """Pairs of a number of digits, and the method that is the cheapest from this number of digits on."""
     known = tuple(_known(question) if measured is None else measured)
     edges = sorted({1, *(entry.digits + 1 for entry in known)})
-    most, found = max(entry.digits for entry in known), list[tuple[int, ArithmeticChoice]]()
+    most, found = max(entry.digits for entry in known), list[tuple[int, MeasuredWay]]()
     for digits in edges:
         if digits > most:
             break
@@ -271,7 +263,7 @@ HOPELESS = 400.0  # digits: an orbit that loses more counts as losing all
 
 def for_orbit(
     map: PinballMap, start: tuple[float, float, int], bounces: int, digits: int, proof: bool = False
-) -> ArithmeticChoice:
+) -> MeasuredWay:
     """A method to follow a particle from `start` (parameter, exit angle, component) that leaves `digits` at the end.
 
     >>> circle = PinballMap("circle", lam="0.5")
@@ -323,5 +315,5 @@ def digits_for(tolerance: Decimal | float | str) -> int:
     return max(1, -given.adjusted())
 
 
-def _saying(choice: ArithmeticChoice, more: str) -> ArithmeticChoice:
+def _saying(choice: MeasuredWay, more: str) -> MeasuredWay:
     return replace(choice, why=f"{choice.why}; {more}")

@@ -11,9 +11,8 @@ from decimal import Decimal
 from functools import cache, partial
 from typing import Any
 
-import mpmath
 import numpy as np
-from flint import arb, fmpz_poly
+from flint import arb
 from sympy import Symbol, sqrt
 
 from numeric import PinballMap
@@ -248,49 +247,17 @@ def slap_infimum() -> Question:
         "the infimum of |(T0^2)'| on the cardioid, proved to be where it is stationary",
         "of the slope",
         sought.enclosed,
-        (*sought.methods(), *by_polynomial(), *textbook_infimum()),
+        (*sought.methods(), *textbook_infimum()),
     )
 
 
-def by_polynomial() -> list[Method]:
-    """A method for the least slope: a polynomial of degree 22, one of whose zeros FLINT isolates with a proof."""
-    book = module("textbook")
-    if book is None:
-        return []
-    polynomial = fmpz_poly([int(c) for c in reversed(book.CRITICAL)])
-
-    def call(digits: int) -> list[arb]:
-        with working(bits_of(digits, 64)):
-            roots: Any = polynomial.complex_roots()  # python-flint's own types say otherwise
-            zeros = [root.real for root, _ in roots if root.imag == 0]
-            (zero,) = (z for z in zeros if abs(z - arb(book.NEAR)) < arb("0.01"))
-            return expansion(balls(bits_of(digits, 64)), [zero])
-
-    return [Method("arb, polynomial", "arb", "digits", DIGITS[:4], call, to_digits, proved=True)]
-
-
 def textbook_infimum() -> list[Method]:
-    """Textbook methods for the least slope: a grid, a search, and roots of the polynomial by NumPy and mpmath."""
+    """Textbook methods for the least slope: a grid of launching points, and a search from what a plot shows."""
     book = module("textbook")
     if book is None:
         return []
-    map = PinballMap("cardioid", lam=0)
-
-    def roots(setting: Any) -> list[float]:
-        return expansion(FLOAT64, [book.critical_by_roots()])
-
-    def polyroots(digits: int) -> list[Any]:
-        context = mpmath.MPContext()
-        context.dps = digits
-        found = context.polyroots([context.mpf(c) for c in book.CRITICAL], maxsteps=400, extraprec=10 * digits + 200)
-        real = [z.real for z in found if abs(z.imag) < context.mpf(10) ** (-digits // 2)]
-        near = min(real, key=lambda z: abs(z - book.NEAR))
-        return expansion(multiprecision(context), [near])
-
-    grid, search = partial(book.expansion_on_grid, map.slap), partial(book.expansion_by_search, map.slap)
+    slap = PinballMap("cardioid", lam=0).slap
     return [
-        textbook("grid", lambda n: [grid(n)], "grid points", (100, 5_000, 200_000)),
-        textbook("minimize_scalar", lambda xtol: [search(xtol)], "xtol", TOLERANCES),
-        textbook("numpy.roots", roots),
-        textbook("mpmath.polyroots", polyroots, "digits", DIGITS[:3]),
+        textbook("grid", lambda n: [book.expansion_on_grid(slap, n)], "grid points", (100, 5_000, 200_000)),
+        textbook("minimize_scalar", lambda xtol: [book.expansion_by_search(slap, xtol)], "xtol", TOLERANCES),
     ]

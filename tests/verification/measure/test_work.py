@@ -27,12 +27,12 @@ DIGITS = 30
 
 
 def finest(name, textbook):
-    """A question with its methods in this process, each at its finest setting of at most 30 digits.
+    """A question with its methods, each at its finest setting of at most 30 digits.
 
     A difference quotient has its least error at some middle step, so it keeps all settings.
     """
     asked = question(name)
-    methods = [m for m in asked.methods if m.textbook is textbook and not m.elsewhere]
+    methods = [m for m in asked.methods if m.textbook is textbook]
     return replace(
         asked, methods=tuple(m if m.unit == "h" else replace(m, settings=m.within(DIGITS)[-1:]) for m in methods)
     )

@@ -165,12 +165,10 @@ class MeasuredWay:
 
 
 def entries(rows: Iterable[MethodResult]) -> list[MeasuredWay]:
-    """The methods in some rows that may be chosen: those that kept a promise, but no textbook methods, and mpmath
-    only with gmpy2.
-    """
+    """The methods in some rows that may be chosen: those that kept a promise, but no textbook methods."""
     made = []
     for row in rows:
-        if row.kept and row.promise and not row.textbook and row.method != "mpmath, no gmpy2":
+        if row.kept and row.promise and not row.textbook:
             digits = row.digits or max(0, math.floor(-float(row.promise.log10())))
             made.append(MeasuredWay(row.method, row.arithmetic, row.setting, digits, row.seconds, row.proved))
     return made

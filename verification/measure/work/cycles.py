@@ -1,7 +1,7 @@
 """Benchmarks on cycles of period 2, 3 and 64, a fold, and doublings; chord equations against shooting and iteration."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from functools import cache, partial
@@ -53,21 +53,14 @@ def cycle_question(
     problem: Problem,
     start: tuple[float, ...],
     usual: Sequence[Method],
-    here: bool = False,
 ) -> Question:
-    """Benchmark on a cycle's bounces, in every arithmetic, against `usual` methods; if `here`, in this process only."""
+    """Benchmark on a cycle's bounces, in every arithmetic, against `usual` methods."""
 
     def certified(digits: int) -> list[arb]:
         return list(whole(proof_near(problem, list(start), digits)).enclosure.zero)
 
-    ours = Sought(problem, start).methods(certified)
-    methods = (*(here_alone(ours) if here else ours), *usual)
+    methods = (*Sought(problem, start).methods(certified), *usual)
     return Question(name, title, f"the boundary parameters of {what}", "radians", certified, methods)
-
-
-def here_alone(methods: Iterable[Method]) -> list[Method]:
-    """The methods that do not need another process."""
-    return [method for method in methods if not method.elsewhere]
 
 
 def whole(proof: UniqueCycle) -> UniqueCycle:
@@ -164,16 +157,13 @@ def fold() -> Question:
     return replace(asked, reference=lambda digits: [closed_form(exact, digits)], methods=methods)
 
 
-def fold_question(
-    name: str, title: str, answers: str, problem: Problem, start: tuple[float, ...], here: bool = False
-) -> Question:
-    """Benchmark on the parameter of a fold, in every arithmetic; if `here`, in this process only."""
+def fold_question(name: str, title: str, answers: str, problem: Problem, start: tuple[float, ...]) -> Question:
+    """Benchmark on the parameter of a fold, in every arithmetic."""
 
     def certified(digits: int) -> list[arb]:
         return [whole(proof_near(problem, list(start), digits)).value]
 
-    methods = Sought(problem, start, last).methods(certified)
-    return Question(name, title, answers, "in lam", certified, tuple(here_alone(methods) if here else methods))
+    return Question(name, title, answers, "in lam", certified, Sought(problem, start, last).methods(certified))
 
 
 def textbook_fold() -> list[Method]:

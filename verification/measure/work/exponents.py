@@ -27,9 +27,8 @@ from verification.arithmetic.iteration import Vector
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.problem import Linearised, Problem
 from verification.measure.work.bench import module
-from verification.measure.work.cycles import EGG, HALF, first_exit, here_alone, triangle_start, whole
-from verification.measure.work.question import Claimed, Method, Question, available, textbook
-from verification.measure.work.row import WITHOUT
+from verification.measure.work.cycles import EGG, HALF, first_exit, triangle_start, whole
+from verification.measure.work.question import Claimed, Method, Question, textbook
 from verification.measure.work.sought import DIGITS, Sought, to_digits
 from verification.named.attractors import exponents as enclosed_exponents
 from verification.named.locate import proof_near
@@ -70,18 +69,15 @@ def of_cycle_exponent(
     count: Callable[[int], Any],
     counts: tuple[int, ...],
     usual: Sequence[Method] = (),
-    here: bool = False,
 ) -> Question:
     """Benchmark on the larger exponent of a cycle: counted by the kernel, from the cycle's equations, and proved.
 
-    `count` gives the exponents over a number of bounces; if `here`, all methods are in this process.
+    `count` gives the exponents over a number of bounces.
     """
     read, certified = read_off(problem, start)
     own = Method("compiled kernel", "float64", "bounces", counts, lambda bounces: [float(count(bounces).nu_plus)])
-    solved = Sought(problem, start, read).methods(certified)
-    return Question(
-        name, title, answers, "per bounce", certified, (own, *(here_alone(solved) if here else solved), *usual)
-    )
+    methods = (own, *Sought(problem, start, read).methods(certified), *usual)
+    return Question(name, title, answers, "per bounce", certified, methods)
 
 
 def read_off(
@@ -268,7 +264,6 @@ def lengths() -> Question:
         context.dps = digits + GUARD
         return [length(context.mpf(x)) for x in AT]
 
-    quad = Method("mpmath.quad", "mpmath", "digits", DIGITS[:4], in_mpmath, to_digits, len(AT))
     own = [
         Method(
             "Fourier series (NumPy)",
@@ -278,11 +273,9 @@ def lengths() -> Question:
             lambda n: map.arclength.s(np.tile(AT, n // len(AT)))[: len(AT)].tolist(),
             lambda _: ROUNDING,
         ),
-        quad,
+        Method("mpmath.quad", "mpmath", "digits", DIGITS[:4], in_mpmath, to_digits, len(AT)),
         Method("arb, certified", "arb", "digits", DIGITS, certified, to_digits, len(AT), proved=True),
     ]
-    if available():
-        own.insert(2, replace(quad, name=WITHOUT, elsewhere=True))
     return Question(
         "arclength",
         "Arc length, egg",

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from verification.measure.work.row import WITHOUT, MethodResult, duration, footer, front, short
+from verification.measure.work.row import MethodResult, duration, footer, front, short
 from verification.plots.sheet import BLACK, DARK, MIDDLE, SMALL, WIDTH, encoded, figure_of, styled
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ KNOWN = (
     "float64, Newton",
     "long double",
     "mpmath",
-    WITHOUT,
     "arb, no proof",
     "arb, certified",
 )  # these look the same in all diagrams
@@ -170,7 +169,6 @@ def paragraph(rows: Sequence[MethodResult]) -> str:
         picked(rows),
         bars(rows),
         proofs(rows),
-        integers(rows),
         *usual(rows),
     ]
     return "\n".join(f"- {sentence}" for sentence in told if sentence)
@@ -227,17 +225,6 @@ def proofs(rows: Sequence[MethodResult]) -> str:
     pairs = [(name, at[name]) for name in ("arb, no proof", "mpmath") if name in at]
     compared = " and ".join(f"{times(proof.seconds / row.seconds)} times as long as *{name}*" for name, row in pairs)
     return f"{PLENTY} digits with a proof take {duration(proof.seconds)}{', ' if compared else ''}{compared}."
-
-
-def integers(rows: Sequence[MethodResult]) -> str:
-    """A sentence on how much slower mpmath is if gmpy2 is missing."""
-    own = {row.digits: row for row in rows if row.method == "mpmath" and row.error is not None}
-    bare = {row.digits: row for row in rows if row.method == WITHOUT and row.error is not None}
-    both = sorted(d for d in own.keys() & bare.keys() if d)
-    if not both:
-        return ""
-    ratios = ", ".join(f"{times(bare[d].seconds / own[d].seconds)} at {d} digits" for d in both if d in (30, 300, 1000))
-    return f"Without gmpy2 mpmath is slower by these factors: {ratios}."
 
 
 def usual(rows: Sequence[MethodResult]) -> list[str]:

@@ -3,29 +3,19 @@
 An answer is a list of numbers of any kind. Its error is the largest distance of one of them from the reference,
 a list of balls; the radius of the reference counts, so no error is understated. Times are processor time of one core,
 which other work on the machine disturbs least; of several runs the median counts.
-
-mpmath without gmpy2 is timed in a process of its own, as that choice is made when mpmath is imported.
-
-`python -m verification.measure.work.question QUESTION METHOD RUNS SETTING...` prints what a method found and took,
-as JSON.
 """
 
-import json
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from importlib.util import find_spec
 from typing import Any
 
 import mpmath
 import numpy as np
 from flint import arb, fmpq
 
-from numeric.sweeps.workers import own_command
 from verification.arithmetic.balls import as_ball, bits_of, decimal, working
 from verification.arithmetic.iteration import silent
 from verification.measure.work.row import MethodResult, timed
@@ -51,7 +41,7 @@ class Method:
 
     `unit` names the kind of setting (`digits`, `xtol`, `bounces`). `promise(setting)` is the largest error that the
     method claims, or None if it claims none. A call gives `per` answers at a time; if the setting counts particles or
-    points, it gives that many. A method that is `elsewhere` runs in a process of its own.
+    points, it gives that many.
     """
 
     name: str
@@ -63,7 +53,6 @@ class Method:
     per: int = 1
     textbook: bool = False
     proved: bool = False
-    elsewhere: bool = False
 
     def labelled(self, setting: Any) -> str:
         """A setting as text with its unit.
@@ -195,13 +184,8 @@ def measured(question: Question, runs: int = RUNS, most_digits: int = 1000, say:
 def _rows(
     question: Question, method: Method, settings: tuple[Any, ...], reference: Answer, digits: int, runs: int
 ) -> Iterator[MethodResult]:
-    if not settings:
-        return
-    if method.elsewhere:
-        found = sampled(question.name, method.name, settings, runs)
-    else:
-        found = [sample(method, setting, runs, warm=i > 0) for i, setting in enumerate(settings)]
-    for setting, (answer, seconds, failure) in zip(settings, found, strict=True):
+    for i, setting in enumerate(settings):
+        answer, seconds, failure = sample(method, setting, runs, warm=i > 0)
         least, error = (None, None) if answer is None else distance(answer, reference, digits)
         if answer is not None and error is None:
             failure = "no finite number"
@@ -246,46 +230,3 @@ def sample(method: Method, setting: Any, runs: int, warm: bool = False) -> tuple
             method.call(setting)
         seconds.append((time.process_time() - start) / repeats)
     return answer, seconds, ""
-
-
-PLAIN = {"MPMATH_NOGMPY": "1", "SYMPY_GROUND_TYPES": "python"}
-MORE = 10  # extra digits written
-Sample = tuple[Answer | None, list[float], str]
-
-
-def available() -> bool:
-    """True if gmpy2 is installed, so that running without it makes a difference."""
-    return find_spec("gmpy2") is not None
-
-
-def sampled(question: str, method: str, settings: Sequence[int], runs: int) -> list[Sample]:
-    """The results of `sample` for the settings, from a process where mpmath works with Python's integers."""
-    words = question, method, str(runs), *map(str, settings)
-    command, environment = own_command("verification.measure.work.question", *words)
-    done = subprocess.run(command, env=environment | PLAIN, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-        return [(None, [0.0], f"the process without gmpy2 ended: {reason}")] * len(settings)
-    return [(row["answer"], row["seconds"], row["failure"]) for row in json.loads(done.stdout)]
-
-
-def main(arguments: Sequence[str]) -> None:
-    """Prints the samples of a method as JSON on standard output."""
-    import mpmath
-
-    from verification.measure.work.choice import question
-
-    name, method, runs, *settings = arguments
-    if mpmath.libmp.BACKEND != "python":
-        raise SystemExit("mpmath has gmpy2 here, which it should not")
-    (chosen,) = (m for m in question(name).methods if m.name == method)
-    rows: list[dict[str, Any]] = []
-    for i, setting in enumerate(map(int, settings)):
-        answer, seconds, failure = sample(chosen, setting, int(runs), warm=i > 0)
-        texts = None if answer is None else [mpmath.nstr(x, setting + MORE) for x in answer]
-        rows.append({"answer": texts, "seconds": seconds, "failure": failure})
-    sys.stdout.write(json.dumps(rows))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

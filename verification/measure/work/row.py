@@ -13,7 +13,6 @@ from statistics import median, quantiles
 from typing import Any
 
 BALLS = ("error", "least", "promise")  # fields that a float may not hold
-WITHOUT = "mpmath, no gmpy2"  # the method that shows the effect of gmpy2
 SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # limits of the errors that are written as floats
 
 

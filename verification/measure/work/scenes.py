@@ -115,7 +115,7 @@ def of_cycle(scene: Scene, seed: int) -> Question:
     orbit = some_cycle(scene, seed)
     name, title = f"cycle-{scene.name}", f"A cycle of period {orbit.period}, {scene.name}"
     what = f"a cycle of period {orbit.period}: {scene}"
-    return cycle_question(name, title, what, *problem_of(scene, orbit), usual(scene, orbit), here=True)
+    return cycle_question(name, title, what, *problem_of(scene, orbit), usual(scene, orbit))
 
 
 def usual(scene: Scene, orbit: PeriodicOrbit) -> list[Method]:
@@ -157,7 +157,6 @@ def of_fold(scene: Scene, seed: int) -> Question:
                         f"a contraction at which cycles of period {period} are born: {scene}",
                         Problem(ring.table, ring.components, BifurcationKind.FOLD, "lam", law=ring.law),
                         start,
-                        here=True,
                     )
     raise ValueError(f"work: no fold of a cycle of period {PERIODS[1]} or {PERIODS[-1]} is met in {scene}")
 
@@ -187,7 +186,6 @@ def _of_cycles_exponent(scene: Scene, map: PinballMap, attractor: Attractor) -> 
         tuple(round(float(x), 6) for x in theta),
         lambda bounces: map.exponents(theta[0], phi[0], bounces, component=component[0]),
         COUNTED,
-        here=True,
     )
 
 

@@ -45,8 +45,7 @@ from verification.cycles.newton import (
 )
 from verification.measure.work.bench import module
 from verification.measure.work.plain import egg_orbit
-from verification.measure.work.question import Method, Question, available, power, textbook
-from verification.measure.work.row import WITHOUT
+from verification.measure.work.question import Method, Question, power, textbook
 from verification.named.locate import lambda_star
 from verification.proofs.periodic.interval_newton import ZeroStatus, interval_newton
 
@@ -85,17 +84,13 @@ class Sought:
     def methods(self, certified: Callable[[int], list[arb]] | None = None) -> tuple[Method, ...]:
         """Methods in every arithmetic; `certified(digits)` gives the proof, by default that of the system's zero."""
         proof = certified or self.enclosed
-        exact = Method("mpmath", "mpmath", "digits", DIGITS, self.in_mpmath, to_digits, self.per)
-        found = [
+        return (
             Method("float64, Newton", "float64", "", ("to rounding",), self.in_floats, self.rounding, self.per),
             Method("long double", "longdouble", "", (_width(),), self.in_long, self.long_rounding, self.per),
-            exact,
+            Method("mpmath", "mpmath", "digits", DIGITS, self.in_mpmath, to_digits, self.per),
             Method("arb, no proof", "arb", "digits", DIGITS, self.in_arb, to_digits, self.per),
             Method("arb, certified", "arb", "digits", DIGITS, proof, to_digits, self.per, proved=True),
-        ]
-        if available():
-            found.insert(3, replace(exact, name=WITHOUT, elsewhere=True))
-        return tuple(found)
+        )
 
     def in_floats(self, setting: Any = None) -> list[float]:
         """The values by Newton's method in float64, iterated until the corrections stop shrinking."""

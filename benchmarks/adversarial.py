@@ -150,15 +150,8 @@ def apart(map, one, other):
 SIZES = {"": Rational(1), "1e-6 of ": Rational(1, 10**6), "1e6 of ": Rational(10**6)}
 UNEQUAL = [(0, 0), (SIZES["1e-6 of "], 0), (10**6, SIZES["1e-6 of "]), (10**6, 1), (0, 1)]
 NOTCHED = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
-OWN = {
-    "square": tables.square,
-    "stadium": tables.stadium,
-    "reuleaux": tables.reuleaux,
-    "lemon": tables.lemon,
-    "semi-ellipse": tables.semi_ellipse,
-    "mushroom": tables.mushroom,
-    "sinai": tables.sinai,
-    "diamond": tables.diamond,
+NAMED = ("square", "stadium", "reuleaux", "lemon", "semi_ellipse", "mushroom", "sinai", "diamond")
+OWN = {name: getattr(tables, name) for name in NAMED} | {
     "comet": comet,
     "notched": lambda: tables.polygon(*NOTCHED, name="notched"),
     "100 spikes": lambda: spikes(100),
@@ -185,26 +178,28 @@ def by_hand(count, word):
             many = len(parts) > 32  # of which nothing is proved again
             table = tables.Table(name, tuple(parts)) if many else tables.piecewise(*parts, name=name)
             map = PinballMap(table, lam=LAM)
-            for label, row in summed(map, count).items():
-                say(f"| {size}{name} | {label} | {row[0]} | {row[1]} | {row[2]} | {row[3]:.2g} | {row[4]:.3g} |")
+            for label, (counts, (error, reason)) in totals(of_pieces(map, count)).items():
+                say(f"| {size}{name} | {label} | {' | '.join(map(str, counts))} | {error:.2g} | {reason:.3g} |")
 
 
-def summed(map, count):
-    """Totals of every kind: points, stopped, wrong, the largest error, and the weakest reason to stop."""
-    rows = {}
+def of_pieces(map, count):
+    """Yields by kind: points, those that stopped, those that are wrong; the largest error, the weakest reason."""
     for seed in range(-(-count // BLOCK)):
         for label, starts in hard(map, min(count, BLOCK), seed).items():
             found = judged(map, starts)
-            old = rows.get(label, (0, 0, 0, 0.0, 0.0))
-            sums = starts[1].size, int(np.sum(found.stopped)), int(np.sum(found.wrong))
             largest = float(np.max(np.where(found.wrong, 0, found.error))), float(np.max(found.reason))
-            rows[label] = (*(x + y for x, y in zip(old, sums, strict=False)), *map_max(old[3:], largest))
+            yield label, (starts[1].size, int(np.sum(found.stopped)), int(np.sum(found.wrong))), largest
+
+
+def totals(found):
+    """The sums of counts and the largest of numbers, by label."""
+    rows = {}
+    for label, counts, numbers in found:
+        if label in rows:
+            counts = [x + y for x, y in zip(rows[label][0], counts, strict=True)]
+            numbers = [max(x, y) for x, y in zip(rows[label][1], numbers, strict=True)]
+        rows[label] = counts, numbers
     return rows
-
-
-def map_max(old, new):
-    """The larger of each pair."""
-    return [max(x, y) for x, y in zip(old, new, strict=True)]
 
 
 PARTS = ((np.arange(64) + 0.5) / 64)[:, None]
@@ -259,23 +254,16 @@ def splines(count, word):
     for name, made in SPLINES.items():
         if word not in name:
             continue
-        map, rows = PinballMap(made(), lam=LAM), {}
-        for seed in range(-(-count // BLOCK)):
-            for case in spline_cases(name, map, min(count, BLOCK), seed):
-                old = rows.get(case.label, (0, 0, 0, 0, 0.0))
-                *sums, largest = counted(case)
-                rows[case.label] = (*(x + y for x, y in zip(old, sums, strict=False)), max(old[4], largest))
-        for label, row in rows.items():
-            say(f"| {' | '.join([name, label.partition(', ')[2], *map_text(row)])} |")
-
-
-def map_text(row):
-    """The entries of a table's row: four counts and a number with two digits, as text."""
-    return [*(str(x) for x in row[:4]), f"{row[4]:.2g}"]
+        map = PinballMap(made(), lam=LAM)
+        cases = (
+            case for seed in range(-(-count // BLOCK)) for case in spline_cases(name, map, min(count, BLOCK), seed)
+        )
+        for label, (counts, (error,)) in totals((case.label, *counted(case)) for case in cases).items():
+            say(f"| {' | '.join([name, label.partition(', ')[2], *map(str, counts)])} | {error:.2g} |")
 
 
 def counted(case):
-    """Counts of points, stopped, undecided and wrong, and the largest sideways error of the right ones."""
+    """Counts of points, stopped, undecided and wrong; and the largest sideways error of the right ones."""
     own, after, going = bounced(case)
     truth = cubic_hits(case.map, own)
     x, y = case.map.states.point(after[0].astype(int), after[1])
@@ -290,7 +278,7 @@ def counted(case):
         wrong += int(not place[0] * EPS < ASTRAY)
     right = going & ~astray & truth.sure
     error = np.max(gap[right] * truth.straight[right], initial=0) / EPS
-    return going.size, int(np.sum(~going)), int(np.sum(going & ~truth.sure)), wrong, error
+    return (going.size, int(np.sum(~going)), int(np.sum(going & ~truth.sure)), wrong), (error,)
 
 
 def farthest_outside(map, ops, own, found):

@@ -1,22 +1,7 @@
 """Long attacks on parsers, stores and proofs, hours at full scale: `torture.py [PART ...] [--scale SHARE]`.
 
-    images      object files and images of machine code with fields written over, read in children that may die
-    restarts    sweeps that are killed, refused and damaged again and again, until they are done
-    disks       sweeps onto disks of memory that are full at each of their writes
-    visitors    sessions of the live table that are opened and left
-    falsehoods  certificates of true statements made slightly false: none may be certified
-    intervals   how often 95 per cent intervals of an exponent hold the value that balls enclose
-    shares      how often those of a basin's share hold one half, where a mirror maps one basin to another
-    dimensions  how often those of a boundary's dimension hold that of random fractal graphs
-    known       how often intervals hold exponents that follow from the table
-    bars        how often they hold the result of many orbits, on tables that the paper does not have
-    counts      how many attractors regular polygons are found to have
-    aarch64     kernels compiled for AArch64 and run in QEMU, against those of this machine, bit by bit
-    processors  the whole report with fewer instructions: the same bytes; an hour more, so only when it is named
-    joins       on which side of a join flights of the cuspless table land that pass it within rounding
-
 Each part prints one line: attack, attempts, failures and time. The exit status is 1 when anything failed. The attacks
-are in benchmarks/attacks, a file for each subject.
+are in benchmarks/attacks, a file for each subject; `--help` lists them.
 """
 
 import argparse
@@ -24,6 +9,7 @@ import os
 import sys
 import time
 from collections.abc import Callable
+from typing import Any
 
 from attacks.aarch64 import aarch64
 from attacks.calibration import bars, counts, dimensions, intervals, known, shares
@@ -43,25 +29,19 @@ def seeds(share: float) -> int:
     return max(LEAST, int(SEEDS * share))
 
 
-PARTS: dict[str, Callable[[float], Outcome]] = {
-    "images": lambda share: images(int(1_000_000 * share)),
-    "restarts": lambda share: restarts(int(400 * share)),
-    "disks": lambda share: disks(max(3, int(40 * share))),
-    "visitors": lambda share: visitors(max(8, int(100 * share))),
-    "falsehoods": lambda share: falsehoods(int(1000 * share)),
-    "intervals": lambda share: intervals(seeds(share)),
-    "shares": lambda share: shares(seeds(share)),
-    "dimensions": lambda share: dimensions(seeds(share)),
-    "known": lambda share: known(seeds(share)),
-    "bars": lambda share: bars(seeds(share)),
-    "counts": lambda share: counts(max(1, seeds(share) // 50)),
-    "aarch64": lambda share: aarch64(max(16, int(256 * share))),
-    "processors": lambda share: processors("*" if share >= 1 else "egg.*"),
-    "joins": lambda share: joins(int(10_800_000 * share)),
+PARTS: dict[Callable[..., Outcome], Callable[[float], Any]] = {  # attacks, and how much of each at a share of the whole
+    images: lambda share: int(1_000_000 * share),
+    restarts: lambda share: int(400 * share),
+    disks: lambda share: max(3, int(40 * share)),
+    visitors: lambda share: max(8, int(100 * share)),
+    falsehoods: lambda share: int(1000 * share),
+    **dict.fromkeys((intervals, shares, dimensions, known, bars), seeds),
+    counts: lambda share: max(1, seeds(share) // 50),
+    aarch64: lambda share: max(16, int(256 * share)),
+    processors: lambda share: "*" if share >= 1 else "egg.*",
+    joins: lambda share: int(10_800_000 * share),
 }
-
-
-BY_NAME = {"processors"}  # the report, three times
+NAMES = {attack.__name__: attack for attack in PARTS}
 
 
 def processor() -> float:
@@ -71,17 +51,19 @@ def processor() -> float:
 
 def main() -> int:
     """Runs the named parts, or all but the longest."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
+    listed = "\n".join(f"{name:<12}{(attack.__doc__ or '').splitlines()[0]}" for name, attack in NAMES.items())
+    shape = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, epilog=listed, formatter_class=shape)
+    parser.add_argument("parts", nargs="*", metavar="PART", help="a name from the list below")
     parser.add_argument("--scale", type=float, default=1.0, help="a share of the full counts")
     given = parser.parse_args()
-    unknown = set(given.parts) - set(PARTS)
+    unknown = set(given.parts) - set(NAMES)
     if unknown:
-        parser.error(f"no part is called {', '.join(unknown)}; accepted: {', '.join(PARTS)}")
+        parser.error(f"no part is called {', '.join(unknown)}; accepted: {', '.join(NAMES)}")
     failed = 0
-    for name in given.parts or [part for part in PARTS if part not in BY_NAME]:
+    for name in given.parts or [name for name in NAMES if name != "processors"]:  # which makes the report three times
         began, busy = time.perf_counter(), processor()
-        outcome = PARTS[name](given.scale)
+        outcome = NAMES[name](PARTS[NAMES[name]](given.scale))
         failed += outcome.failed
         spent = f"{time.perf_counter() - began:.0f} s, {processor() - busy:.0f} s of processor"
         sys.stdout.write(f"{name}: {outcome.tried:,} tried, {outcome.failed} failed, {spent}; {outcome.said}\n")

@@ -23,12 +23,11 @@ from numeric.backends.scalars import ArrayBackend
 from symbolic import tables
 from verification.maps.exact import ExactMap, errors
 from verification.measure.extremes.by_hand import WIDE, comet, cubic_hits, discs, hard, judged, spikes
-from verification.measure.extremes.kernels import Wide, made_unit
+from verification.measure.extremes.kernels import Wide, bounced, made_unit
 from verification.measure.extremes.orbits import (
     DIGITS,
     LAM,
     LONG_RADII,
-    bounced,
     cases,
     conditions,
     own_cases,
@@ -61,7 +60,8 @@ def main(count, word):
 
 def line(case):
     """The line of the output for one case."""
-    own, found, going = bounced(case)
+    own, found, code = bounced(case.map, case[2:])
+    going = code == 0
     order = np.argsort(steps(case.map, own), kind="stable")
     sizes = np.empty((4, order.size))
     for i in range(0, order.size, FEW):
@@ -179,7 +179,7 @@ def by_hand(count, word):
             table = tables.Table(name, tuple(parts)) if many else tables.piecewise(*parts, name=name)
             map = PinballMap(table, lam=LAM)
             for label, (counts, (error, reason)) in totals(of_pieces(map, count)).items():
-                say(f"| {size}{name} | {label} | {' | '.join(map(str, counts))} | {error:.2g} | {reason:.3g} |")
+                say(f"| {size}{name} | {label} | {' | '.join(f'{x}' for x in counts)} | {error:.2g} | {reason:.3g} |")
 
 
 def of_pieces(map, count):
@@ -211,7 +211,8 @@ def inside(count, word):
     say("|---|---|---|---|---|")
     for name in LONG_RADII:
         for case in own_cases(name, count) if not word or word in name else ():
-            own, found, going = bounced(case)
+            own, found, code = bounced(case.map, case[2:])
+            going = code == 0
             out = 0
             for block in range(0, own[0].size, BLOCK):
                 cut = slice(block, block + BLOCK)
@@ -259,12 +260,13 @@ def splines(count, word):
             case for seed in range(-(-count // BLOCK)) for case in spline_cases(name, map, min(count, BLOCK), seed)
         )
         for label, (counts, (error,)) in totals((case.label, *counted(case)) for case in cases).items():
-            say(f"| {' | '.join([name, label.partition(', ')[2], *map(str, counts)])} | {error:.2g} |")
+            say(f"| {' | '.join([name, label.partition(', ')[2], *(f'{x}' for x in counts)])} | {error:.2g} |")
 
 
 def counted(case):
     """Counts of points, stopped, undecided and wrong; and the largest sideways error of the right ones."""
-    own, after, going = bounced(case)
+    own, after, code = bounced(case.map, case[2:])
+    going = code == 0
     truth = cubic_hits(case.map, own)
     x, y = case.map.states.point(after[0].astype(int), after[1])
     size = max(np.max(np.abs(x)), np.max(np.abs(y)))

@@ -9,7 +9,8 @@ from one_bounce import landing_errors
 from numeric import PinballMap
 from symbolic import tables
 from verification.measure.extremes.by_hand import cubic_hits
-from verification.measure.extremes.orbits import bounced, spline_cases
+from verification.measure.extremes.kernels import bounced
+from verification.measure.extremes.orbits import spline_cases
 
 
 def wavy(count, depth):
@@ -70,7 +71,8 @@ def test_hard_flights_land_where_every_zero_of_every_cubic_in_eighty_bits_says(n
         map.family.few = False  # as where there are more than `numeric.flights.spline.SCANNED` pieces
     lost = 0
     for case in spline_cases(name, map, 1000):
-        own, after, going = bounced(case)
+        own, after, code = bounced(case.map, case[2:])
+        going = code == 0
         truth = cubic_hits(map, own)
         x, y = map.states.point(after[0].astype(int), after[1])
         size, sure = max(np.max(np.abs(x)), np.max(np.abs(y))), going & truth.sure

@@ -16,11 +16,10 @@ from sympy import Rational, cos, pi, sin
 from numeric import PinballMap
 from numeric.flights.corners import CIRCLE, ELLIPSE, FOCAL, LINE, PieceNumbers, piece_of
 from numeric.flights.pieces import Pieces
-from numeric.kernels.machine import KernelSpec
 from numeric.pinball.sampling import phase_starts
 from symbolic import tables
 from symbolic.tables.table import Table, theta
-from verification.measure.extremes.kernels import Wide
+from verification.measure.extremes.kernels import Wide, bounced
 
 WIDE = np.longdouble
 START = WIDE(2.0**-58)  # share of the table: a hit on another piece nearer than this is rounding
@@ -286,16 +285,6 @@ def _along(map: PinballMap, starts: Any, off: Any) -> Starts:
     phi = here.angle(map.states.ops, np.cos(away), np.sin(away))
     phi = np.clip(phi + off[::-1], -np.pi / 2 + 1e-14, np.pi / 2 - 1e-14)
     return where, at, phi
-
-
-def bounced(map: PinballMap, starts: Starts) -> tuple[list[Any], Any, Any]:
-    """The kernel's fields before and after one bounce, and the status code."""
-    component, theta, phi = starts
-    own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
-    lam = np.full(theta.size, float(map.lam))
-    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
-    assert result.record is not None
-    return own, result.record[0], result.rows["code"]
 
 
 class BounceErrors(NamedTuple):

@@ -203,6 +203,16 @@ def textbook(map: PinballMap, state: list[float]) -> list[Any]:
     return [math.cos(theta), math.sin(theta), math.cos(exit), math.sin(exit)]
 
 
+def bounced(map: PinballMap, starts: tuple[Any, Any, Any]) -> tuple[list[Any], list[Any], Any]:
+    """The kernel's fields before and after one bounce of `starts` (component, parameter, exit angle); and the codes."""
+    component, theta, phi = starts
+    own = [np.asarray(row) for row in map.states.enter(component, theta, phi, map.law)]
+    lam = np.full(theta.size, float(map.lam))
+    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
+    assert result.record is not None
+    return own, list(result.record[0]), result.rows.get("code", np.zeros(theta.size))
+
+
 def _compiled(map: PinballMap, state: list[Any], kernels: bool) -> tuple[list[Any], str]:
     """Fields and outcome after one bounce, computed by LLVM kernels or on NumPy arrays."""
     engine = map.engine._replace(kernels=kernels)

@@ -31,7 +31,7 @@ from symbolic import tables
 from verification.cycles.newton import floats, given
 from verification.cycles.problem import Problem
 from verification.maps.exact import ExactMap, errors
-from verification.measure.extremes.kernels import made_unit
+from verification.measure.extremes.kernels import bounced, made_unit
 from verification.measure.extremes.near import DOUBLE, WRONG, Errors, Finding
 from verification.named.attractors import certificate
 
@@ -251,6 +251,12 @@ class Accuracy(NamedTuple):
     direction_by_condition: float
 
 
+def aimed(label: str, map: PinballMap, theta: Array, phi: Array, component: NDArray[np.int64]) -> Case:
+    """A test case of those particles whose exit angle `phi` leads into the table."""
+    good = np.abs(phi) < 1.57
+    return Case(label, map, component[good], theta[good], phi[good])
+
+
 def cases(count: int, seed: int = SEED_OF_LABELLED) -> Iterator[Case]:
     """Test cases on the paper's tables, with `count` particles of each kind; a label's first word is the table."""
     rng = np.random.default_rng(seed)
@@ -300,8 +306,7 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
         yield Case(f"{name}, lam = {lam}", scene(name, lam), zero, theta, angle * lam)
     x, y = map.states.point(zero, theta)
     aim = map.states.angle_to_normal(zero, theta, -x, -y) + side * tiny
-    good = np.abs(aim) < 1.57
-    yield Case(f"{name}, through the centre", map, zero[good], theta[good], aim[good])
+    yield aimed(f"{name}, through the centre", map, theta, aim, zero)
     grid = np.linspace(-np.pi, np.pi, 4001)
     bulge = grid[map.states.boundary.bending(np.zeros(grid.size, dtype=np.int64), grid)[1] > 1e-6]
     if bulge.size:  # where the wall disperses, a ray may touch it: back from where a tangent ends
@@ -309,8 +314,7 @@ def own_cases(name: str, count: int, seed: int = SEED_OF_LABELLED) -> Iterator[C
         back = map.step(at, side * (np.pi / 2 - 1e-9))
         x, y = map.states.point(zero, at)
         aim = map.states.angle_to_normal(zero, back.theta, x - back.x, y - back.y) + side * tiny
-        good = np.abs(aim) < 1.57
-        yield Case(f"{name}, tangent to a bulge", map, zero[good], back.theta[good], aim[good])
+        yield aimed(f"{name}, tangent to a bulge", map, back.theta, aim, zero)
     if map.ir.has("focus"):  # of an ellipse about the origin
         x, y, *_ = map.ir.program("focus")(map.states.ops)
         theta = np.arctan2(y, x) + rng.integers(0, 2, count) * np.pi + side * tiny
@@ -334,8 +338,7 @@ def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LAB
     x, y = map.states.point(at, theta)
     corner = map.states.point(rng.integers(0, parts, count), np.zeros(count))
     aim = map.states.angle_to_normal(at, theta, corner[0] - x, corner[1] - y) + side * tiny
-    good = np.abs(aim) < 1.57
-    yield Case(f"{name}, aimed at the end of a piece", map, at[good], theta[good], aim[good])
+    yield aimed(f"{name}, aimed at the end of a piece", map, theta, aim, at)
     bent = np.concatenate(
         [map.states.boundary.bending(np.full(101, i), np.linspace(0, 1, 101))[1] for i in range(parts)]
     )
@@ -346,8 +349,8 @@ def spline_cases(name: str, map: PinballMap, count: int, seed: int = SEED_OF_LAB
     back = map.step(touched, side * (np.pi / 2 - 1e-9), where)  # back from where a tangent ends
     x, y = map.states.point(where, touched)
     aim = map.states.angle_to_normal(back.component, back.theta, x - back.x, y - back.y) + side * tiny
-    good = (np.abs(aim) < 1.57) & (back.code == 0)
-    yield Case(f"{name}, tangent to a bulge", map, back.component[good], back.theta[good], aim[good])
+    aim = np.where(back.code == 0, aim, np.nan)
+    yield aimed(f"{name}, tangent to a bulge", map, back.theta, aim, back.component)
 
 
 def _cuspless(rng: np.random.Generator, side: Any, tiny: Array, angle: Array) -> Iterator[Case]:
@@ -362,8 +365,7 @@ def _cuspless(rng: np.random.Generator, side: Any, tiny: Array, angle: Array) ->
     x, y = map.states.point(zero, theta)
     aim = map.states.angle_to_normal(zero, theta, -0.25 - x, side * np.sqrt(3) / 4 - y)
     aim = aim + np.where(rng.integers(0, 2, count) == 0, 1, -1) * tiny
-    good = np.abs(aim) < 1.57
-    yield Case("cuspless, aimed at a join", map, zero[good], theta[good], aim[good])
+    yield aimed("cuspless, aimed at a join", map, theta, aim, zero)
 
 
 def conditions(case: Case) -> tuple[Array, Array]:
@@ -372,22 +374,12 @@ def conditions(case: Case) -> tuple[Array, Array]:
     return 1 + matrix[:, 0].sum(axis=-1), 1 + matrix[:, 1].sum(axis=-1)
 
 
-def bounced(case: Case) -> tuple[list[Array], list[Array], NDArray[np.bool_]]:
-    """The kernel's fields before and after one bounce, and a mask of the particles that do not stop."""
-    map = case.map
-    own = map.states.enter(case.component, case.theta, case.phi, map.law)
-    lam = np.full(case.theta.size, float(map.lam))
-    result = map.engine.run(KernelSpec(map.law, record=True), own, lam, map.shape, 1)
-    assert result.record is not None
-    going = result.rows["code"] == 0 if "code" in result.rows else np.ones(case.theta.size, dtype=bool)
-    return own, list(result.record[0]), going
-
-
 def accuracy(name: str, particles: int = LABELLED) -> Iterator[Accuracy]:
     """The largest errors of every test case on a table, against the exact map of the rounded state."""
     for case in cases(particles) if name in SCENES else own_cases(name, particles // 3):
         if case.label.split(",")[0] == name:
-            own, after, going = bounced(case)
+            own, after, code = bounced(case.map, case[2:])
+            going = code == 0
             before, found = [row[going] for row in own], [row[going] for row in after]
             position, direction = errors(case.map, ExactMap(case.map, DIGITS), before, found)
             there, turned = (condition[going] for condition in conditions(case))

@@ -4,6 +4,7 @@ They show Lyapunov exponents against the contraction, and attractors: cycles as 
 attractors as one long orbit. `fine` is the resolution: 1 for a draft, more for more points.
 """
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,12 +21,13 @@ from verification.paper.figures.phase import (
     TRANSIENT,
     arc_length,
     by_arc_length,
+    draw_slap,
     facts,
     flights,
     outline,
     settled,
+    slap_panel,
 )
-from verification.paper.figures.phase import slap_by_arc_length as slap_graph
 from verification.plots.sheet import (
     BLACK,
     DARK,
@@ -38,7 +40,6 @@ from verification.plots.sheet import (
     Panel,
     Panels,
     cloud,
-    graphs,
     legend,
     scaled,
     sheet,
@@ -104,16 +105,7 @@ def draw_exponents(panels: Panels) -> "Figure":
 
 def slap(fine: float = 1.0) -> Panels:
     """The slap map and its second iterate, arc length against arc length."""
-    map = PinballMap("cardioid", lam=0)
-    curves = {f"T_0{power}": slap_graph(map, n, scaled(400, fine, 20)) for n, power in ((1, ""), (2, "^2"))}
-    return (Panel("cardioid", "s", "s_image", curves, facts=facts(map)),)
-
-
-def draw_slap(panels: Panels) -> "Figure":
-    """Draws the graphs of the slap map and its second iterate, with the diagonal."""
-    figure, (ax,) = sheet(panels, columns=1, height=4.2)
-    graphs(ax, panels[0])
-    return figure
+    return (slap_panel("cardioid", PinballMap("cardioid", lam=0), (1, 2), fine),)
 
 
 ORBITS = 100  # the paper's number for each contraction
@@ -163,11 +155,19 @@ RANGES = (("0.1", "0.2", "0.3"), ("0.4", "0.5", "0.6"), ("0.7", "0.8", "0.9"))
 
 def configurations(fine: float = 1.0) -> Panels:
     """The attractors in the table at four contractions."""
+    return in_the_table("cuspless", ("0.02", "0.072", "0.2", "0.5"), scaled(300, min(fine, 1.0), 8))
+
+
+def in_the_table(table: str, lams: Iterable[str], bounces: int, **shape: str) -> Panels:
+    """A panel for each contraction: the attractors in the table, a chaotic one as an orbit of so many bounces on it."""
     panels = []
-    for lam in ("0.02", "0.072", "0.2", "0.5"):
-        map, bounces = PinballMap("cuspless", lam=lam), scaled(300, min(fine, 1.0), 8)
+    for lam in lams:
+        map = PinballMap(table, lam=lam, **shape)
         named = found(map)
-        curves = {name: flights(orbit_on(map, attractor, bounces)) for name, attractor in named.items()}
+        curves = {
+            name: cycle_points(map, attractor)[1] if attractor.period else flights(orbit_on(map, attractor, bounces))
+            for name, attractor in named.items()
+        }
         known = facts(map, seed=SEED, bounces=bounces, **shares(named))
         panels.append(Panel(rf"$\lambda = {lam}$", "x", "y", {"boundary": outline(map), **curves}, facts=known))
     return tuple(panels)
@@ -277,17 +277,10 @@ def draw_cuspless_exponents(panels: Panels) -> "Figure":
 
 def cuspless_slap(fine: float = 1.0) -> Panels:
     """The graphs of the slap map, its second and its fourth iterate."""
-    map = PinballMap("cuspless", lam=0)
-    named = ((1, "T_0"), (2, "T_0^2"), (4, "T_0^4"))
-    curves = {name: slap_graph(map, n, scaled(400, fine, 20)) for n, name in named}
-    return (Panel("cuspless cardioid", "s", "s_image", curves, facts=facts(map)),)
+    return (slap_panel("cuspless cardioid", PinballMap("cuspless", lam=0), (1, 2, 4), fine),)
 
 
-def draw_cuspless_slap(panels: Panels) -> "Figure":
-    """Draws the graphs of the slap map and its iterates, with the diagonal."""
-    figure, (ax,) = sheet(panels, columns=1, height=4.2)
-    graphs(ax, panels[0])
-    return figure
+draw_cuspless_slap = draw_slap
 
 
 def whole(ax: "Axes") -> None:

@@ -13,8 +13,8 @@ from symbolic.cycles.cycle import discriminant, minor_axis
 from symbolic.cycles.thresholds import lambda_minus, stability_number, trace_of
 from symbolic.tables.table import a as a_letter
 from symbolic.tables.table import lam as lam_letter
-from verification.paper.figures.phase import SEED, facts, flights, outline
-from verification.paper.figures.phase import slap_by_angle as by_angle
+from verification.paper.figures.phase import SEED, facts, flights, outline, slap_panel
+from verification.paper.figures.phase import draw_slap as draw_slap
 from verification.plots.sheet import (
     BLACK,
     DARK,
@@ -24,7 +24,6 @@ from verification.plots.sheet import (
     Curve,
     Panel,
     Panels,
-    graphs,
     legend,
     scaled,
     sheet,
@@ -151,13 +150,4 @@ def draw_eigenvalues(panels: Panels) -> "Figure":
 
 def slap(fine: float = 1.0) -> Panels:
     """The slap map and its second iterate at `a = 1.2`, in polar angles."""
-    map = PinballMap("ellipse", lam=0, a="1.2")
-    curves = {f"T_0{power}": by_angle(map, n, scaled(400, fine, 20)) for n, power in ((1, ""), (2, "^2"))}
-    return (Panel("ellipse, $a = 1.2$", "theta", "theta_image", curves, facts=facts(map)),)
-
-
-def draw_slap(panels: Panels) -> "Figure":
-    """Draws the graphs of the slap map and its second iterate, with the diagonal."""
-    figure, (ax,) = sheet(panels, columns=1, height=4.2)
-    graphs(ax, panels[0])
-    return figure
+    return (slap_panel("ellipse, $a = 1.2$", PinballMap("ellipse", lam=0, a="1.2"), (1, 2), fine, by_angle=True),)

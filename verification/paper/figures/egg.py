@@ -21,8 +21,9 @@ from symbolic.cycles.polygons import near_flat
 from symbolic.cycles.thresholds import alpha_tilde
 from symbolic.tables.table import alpha as alpha_letter
 from symbolic.tables.table import lam as lam_letter
-from verification.paper.figures.cardioid import cycle_points, found, orbit_on, shares
-from verification.paper.figures.phase import SEED, by_angle, facts, flights, outline, particles_of, polar
+from verification.paper.figures.cardioid import cycle_points, found, in_the_table, orbit_on
+from verification.paper.figures.phase import SEED, by_angle, facts, outline, particles_of, polar, slap_panel
+from verification.paper.figures.phase import draw_slap as draw_slap
 from verification.paper.figures.phase import slap_by_angle as slap_graph
 from verification.plots.sheet import (
     BLACK,
@@ -38,7 +39,6 @@ from verification.plots.sheet import (
     Panels,
     Raster,
     cloud,
-    graphs,
     legend,
     scaled,
     sheet,
@@ -76,21 +76,10 @@ def draw_islands(panels: Panels) -> "Figure":
 
 def slap(fine: float = 1.0) -> Panels:
     """The slap map and its iterates up to the fourth, at two shapes."""
-    panels = []
-    for alpha in ("0.05", "0.08"):
-        map = PinballMap("egg", lam=0, alpha=alpha)
-        named = ((1, "T_0"), (2, "T_0^2"), (3, "T_0^3"), (4, "T_0^4"))
-        curves = {name: slap_graph(map, n, scaled(400, fine, 20)) for n, name in named}
-        panels.append(Panel(rf"$\alpha = {alpha}$", "theta", "theta_image", curves, facts=facts(map)))
-    return tuple(panels)
-
-
-def draw_slap(panels: Panels) -> "Figure":
-    """Draws in each panel the graphs of the slap map and its iterates, with the diagonal."""
-    figure, axes = sheet(panels, height=4.0)
-    for ax, panel in zip(axes, panels, strict=True):
-        graphs(ax, panel)
-    return figure
+    return tuple(
+        slap_panel(rf"$\alpha = {alpha}$", PinballMap("egg", lam=0, alpha=alpha), range(1, 5), fine, by_angle=True)
+        for alpha in ("0.05", "0.08")
+    )
 
 
 def period3(fine: float = 1.0) -> Panels:
@@ -165,17 +154,7 @@ RANGE = (0.36, 0.46)  # contractions of the bifurcation diagram
 
 def configurations(fine: float = 1.0) -> Panels:
     """The attractors in the table at four contractions; a chaotic one is shown by an orbit on it."""
-    panels = []
-    for lam in ("0.1", "0.39", "0.43", "0.45"):
-        map, bounces = PinballMap("egg", lam=lam, alpha=ALPHA), scaled(4000, min(fine, 1.0), 20)
-        named = found(map)
-        curves = {
-            name: cycle_points(map, attractor)[1] if attractor.period else flights(orbit_on(map, attractor, bounces))
-            for name, attractor in named.items()
-        }
-        known = facts(map, seed=SEED, bounces=bounces, **shares(named))
-        panels.append(Panel(rf"$\lambda = {lam}$", "x", "y", {"boundary": outline(map), **curves}, facts=known))
-    return tuple(panels)
+    return in_the_table("egg", ("0.1", "0.39", "0.43", "0.45"), scaled(4000, min(fine, 1.0), 20), alpha=ALPHA)
 
 
 def along(curve: Curve, k: int) -> Curve:

@@ -3,7 +3,7 @@
 A graph of a slap map has gaps where the map jumps (sections 2.2, 3.4, 4.2, 5.4 and 6.2).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from numeric import Orbit, PinballMap
 from numeric.backends import elementary
 from numeric.pinball.sampling import boundary, interior_starts
 from verification.plots import results
-from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Fact, Panel, Panels, cloud, scaled, sheet
+from verification.plots.sheet import BLACK, OUTLINE, Array, Curve, Fact, Panel, Panels, cloud, graphs, scaled, sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -148,6 +148,21 @@ def slap_by_angle(map: PinballMap, iterate: int, points: int) -> Curve:
 
     found = graph(image, -np.pi, np.pi, points)
     return Curve(polar(map, found.x), found.y)
+
+
+def slap_panel(title: str, map: PinballMap, iterates: Iterable[int], fine: float, by_angle: bool = False) -> Panel:
+    """The graphs of iterates of the slap map, in arc length or, for tables of one component, in polar angles."""
+    graph_of, name = (slap_by_angle, "theta") if by_angle else (slap_by_arc_length, "s")
+    curves = {f"T_0^{n}" if n > 1 else "T_0": graph_of(map, n, scaled(400, fine, 20)) for n in iterates}
+    return Panel(title, name, f"{name}_image", curves, facts=facts(map))
+
+
+def draw_slap(panels: Panels) -> "Figure":
+    """Draws in each panel the graphs of the slap map and its iterates, with the diagonal."""
+    figure, axes = sheet(panels, columns=len(panels), height=4.2 if len(panels) == 1 else 4.0)
+    for ax, panel in zip(axes, panels, strict=True):
+        graphs(ax, panel)
+    return figure
 
 
 PARTICLES, FLIGHTS = 300, 3  # orbits in phase space, and orbits drawn in the table

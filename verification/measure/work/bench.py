@@ -27,10 +27,11 @@ from numeric.kernels import machine
 from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text, operations
 from numeric.pinball.sampling import phase_starts
-from verification.arithmetic.balls import bits_of, working
+from verification.arithmetic.balls import bits_of
 from verification.maps.enclosed import EnclosedMap
 from verification.maps.exact import ExactMap, errors
 from verification.measure.extremes.orbits import DIGITS, SCENES, scene
+from verification.measure.work.question import distance
 from verification.measure.work.row import MethodResult, written
 
 Array = NDArray[np.float64]
@@ -166,7 +167,7 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
         for arithmetic, way in ways:
             starts = [way.start(*particle) for particle in particles]
             found = [way.bounce(start) for start in starts]
-            error = max(distance(one, two, wanted) for one, two in zip(found, landed, strict=True))
+            error = max(landing_error(one, two, wanted) for one, two in zip(found, landed, strict=True))
 
             def all_of_them(way: Any = way, starts: Any = starts) -> object:
                 return [way.bounce(start) for start in starts]
@@ -175,14 +176,15 @@ def multiprecision_rows(name: str, digits: Iterable[int], runs: int = 1) -> Iter
             yield timing(name, f"{wanted} digits", error, seconds, runs, word=arithmetic)
 
 
-def distance(found: Any, truth: Any, digits: int) -> Decimal:
+def landing_error(found: Any, truth: Any, digits: int) -> Decimal:
     """The largest error of parameter and exit angle, rounded to `digits`, against balls `truth`, in units of 2**-52."""
-    largest = arb(0)
-    with working(bits_of(digits + 2 * MORE)):
-        for one, two in ((found.theta, truth.theta), (found.phi, truth.phi)):
-            written = one.mid().str(digits, radius=False) if isinstance(one, arb) else mpmath.nstr(one, digits)
-            largest = largest.max(arb(abs(arb(written) - two).upper()))
-        return Decimal((largest * 2**52).upper().str(3, radius=False))
+    written = [
+        one.mid().str(digits, radius=False) if isinstance(one, arb) else mpmath.nstr(one, digits)
+        for one in (found.theta, found.phi)
+    ]
+    _, largest = distance(written, [truth.theta, truth.phi], digits + 2 * MORE)
+    assert largest is not None
+    return Decimal(f"{largest * 2**52:.3g}")
 
 
 def attracted(map: PinballMap, particles: int, transient: int = 100) -> list[Array]:

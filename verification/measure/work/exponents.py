@@ -119,17 +119,13 @@ def of_chaos() -> Question:
     going = growth.code == 0
     points = growth.theta[going], growth.phi[going], growth.component[going]
 
-    def started(own: PinballMap) -> Growth:
-        growth = Growth(own, *points)
-        growth.advance(ALIGNED)
-        return growth
-
     def counted(bounces: int) -> Claimed:
-        found = grown(started(map), max(bounces // ORBITS, 8))
+        found = estimated(map, points, bounces)
         return Claimed([found.mean], found.reach)
 
     def plainly(bounces: int) -> list[float]:
-        growth, each = started(plain), max(bounces // ORBITS, 1)
+        growth, each = Growth(plain, *points), max(bounces // ORBITS, 1)
+        growth.advance(ALIGNED)
         before = growth.stretch
         growth.advance(each)
         return [float(np.mean(growth.stretch - before) / each)]
@@ -164,10 +160,15 @@ def sharply() -> arb:
     return proved(SHARP)
 
 
-def grown(growth: Growth, bounces: int) -> Estimate:
-    """The exponent over the next bounces of each orbit, with its standard error."""
+def estimated(map: PinballMap, points: tuple[Any, Any, Any], bounces: int) -> Estimate:
+    """The larger exponent over so many bounces in all, from points on an attractor, with its standard error.
+
+    `points` are parameters, exit angles and components, `ORBITS` at most.
+    """
+    growth = Growth(map, *points)
+    growth.settle(ALIGNED)
     count = Count(growth, most=64)
-    for _ in count.until(bounces):
+    for _ in count.until(max(bounces // ORBITS, 8)):
         pass
     return estimate(count.up)
 

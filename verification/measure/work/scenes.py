@@ -18,8 +18,6 @@ from sympy import S
 
 from numeric import PinballMap
 from numeric.dynamics.attractors import Attractor, Kind, find
-from numeric.dynamics.statistics import Estimate
-from numeric.pinball.sampling import ALIGNED, Growth
 from numeric.pinball.states import html_table, many, plotted
 from symbolic.tables.law import Law
 from symbolic.tables.scene import Scene, as_scene
@@ -28,7 +26,7 @@ from verification.cycles.chords import Chords
 from verification.cycles.problem import Problem
 from verification.cycles.recurrence import BifurcationKind
 from verification.measure.work.cycles import cycle_question, fold_question, textbook_cycle
-from verification.measure.work.exponents import grown, of_cycle_exponent
+from verification.measure.work.exponents import ORBITS, estimated, of_cycle_exponent
 from verification.measure.work.flights import BOUNCES, of_bounces, of_derivative
 from verification.measure.work.question import Answer, Claimed, Method, Question, Say, measured
 from verification.measure.work.row import HEAD, MethodResult, facts, plain, table
@@ -40,7 +38,7 @@ if TYPE_CHECKING:
 
 PERIODS = (2, 3, 4)  # periods at which a cycle is searched for
 BEGINNINGS = ("own", "19/20", "7/10", "1/2", "3/10")  # contractions at which cycles with a fold are searched for
-ORBITS, COUNTED, LONG = 64, (1_000, 30_000, 300_000), 3_000_000  # of an exponent, and bounces in all
+COUNTED, LONG = (1_000, 30_000, 300_000), 3_000_000  # bounces in all for an exponent
 
 
 @dataclass(frozen=True, repr=False)
@@ -190,20 +188,16 @@ def _of_cycles_exponent(scene: Scene, map: PinballMap, attractor: Attractor) -> 
 
 
 def _of_chaos(scene: Scene, map: PinballMap, attractor: Attractor) -> Question:
-    points = attractor.points.only(np.linspace(0, attractor.points.size - 1, ORBITS).astype(int))
-
-    def counted(bounces: int, own: PinballMap = map) -> Estimate:
-        growth = Growth(own, points.theta, points.phi, points.component)
-        growth.settle(ALIGNED)
-        return grown(growth, max(bounces // ORBITS, 8))
+    on = attractor.points.only(np.linspace(0, attractor.points.size - 1, ORBITS).astype(int))
+    points = on.theta, on.phi, on.component
 
     def run(bounces: int, own: PinballMap = map) -> Claimed:
-        found = counted(bounces, own)
+        found = estimated(own, points, bounces)
         return Claimed([found.mean], found.reach)
 
     @cache
     def long() -> list[arb]:
-        found = counted(LONG)
+        found = estimated(map, points, LONG)
         return [arb(found.mean, found.reach)]
 
     plainly = PinballMap(scene, kernels=False)

@@ -83,16 +83,6 @@ def differences(step, speed, particle, one, other):
     return ss, sp, ps, pp
 
 
-def forward(step, speed, particle, h):
-    """The derivative matrix by forward differences."""
-    return differences(step, speed, particle, h, 0.0)
-
-
-def central(step, speed, particle, h):
-    """The derivative matrix by central differences."""
-    return differences(step, speed, particle, h, -h)
-
-
 class Lambdified:
     """One step with `sympy.lambdify` of the chord's angle and of the matrix, and `brentq` for the landing."""
 

@@ -22,7 +22,6 @@ from verification.measure.work.row import MethodResult, baseline, facts, footer,
 ROOT = Path(__file__).resolve().parent.parent
 DOCS, DATA = ROOT / "docs", ROOT / "benchmarks" / "records" / "work_precision.json"
 PAGE, FIGURES = DOCS / "work_precision.md", DOCS / "figures"
-KEPT = ("name", "title", "answers", "unit", "certified")
 HEAD = """# Error against run time, question by question
 
 Which method is quickest for a given accuracy, and what does it cost? `pinball work NAME` draws one of these
@@ -60,7 +59,7 @@ def main():
         for name in names:
             bar.update(task, description=name)
             made = question(name)
-            asked[name] = {key: getattr(made, key) for key in KEPT}
+            asked[name] = made.document()
             rows += measured(made, options.runs)
             bar.advance(task)
             if not console.is_terminal:

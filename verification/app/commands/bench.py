@@ -64,6 +64,7 @@ def command(
     from verification.measure.work.calls import call_rows, pieces_at_rest, table_rows
     from verification.measure.work.choice import earlier, moved, of_bench
     from verification.measure.work.plain import QUESTIONS, asked_rows
+    from verification.measure.work.row import machine_facts
     from verification.measure.work.scaling import sweep_rows
 
     before = earlier(Path(compare)) if compare else []
@@ -97,7 +98,7 @@ def command(
         for question in known_questions:
             step(question.typed)
             asked += asked_rows(min(runs, 3), [question])
-    facts = bench.machine_facts()
+    facts = machine_facts()
     measured = [bench.as_data(row) for row in (*rows, *pieces)]
     changes = moved([row for row in before if row.question in chosen], of_bench(measured)) if compare else []
     document = {"machine": facts, "rows": measured, "calls": [call.as_data() for call in whole]}
@@ -277,7 +278,7 @@ def work_command(
             step(questions[-1].title)
             rows += measured(questions[-1], runs, digits or (1000 if scene is None else 100))
     output.write(
-        {"machine": known, "questions": [described(q) for q in questions], "rows": [r.to_dict() for r in rows]}
+        {"machine": known, "questions": [q.document() for q in questions], "rows": [r.to_dict() for r in rows]}
     )
     for each in questions:
         own = [row for row in rows if row.question == each.name]
@@ -296,11 +297,6 @@ def work_command(
         output.console.print(f"{path}: the diagram")
     output.console.print(f"\none core; {footer(known)}")
     return DONE
-
-
-def described(question: "Question") -> dict[str, str | bool]:
-    """Name, title, answers, unit and certainty of a question, as JSON."""
-    return {name: getattr(question, name) for name in ("name", "title", "answers", "unit", "certified")}
 
 
 def _target(question: str | None, out: str | None, known: Iterable[str]) -> Path | None:

@@ -7,7 +7,7 @@ from .choice import QUESTIONS, digits_for, earlier, for_orbit, moved, of_bench
 from .figure import drawn, image
 from .plain import asked_rows
 from .question import Question, measured
-from .row import MethodResult, WorkDiagram, diagram, duration, facts, footer, front
+from .row import MethodResult, WorkDiagram, diagram, duration, facts, footer, front, machine_facts
 from .scaling import sweep_rows
 from .scenes import WorkPrecision, work_precision
 
@@ -37,6 +37,7 @@ __all__ = [
     "front",
     "image",
     "is_checkout",
+    "machine_facts",
     "measured",
     "moved",
     "of_bench",

@@ -6,8 +6,6 @@ rows only, and prints a note.
 """
 
 import importlib.util
-import os
-import platform
 import time
 from collections.abc import Callable, Iterable
 from decimal import Decimal
@@ -16,14 +14,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import flint
 import mpmath
 import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
 from numeric import PinballMap
-from numeric.kernels import machine
 from numeric.kernels.machine import KernelSpec, starting
 from numeric.kernels.text import kernel_text, operations
 from numeric.pinball.sampling import phase_starts
@@ -65,25 +61,6 @@ def as_data(row: MethodResult) -> dict[str, Any]:
         "error": written(row.error),
         "error_unit": UNIT,
     }
-
-
-def machine_facts() -> dict[str, str]:
-    """The machine and the versions of packages, by name."""
-    import llvmlite
-    import scipy
-
-    facts = {"python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
-    facts |= {"numpy": np.__version__, "scipy": scipy.__version__, "llvmlite": llvmlite.__version__}
-    facts |= {
-        "mpmath": mpmath.__version__,
-        "mpmath's integers": mpmath.libmp.BACKEND,
-        "python-flint": flint.__version__,
-    }
-    if machine.available():
-        import llvmlite.binding as llvm
-
-        facts["processor"] = llvm.get_host_cpu_name()
-    return facts | {"processors": str(os.cpu_count())}
 
 
 def best(action: Callable[[], object], runs: int = RUNS, clock: Callable[[], float] = time.process_time) -> float:

@@ -330,13 +330,11 @@ def textbook_jacobians(asked: Flights) -> list[Method]:
     def each(way: Callable[..., Any]) -> list[float]:
         return [float(x) for *particle, _ in PARTICLES for x in way(*particle)]
 
-    def differences(way: Any, h: float) -> list[float]:
-        return each(lambda *particle: way(map.step, map.states.speed, particle, h))
+    def differences(other: float, h: float) -> list[float]:
+        return each(lambda *particle: book.differences(map.step, map.states.speed, particle, h, other * h))
 
     return [
-        *(
-            textbook(f"{kind} differences", partial(differences, way), "h", STEPS, per)
-            for kind, way in (("forward", book.forward), ("central", book.central))
-        ),
+        textbook("forward differences", partial(differences, 0.0), "h", STEPS, per),
+        textbook("central differences", partial(differences, -1.0), "h", STEPS, per),
         textbook("lambdify", lambda _: each(lambdified), per=per),
     ]

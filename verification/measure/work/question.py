@@ -108,6 +108,10 @@ class Question:
     certified: bool = True
     most_digits: int = 1000
 
+    def document(self) -> dict[str, str | bool]:
+        """Name, title, answers, unit and certainty, as JSON."""
+        return {name: getattr(self, name) for name in ("name", "title", "answers", "unit", "certified")}
+
     def values(self) -> str:
         """The reference as text: the first `SHOWN` numbers to 15 digits, each with a bound of its error."""
         found = self.reference(15)

@@ -5,12 +5,19 @@ time.
 """
 
 import os
+import platform
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from math import log10
 from statistics import median, quantiles
 from typing import Any
+
+import flint
+import mpmath
+import numpy as np
+
+from numeric.kernels import machine
 
 BALLS = ("error", "least", "promise")  # fields that a float may not hold
 SMALLEST, LARGEST = Decimal("1e-300"), Decimal("1e300")  # limits of the errors that are written as floats
@@ -176,10 +183,27 @@ def short(number: Decimal) -> str:
     return f"{lead.removesuffix('.0')}e{int(exponent)}"
 
 
+def machine_facts() -> dict[str, str]:
+    """The machine and the versions of packages, by name."""
+    import llvmlite
+    import scipy
+
+    facts = {"python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
+    facts |= {"numpy": np.__version__, "scipy": scipy.__version__, "llvmlite": llvmlite.__version__}
+    facts |= {
+        "mpmath": mpmath.__version__,
+        "mpmath's integers": mpmath.libmp.BACKEND,
+        "python-flint": flint.__version__,
+    }
+    if machine.available():
+        import llvmlite.binding as llvm
+
+        facts["processor"] = llvm.get_host_cpu_name()
+    return facts | {"processors": str(os.cpu_count())}
+
+
 def facts() -> dict[str, str]:
     """The machine, the package versions and the machine's load, by name."""
-    from verification.measure.work.bench import machine_facts
-
     load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
     return machine_facts() | {"load": load}
 

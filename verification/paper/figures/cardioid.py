@@ -158,7 +158,7 @@ def configurations(fine: float = 1.0) -> Panels:
     return in_the_table("cuspless", ("0.02", "0.072", "0.2", "0.5"), scaled(300, min(fine, 1.0), 8))
 
 
-def in_the_table(table: str, lams: Iterable[str], bounces: int, **shape: str) -> Panels:
+def in_the_table(table: str, lams: Iterable[str], bounces: int, **shape: Any) -> Panels:
     """A panel for each contraction: the attractors in the table, a chaotic one as an orbit of so many bounces on it."""
     panels = []
     for lam in lams:

@@ -3,12 +3,13 @@
 from . import report
 from .findings import escaped, graded, letter, tables
 from .mathml import font_style, formula, formulas, remark
-from .page import ReportFigure, diagrams, markdown, set_claims, set_result
+from .page import ReportFigure, address, diagrams, markdown, set_claims, set_result
 from .report import Result, codes, verify
 
 __all__ = [
     "ReportFigure",
     "Result",
+    "address",
     "codes",
     "diagrams",
     "escaped",

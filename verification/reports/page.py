@@ -5,7 +5,6 @@ files.
 """
 
 import json
-import re
 from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib.resources import files
@@ -14,8 +13,8 @@ from itertools import groupby
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from verification.paper.report.findings import escaped
-from verification.paper.report.mathml import font_style, formula, formulas, mathml, remark
+from verification.paper.report.findings import escaped, tex
+from verification.paper.report.mathml import font_style, formula, mathml, remark
 from verification.paper.report.page import address
 from verification.reports.asked import FILE, Parts
 from verification.reports.blocks import Block, Certificate, Formula, Known, Listing, Paragraph, Picture, ShownNumber
@@ -176,10 +175,7 @@ HEAD = r"""\documentclass{article}
 \usepackage{textcomp}
 \setlength{\parindent}{0pt}\setlength{\parskip}{4pt}
 """
-GREEK = re.compile(r"(?<![A-Za-z\\])(lambda|lam|theta|alpha|phi|eta|kappa|nu)(?:\\_(plus|minus))?(?![A-Za-z])")
-LETTERS = {"lam": r"\lambda", "phi": r"\varphi"}
 LEAST = 7.0  # letters of a column
-SIGNS = {"plus": "_+", "minus": "_-", None: ""}
 
 
 def latex(report: Report, parts: Parts) -> str:
@@ -192,24 +188,6 @@ def latex(report: Report, parts: Parts) -> str:
     made = ", ".join(f"{name} {number}" for name, number in report.versions.items())
     lines += [tex(f"Made in {report.seconds:.0f} s with {made}; seed {asked.seed}."), r"\end{document}"]
     return "\n\n".join(lines) + "\n"
-
-
-def tex(text: str) -> str:
-    r"""Text in LaTeX: formulas typeset, special characters escaped, and names of variables as the paper's symbols.
-
-    >>> print(tex("50 %: nu_plus for lambda = 1/2"))
-    50 \%: $\nu_+$ for $\lambda = \frac{1}{2}$
-    """
-    found, at = [], 0
-    for start, end, math in [*formulas(text), (len(text), len(text), "")]:
-        found += [_plain(text[at:start]), f"${math}$" if math else ""]
-        at = end
-    return "".join(found)
-
-
-def _plain(text: str) -> str:
-    safe = escaped(text).replace("±", r"$\pm$")
-    return GREEK.sub(lambda found: f"${LETTERS.get(found[1], chr(92) + found[1])}{SIGNS[found[2]]}$", safe)
 
 
 def typeset(given: Block, parts: Parts) -> str:

@@ -243,6 +243,15 @@ def _set(text: str) -> str:
     """Text in our notation, as a LaTeX sentence with formulas."""
     text = text[:1].upper() + text[1:] if text[:1].islower() and text[1:2].isalpha() else text
     text = text if text.endswith((".", "!", "?")) else f"{text}."
+    return tex(text)
+
+
+def tex(text: str) -> str:
+    r"""Text in LaTeX: formulas typeset, special characters escaped, and names of variables as the paper's symbols.
+
+    >>> print(tex("50 %: nu_plus for lambda = 1/2"))
+    50 \%: $\nu_{+}$ for $\lambda = \frac{1}{2}$
+    """
     shown, at = "", 0
     for start, end, latex in formulas(text):
         shown += _typed(text[at:start]) + f"${latex}$"
@@ -256,12 +265,12 @@ def _typed(text: str) -> str:
     return "".join(_symbol(part) if n % 2 else escaped(part) for n, part in enumerate(parts))
 
 
-TYPED = {"<=": r"\le", ">=": r"\ge", "+-": r"\pm", "->": r"\to", "oo": r"\infty", "-": "-", "*": r"\,"}
+TYPED = {"<=": r"\le", ">=": r"\ge", "+-": r"\pm", "±": r"\pm", "->": r"\to", "oo": r"\infty", "-": "-", "*": r"\,"}
 TYPED |= {"...": r"\dots", "... .": r"\dots."}
 STEMS = "alpha|theta|kappa|lambda|delta|eta|phi|pi|mu|nu|lam"
 LETTER_OR_SIGN = re.compile(
-    rf"((?<!\w)(?<!\w-)(?:{STEMS})(?:_(?:\w|[+-])|\*(?!\())?(?!\w)|(?<!\w)[A-Za-z]_\w(?!\w)|<=|>=|\+-|->|\.\.\.(?: \.)?"
-    r"|(?<!\w)oo(?!\w)|(?<![\w)-])-(?=[\w.])|(?<=\w)\*(?=\())"
+    rf"((?<!\w)(?<!\w-)(?:{STEMS})(?:_(?:plus|minus|\w|[+-])|\*(?!\())?(?!\w)|(?<!\w)[A-Za-z]_\w(?!\w)|<=|>="
+    r"|\+-|±|->|\.\.\.(?: \.)?|(?<!\w)oo(?!\w)|(?<![\w)-])-(?=[\w.])|(?<=\w)\*(?=\())"
 )
 
 
@@ -269,6 +278,7 @@ def _symbol(name: str) -> str:
     if name in TYPED:
         return f"${TYPED[name]}$"
     stem, _, below = name.rstrip("*").partition("_")
+    below = {"plus": "+", "minus": "-"}.get(below, below)
     base = {"lam": r"\lambda", "phi": r"\varphi"}.get(stem, stem if len(stem) == 1 else rf"\{stem}")
     return f"${base}{f'_{{{below}}}' if below else ''}{'^*' if name.endswith('*') else ''}$"
 

@@ -11,7 +11,7 @@ import sys
 
 import atheris
 
-with atheris.instrument_imports(include=["symbolic.tables.formula", "symbolic.tables.formula", "verification.app"]):
+with atheris.instrument_imports(include=["symbolic.tables.formula", "verification.app"]):
     from symbolic.tables.formula import FUNCTIONS, number, parse
     from verification.app.scene import scene, start_of
 

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 
 from verification.measure.extremes.orbits import SCENES
-from verification.measure.work.choice import crossovers, entries
 from verification.measure.work.figure import times
 from verification.measure.work.row import MethodResult, duration, footer, front, short
 
@@ -161,23 +160,6 @@ def broken(rows):
     )
 
 
-def choice(document, rows):
-    """The cheapest arithmetic by digits, for each question whose setting is digits."""
-    lines = []
-    for name in document["questions"]:
-        known = entries([row for row in rows if row.question == name])
-        if not any(entry.digits > 16 for entry in known):
-            continue
-        plain, sure = crossovers(name, measured=known), crossovers(name, measured=[e for e in known if e.proved])
-        lines.append([f"`{name}`", "; ".join(step(*one) for one in plain), "; ".join(step(*one) for one in sure[-1:])])
-    return table(["question", "cheapest", "with a proof"], lines)
-
-
-def step(digits, picked):
-    """Text for one row of the table of choices: from how many digits on an arithmetic is the cheapest, and its name."""
-    return f"from {digits} {picked.method}" if digits > 1 else picked.method
-
-
 def page():
     """The text of the page."""
     bench, work = load("benchmarks/records/bench.json"), load("benchmarks/records/work_precision.json")
@@ -201,7 +183,6 @@ def page():
         many=MANY,
         questions=questions(work, rows),
         usual=broken(rows),
-        choice=choice(work, rows),
     )
 
 

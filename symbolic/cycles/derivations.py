@@ -25,6 +25,7 @@ from sympy import (
     Piecewise,
     Poly,
     Rational,
+    Rel,
     S,
     Symbol,
     cos,
@@ -337,11 +338,11 @@ def thresholds(cycle: Cycle) -> dict[str, Expr | None]:
     box = {letter: range for letter, range in parameter_box(cycle.table).items() if letter in P.free_symbols}
     if P.is_number:
         return {"flip": flip_contraction(P), "focus": focus_contraction(P)}
-    return {"flip": _threshold(-P, -P, P + 1, box), "focus": _threshold(1 - P, P, 1 - P, box)}
+    return {"flip": _threshold(-P, -P, P + 1, box, ">"), "focus": _threshold(1 - P, P, 1 - P, box, ">=")}
 
 
-def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]) -> Expr | None:
-    """`(1 - r)/(1 + r)`, `r = sqrt(square)`, on the condition `one >= 0` and `other >= 0`; None if it never holds."""
+def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval], sign: str) -> Expr | None:
+    """`(1 - r)/(1 + r)`, `r = sqrt(square)`, if `one` has the `sign` to 0 and `other >= 0`; None if it never holds."""
     inside = {letter: Interval.open(range.start, range.end) for letter, range in box.items()}
     if any(nonnegative(-gap, inside) for gap in (one, other)):
         return None
@@ -351,15 +352,15 @@ def _threshold(square: Expr, one: Expr, other: Expr, box: dict[Symbol, Interval]
         divisor = shorter.as_numer_denom()[1]  # where it vanishes, the shorter form may be 0/0
         value = shorter if divisor.is_number or positive(divisor, box) or positive(-divisor, box) else plain
     held = all(nonnegative(gap, inside) for gap in (one, other))
-    return value if held else Piecewise((value, _condition((one, other), box)))
+    return value if held else Piecewise((value, _condition({one: sign, other: ">="}, box)))
 
 
-def _condition(gaps: tuple[Expr, ...], box: dict[Symbol, Interval]) -> Basic:
-    """The condition that all gaps are at least 0: as bounds of the letter, if they are rational functions of one."""
+def _condition(gaps: dict[Expr, str], box: dict[Symbol, Interval]) -> Basic:
+    """The condition that each gap has its sign to 0: as bounds of the letter, if they are rational functions of one."""
     if len(box) != 1 or not all(gap.free_symbols <= set(box) and gap.is_rational_function() for gap in gaps):
-        return And(*(gap >= 0 for gap in gaps))
+        return And(*(Rel(gap, 0, sign) for gap, sign in gaps.items()))
     ((letter, range),) = box.items()
-    parts = [((Poly(above, letter), Poly(below, letter)), ">=") for above, below in map(fraction, map(together, gaps))]
+    parts = [(tuple(Poly(part, letter) for part in fraction(together(gap))), sign) for gap, sign in gaps.items()]
     where = solve_rational_inequalities([parts]).intersect(range).as_relational(letter)
     return where.replace(CRootOf, lambda *root: _in_square_roots(CRootOf(*root)))
 

@@ -60,6 +60,13 @@ def test_a_threshold_over_a_range_of_shapes_is_that_of_each_shape(b):
     assert any(one is not None and simplify(of_all - one) == 0 for one in own)
 
 
+def test_a_chord_ends_at_the_near_side_of_a_hole():
+    table = tables.piecewise(*tables.polygon((2, 0), (-1, 2), (-1, -2)).components, tables.disc("d", (0, 0), "1/4"))
+    (cycle,) = double_normals(table)
+
+    assert cycle.length(0) == Rational(3, 4)
+
+
 def test_the_cuspless_threshold_is_a_number():
     assert thresholds(double_normals("cuspless")[0]) == {"flip": lambda_c(), "focus": None}
 

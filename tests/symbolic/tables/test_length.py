@@ -3,10 +3,11 @@
 import pytest
 from sympy import Rational, S, elliptic_e, pi, simplify, sin, sqrt
 
-from symbolic.tables import cardioid, circle, cuspless, egg, ellipse, piecewise, stadium
+from numeric import PinballMap
+from symbolic.tables import arc, cardioid, circle, cuspless, egg, ellipse, piecewise, stadium
 from symbolic.tables.curves import trigonometric
 from symbolic.tables.geometry import arc_length, perimeter, positions, speed
-from symbolic.tables.table import Table, theta
+from symbolic.tables.table import Mark, Table, theta
 
 TABLES = [circle, ellipse, cardioid, cuspless, egg(3), egg(4)]
 
@@ -62,6 +63,12 @@ def test_perimeters_are_those_of_a_hand_calculation():
     assert perimeter(cardioid) == 8
     assert perimeter(cuspless) == 2 * 4 * sqrt(3) / 2 + sqrt(3) / 2
     assert perimeter(egg(3).at(alpha=0)) == 2 * pi
+    cycloid = arc("arch", "sin(theta) - theta", "1 - cos(theta)", 0, 2 * pi), arc("base", theta, 0, -2 * pi, 0)
+    assert simplify(perimeter(piecewise(*cycloid)) - 8 - 2 * pi) == 0
+    star = [arc(f"{k}", "cos(theta)**3", "sin(theta)**3", k * pi / 2, (k + 1) * pi / 2) for k in range(4)]
+    assert perimeter(piecewise(*star)) == 6
+    turned = piecewise(arc("c", *cardioid.components[0].point, 0, 2 * pi), undefined=[Mark("cusp", 0, pi)])
+    assert PinballMap(turned, lam=1).arclength.perimeter == pytest.approx(8, abs=1e-12)
 
 
 def test_the_perimeter_of_an_ellipse_is_the_complete_elliptic_integral():

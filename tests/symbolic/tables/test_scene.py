@@ -52,6 +52,7 @@ SCENES = [
     Scene(tables.polar(1 + cos(5 * theta) / 40), lam="1/3"),
     Scene(tables.parametric("3*cos(theta)", "2*sin(theta) + sqrt(2)"), lam="1"),
     Scene.parse(TRIANGLE),
+    Scene.of({"polar": "1 + cos(2*theta)/9", "origin": {"component": 0, "theta": "pi/2"}, "lam": "1/2"}),
 ]
 
 HOLE = (
@@ -92,6 +93,7 @@ def test_the_table_of_a_scene_makes_the_scene_again(scene):
     again = Scene(scene.table, lam=scene.lam)
 
     assert again.table == scene.table
+    assert again.document.get("origin") == scene.document.get("origin")
     assert again == scene or (scene.document.get("shape") and "table" not in scene.document)  # letters became numbers
 
 

@@ -28,7 +28,7 @@ from symbolic.tables.law import Law, lengths
 from symbolic.tables.polynomial import cubic
 from symbolic.tables.scene import Scene
 from symbolic.tables.table import Component, Table, eta, lam, s, theta
-from symbolic.tables.validity import parameter_box, radius_over, root, validated
+from symbolic.tables.validity import parameter_box, prove_table, radius_over, root, validated
 
 DEEP = 12  # nested operations, beyond which derivatives are not written out
 LARGEST = 4000  # numbers and operations of a coordinate, which is written out three times
@@ -104,11 +104,13 @@ def exact_table(table: Table | Scene | Named | str, K: int, shape: dict[str, Any
 
 @lru_cache(maxsize=64)
 def proved_throughout(table: Table) -> bool:
-    """Is it proved, by a positive radius, that the boundary bounds a table for all values of its free parameters?"""
+    """Is it proved that the boundary bounds a table for all values of its free parameters?"""
     try:
-        return radius_over(table)
+        if not radius_over(table):
+            prove_table(table)
     except ValueError:  # some values give no table; others may
         return False
+    return True
 
 
 def in_unit(table: Table, length: Fraction, x: Fraction, y: Fraction) -> Table:

@@ -272,7 +272,12 @@ def prove_table(table: Table, ranges: Ranges | None = None) -> None:
     for letter, (low, high) in ends.items():
         if not (low.is_finite and high.is_finite and (high - low).is_nonnegative):
             raise ValueError(f"{table.name}: {letter} from {low} to {high} is no range; give two finite numbers")
-    _prove(closed_and_finite(table), ends)
+    _prove_over(table, tuple(ends.items()))
+
+
+@lru_cache(maxsize=64)
+def _prove_over(table: Table, ends: tuple[tuple[Symbol, tuple[Expr, Expr]], ...]) -> None:
+    _prove(closed_and_finite(table), dict(ends))
 
 
 def _prove(table: Table, ends: Ranges) -> None:

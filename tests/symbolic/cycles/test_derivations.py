@@ -2,6 +2,7 @@
 
 import re
 from fractions import Fraction
+from functools import cache
 from time import process_time
 
 import flint
@@ -120,10 +121,12 @@ def test_generated_code_agrees_over_arrays_mpmath_and_balls(at, b):
 
 
 TABLES = {"circle": {}, "ellipse": {"a": "3/2"}, "cardioid": {}, "egg": {"alpha": "2/25"}}
-MATRIX = {
-    name: generate(derivative_matrix(tables.named(name).at(**shape)), "mpmath", digits=30)
-    for name, shape in TABLES.items()
-}
+
+
+@cache
+def matrix(name):
+    """The generated function of the symbolic matrix; it takes seconds to derive, so no test file loads with it."""
+    return generate(derivative_matrix(tables.named(name).at(**TABLES[name])), "mpmath", digits=30)
 
 
 @given(st.sampled_from(sorted(TABLES)), st.floats(-3, 3), st.floats(-1.4, 1.4), st.sampled_from(["0.3", "0.95"]))
@@ -132,7 +135,7 @@ def test_the_numeric_jacobian_is_the_symbolic_matrix_along_the_chord(name, at, p
     step = map.step(at, phi)
     if step.code != 0 or np.cos(step.eta) < 1e-2:
         return
-    expected = np.array(MATRIX[name](at, float(step.theta), contraction).tolist(), dtype=float)
+    expected = np.array(matrix(name)(at, float(step.theta), contraction).tolist(), dtype=float)
 
     assert np.allclose(map.derivative(at, phi), expected, rtol=1e-9, atol=1e-9)
 

@@ -39,19 +39,21 @@ def calls(path: Path) -> set[str]:
     return {node.func.id for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
 
 
-@pytest.mark.parametrize("path", [path for path in CODE if "symbolic" in path.parts], ids=named)
-def test_the_symbolic_storey_holds_no_float(path):
-    with path.open("rb") as file:
-        numbers = [token for token in tokenize.tokenize(file.readline) if token.type == tokenize.NUMBER]
+def test_the_symbolic_storey_holds_no_float():
+    for path in (path for path in CODE if "symbolic" in path.parts):
+        with path.open("rb") as file:
+            numbers = [token for token in tokenize.tokenize(file.readline) if token.type == tokenize.NUMBER]
 
-    assert [token for token in numbers if not isinstance(ast.literal_eval(token.string), int)] == []
+        assert [token for token in numbers if not isinstance(ast.literal_eval(token.string), int)] == [], path
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", CODE, ids=named)
-def test_no_text_is_evaluated(path):
-    assert not calls(path) & READERS_OF_TEXT
-    assert "exec" not in calls(path) or path.relative_to(ROOT) in EXECUTES
+def test_no_text_is_evaluated():
+    for path in CODE:
+        called = calls(path)
+
+        assert not called & READERS_OF_TEXT, path
+        assert "exec" not in called or path.relative_to(ROOT) in EXECUTES, path
 
 
 # NumPy's are compiled for several processors and differ in the last bit: `numeric.backends.elementary` has others.
@@ -68,18 +70,17 @@ def attributes(path: Path) -> set[str]:
     return {node.attr for node in nodes if isinstance(node.value, ast.Name) and node.value.id == "np"}
 
 
-@pytest.mark.parametrize("path", FEEDING, ids=named)
-def test_no_number_comes_from_a_function_whose_bits_depend_on_the_processor(path):
-    assert not attributes(path) & DISPATCHED
+def test_no_number_comes_from_a_function_whose_bits_depend_on_the_processor():
+    assert [named(path) for path in FEEDING if attributes(path) & DISPATCHED] == []
 
 
-@pytest.mark.parametrize("path", [path for path in FEEDING if "numeric" in path.parts], ids=named)
-def test_no_array_is_raised_to_a_power_but_the_square_and_the_root(path):
+def test_no_array_is_raised_to_a_power_but_the_square_and_the_root():
     """NumPy takes these by product and root, others by `power`, whose bits vary; number literals may have any power."""
-    nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.BinOp)]
-    powers = [(ast.unparse(node.left), ast.unparse(node.right)) for node in nodes if isinstance(node.op, ast.Pow)]
+    for path in (path for path in FEEDING if "numeric" in path.parts):
+        nodes = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.BinOp)]
+        powers = [(ast.unparse(node.left), ast.unparse(node.right)) for node in nodes if isinstance(node.op, ast.Pow)]
 
-    assert [(x, n) for x, n in powers if n not in ("2", "0.5") and not re.fullmatch(r"-?[\d.]+", x)] == []
+        assert [(x, n) for x, n in powers if n not in ("2", "0.5") and not re.fullmatch(r"-?[\d.]+", x)] == [], path
 
 
 WRITERS = {Path("numeric/lowering/files.py"), Path("numeric/lowering/cache.py")}  # the latter's entries may be lost
@@ -98,22 +99,21 @@ def written_in_place(call: ast.Call) -> bool:
     return (name in WRITES or ast.unparse(call.func) == "json.dump") and not handed
 
 
-@pytest.mark.parametrize("path", CODE, ids=named)
-def test_files_are_written_whole_or_not_at_all(path):
+def test_files_are_written_whole_or_not_at_all():
     """Only `numeric.lowering.files` opens files for writing."""
-    found = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
+    for path in (path for path in CODE if path.relative_to(ROOT) not in WRITERS):
+        found = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
 
-    assert path.relative_to(ROOT) in WRITERS or [ast.unparse(call) for call in found if written_in_place(call)] == []
-
-
-@pytest.mark.parametrize("path", CODE, ids=named)
-def test_precision_is_never_set_for_others(path):
-    assert not re.search(r"\b(mp|iv|fp|ctx)\.(dps|prec)\s*[-+*]?=[^=]", path.read_text())
+        assert [ast.unparse(call) for call in found if written_in_place(call)] == [], path
 
 
-@pytest.mark.parametrize("path", CODE + TESTS, ids=named)
-def test_a_file_holds_one_idea(path):
-    assert len(path.read_text().splitlines()) <= LINES
+def test_precision_is_never_set_for_others():
+    sets = re.compile(r"\b(mp|iv|fp|ctx)\.(dps|prec)\s*[-+*]?=[^=]")
+    assert [named(path) for path in CODE if sets.search(path.read_text())] == []
+
+
+def test_a_file_holds_one_idea():
+    assert [named(path) for path in CODE + TESTS if len(path.read_text().splitlines()) > LINES] == []
 
 
 def test_a_room_holds_at_most_fifteen_files():
@@ -122,18 +122,18 @@ def test_a_room_holds_at_most_fifteen_files():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", CODE, ids=named)
-def test_a_file_begins_with_what_it_is(path):
-    text = path.read_text()
+def test_a_file_begins_with_what_it_is():
+    texts = {named(path): path.read_text() for path in CODE}
 
-    assert not text.strip() or ast.get_docstring(ast.parse(text))
+    assert [name for name, text in texts.items() if text.strip() and not ast.get_docstring(ast.parse(text))] == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", WORDS, ids=named)
-def test_nothing_speaks_of_how_the_work_was_shared_out(path):
+def test_nothing_speaks_of_how_the_work_was_shared_out():
     """Pages state facts and never mention tickets, which readers do not know."""
-    assert re.findall(rf"\b{'iss' + 'ue'}s?\b", path.read_text(), re.IGNORECASE) == []
+    said = re.compile(rf"\b{'iss' + 'ue'}s?\b", re.IGNORECASE)
+
+    assert [named(path) for path in WORDS if said.search(path.read_text())] == []
 
 
 def test_tests_are_no_packages():

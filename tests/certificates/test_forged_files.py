@@ -36,7 +36,7 @@ LAWS = (
     "-eta*lam - 3*exp(-1000000*(eta - 3/2)**2 - 1000000*(theta - 1)**2)", "-eta*lam*Abs(eta - 1)/(eta - 1)",
     "-lam*eta*sqrt((eta - 1)**2)/(eta - 1)", "-lam*eta*(eta - 1)**2/(eta - 1)**2", "-eta*(atan(1/(eta - 1)) + pi/2)/4",
 )  # fmt: skip
-NORMAL = ("minor-axis", "five-waves", "scatterer")
+NORMAL = ("minor-axis", "five-waves", "scatterer")  # the last two under laws of the place and some others
 
 
 def under(name: str, law: str) -> str:
@@ -298,7 +298,12 @@ TEXTS = {
     "a version of old": lambda: altered("lambda-c", schema=3),
 }
 
-FORGED = {f"{name} under {law}": lambda name=name, law=law: under(name, law) for name in NORMAL for law in LAWS}
+FORGED = {
+    f"{name} under {law}": lambda name=name, law=law: under(name, law)
+    for name in NORMAL
+    for law in LAWS
+    if name == NORMAL[0] or "theta" in law or law in LAWS[:4]
+}
 FORGED |= {key: lambda scene=scene: scened("scatterer", scene) for key, scene in BOUNDARIES.items()}
 FORGED |= {
     key: lambda name=name, scene=scene, more=more: scened(name, scene | {"lam": "1/3"}, **more)

@@ -1,14 +1,14 @@
-"""Fixtures: scenes that tests share, and a separate cache folder."""
+"""Fixtures: scenes that tests share, and a cache folder apart from the user's, which all processes and runs share."""
 
 import os
-import tempfile
+from pathlib import Path
 from types import SimpleNamespace
 
 import mpmath
 import numpy as np
 import pytest
 
-os.environ["PINBALL_CACHE"] = tempfile.mkdtemp(prefix="pinball-cache-")
+os.environ["PINBALL_CACHE"] = str(Path(__file__).parents[2] / ".pytest_cache" / "pinball")  # its keys hold the sources
 
 from numeric import PinballMap
 from numeric.backends.scalars import ScalarBackend

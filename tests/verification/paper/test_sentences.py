@@ -8,8 +8,6 @@ import re
 import tomllib
 from pathlib import Path
 
-import pytest
-
 from verification.paper.claims.folder import paper
 
 LISTED = [
@@ -27,13 +25,13 @@ def flat(text):
     return " ".join(re.sub(LEFT_OUT, " ", text).split())
 
 
-@pytest.mark.parametrize(("section", "opens", "fate"), LISTED)
-def test_a_sentence_is_prose_or_its_claims_quote_its_section(section, opens, fate):
-    if isinstance(fate, list):
-        assert {SECTIONS[name] for name in fate} == {section}
-    elif not isinstance(fate, str):
-        assert fate.keys() == {"repeats"}
-        assert {*fate["repeats"]} <= SECTIONS.keys()
+def test_a_sentence_is_prose_or_its_claims_quote_its_section():
+    for section, opens, fate in LISTED:
+        if isinstance(fate, list):
+            assert {SECTIONS[name] for name in fate} == {section}, opens
+        elif not isinstance(fate, str):
+            assert fate.keys() == {"repeats"}, opens
+            assert {*fate["repeats"]} <= SECTIONS.keys(), opens
 
 
 def test_every_claim_stands_under_a_sentence():

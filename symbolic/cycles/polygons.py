@@ -314,26 +314,6 @@ def next_exit_angle(turn: Expr, exit_angle: Expr) -> Expr:
     return lam * (pi - turn - exit_angle)
 
 
-def exit_angles(turns: Sequence[Expr]) -> list[Expr]:
-    """The exit angles of the cycle that visits sides with these turns from each to the next, for `lam < 1`.
-
-    The sequence is unique. It belongs to a cycle if every angle of incidence, `-angle/lam`, is less than a right angle
-    and the flights hit these sides first, which is not checked here.
-
-    >>> [factor(angle) for angle in exit_angles([2 * pi / 3] * 3)][0]
-    pi*lam/(3*(lam + 1))
-    """
-    n, start = len(turns), symbols("start")
-    angle = start
-    for turn in turns:
-        angle = next_exit_angle(turn, angle)
-    constant = expand(angle).subs(start, 0)
-    found = [simplify(constant / (1 - (-lam) ** n))]
-    for turn in turns[:-1]:
-        found.append(simplify(next_exit_angle(turn, found[-1])))
-    return found
-
-
 def straight_multipliers(angles: Sequence[Expr]) -> tuple[Expr, Expr]:
     """The multipliers of a cycle between straight sides: of the angle, and of the position, at least 1 in modulus.
 

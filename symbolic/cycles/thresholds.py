@@ -29,13 +29,13 @@ areas near `lam = 1`.
 
 from functools import lru_cache
 
-from sympy import Expr, S, cos, factor, pi, prod, simplify, sin, sqrt
+from sympy import Expr, S, cos, factor, pi, sin, sqrt
 
 from symbolic.cycles.cycle import Cycle, cuspless_horizontal, egg_diameter, shortened
 from symbolic.cycles.polygons import half_turn
 from symbolic.expressions.signs import Box, SignFinding, conjunction, nonnegative, positive, vanishes
-from symbolic.motion.collision import area_factor, derivative_matrix
-from symbolic.tables.table import K0, K1, a, alpha, eta, lam, t
+from symbolic.motion.collision import derivative_matrix
+from symbolic.tables.table import K0, K1, a, alpha, lam, t
 
 
 @lru_cache(maxsize=256)
@@ -235,16 +235,6 @@ def flux(x: Expr) -> Expr:
 def flux_slope(x: Expr) -> Expr:
     """`f'(x) = cos(x) - x*sin(x)`: positive where areas are sure to contract, zero where `x*tan(x) = 1`."""
     return cos(x) - x * sin(x)
-
-
-def cycle_determinant(angles: list[Expr]) -> Expr:
-    """`det M` of a cycle with these incidence angles, in radians.
-
-    >>> from sympy import S
-    >>> cycle_determinant([S.Zero, S.Zero])
-    lam**2
-    """
-    return simplify(prod(area_factor().subs(eta, angle) for angle in angles))
 
 
 def polygon_slope(p: int, q: int) -> Expr:

@@ -1,11 +1,10 @@
 """The determinant of a polygon's bounce, `lam` times a ratio of cosines, at the polygon's own angles."""
 
 import pytest
-from sympy import Rational, S, Symbol, cos, diff, pi, simplify, tan
+from sympy import Rational, Symbol, cos, diff, simplify, tan
 
 from symbolic.cycles.polygons import half_turn
-from symbolic.cycles.thresholds import cycle_determinant, flux, flux_slope, polygon_factor, polygon_slope
-from symbolic.tables.table import lam
+from symbolic.cycles.thresholds import flux, flux_slope, polygon_factor, polygon_slope
 
 x, delta = Symbol("x"), Symbol("delta")
 
@@ -22,11 +21,6 @@ def test_a_polygon_lands_at_gamma_plus_delta_and_leaves_at_gamma_minus_delta(p, 
 
     assert simplify(polygon_factor(delta, p, q) - ratio * cos(gamma - delta) / cos(gamma + delta)) == 0
     assert simplify(polygon_slope(p, q) - (cos(gamma) - gamma * cos(gamma) * tan(gamma))) == 0
-
-
-def test_a_cycle_contracts_by_the_product_over_its_bounces():
-    assert simplify(cycle_determinant([pi / 3, S.Zero]) - 2 * lam**2 * cos(lam * pi / 3)) == 0
-    assert cycle_determinant([S.Zero] * 3) == lam**3
 
 
 def test_the_triangle_and_the_square_contract_near_the_elastic_law_and_the_pentagon_expands():

@@ -44,6 +44,7 @@ def crossing_family() -> Table:
     return parametric(cos(theta) + b * cos(2 * theta), sin(theta) + b * sin(2 * theta), shapes=shapes)
 
 
+FALLING = tuple((10**7 - theta**11 * (2 * pi - theta)) * x for x in (cos(theta), sin(theta)))
 BELOW = Shape(Symbol("b", real=True), Interval(-2, -1), "")
 BAD = {
     "a float in a formula": (lambda: polar(1 + 0.08 * cos(3 * theta)), "contains a rounded float"),
@@ -94,10 +95,7 @@ BAD = {
     "no component": (piecewise, "needs at least one component"),
     "an arc run backwards": (lambda: piecewise(arc("loop", cos(theta), sin(theta), pi, -pi)), "larger number"),
     "an end below the start": (lambda: piecewise(arc("s", theta, 0, 0, BELOW.symbol), shapes=[BELOW]), "larger number"),
-    "a radius without a period": (
-        lambda: piecewise(arc("c", *((10**7 - theta**11 * (2 * pi - theta)) * x for x in (cos(theta), sin(theta))), 0,
-                              2 * pi)), "meets itself",
-    ),
+    "a radius without a period": (lambda: piecewise(arc("c", *FALLING, 0, 2 * pi)), "meets itself"),
     "an end that moves": (lambda: piecewise(arc("loop", cos(theta), sin(theta), 0, theta)), "larger number"),
     "a shape too small": (lambda: ellipse.at(a="0.5"), r"a = 1/2 makes .*; a must lie in \[1, oo\)$"),
     "a negative shape": (lambda: egg(3).at(alpha=-1), r"alpha must lie in \[0, 1/10\]$"),

@@ -56,6 +56,7 @@ def stability_number(cycle: Cycle) -> Expr:
 def general_trace_and_determinant() -> tuple[Expr, Expr]:
     """Trace and determinant of the monodromy of any double normal, from the derivative matrix.
 
+    >>> from sympy import simplify
     >>> trace, det = general_trace_and_determinant()
     >>> simplify(trace - trace_of((1 + t * K0) * (1 + t * K1))), simplify(det)
     (0, lam**2)
@@ -225,7 +226,9 @@ def even_stability_numbers(K: int | Expr) -> tuple[Expr, Expr]:
 def flux(x: Expr) -> Expr:
     """`f(x) = x*cos(x)`: a reflection multiplies areas by `f(lam*eta)/f(eta)`.
 
-    >>> from symbolic.tables.table import lam
+    >>> from sympy import simplify
+    >>> from symbolic.motion.collision import area_factor
+    >>> from symbolic.tables.table import eta
     >>> simplify(flux(lam * eta) / flux(eta) - area_factor())
     0
     """

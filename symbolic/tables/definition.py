@@ -215,7 +215,7 @@ def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[st
         return named_boundary(text_entry("table", said["table"]), said.get("K", POINTS))[0]
     found: dict[str, Any] = {"name": word_entry("name", said["name"])} if "name" in said else {}
     more = tuple(FIT) if "points" in said else ("undefined", "origin")
-    known_entries("scene", said, ("name", *KINDS, *more))
+    known_entries("scene", {key: said[key] for key in BOUNDARY if key in said}, ("name", *KINDS, *more))
     if "polar" in said:
         found["polar"] = _formula("polar", said["polar"], parameters)
     elif "points" in said:

@@ -16,11 +16,6 @@ import asyncio
 from verification.app.cli import refusal
 assert asyncio.run(refusal(["orbit", "circle", "--lam", "1/2", "--start", "0,0.1", "--bounces", "2"], 60)) is None
 """,
-    "mpmath without gmpy2": """
-from verification.measure.work.question import sampled
-(row,) = sampled("lambda-star", "no such method", [20], 1)
-assert "values to unpack" in row[2], row
-""",
     "workers": """
 import operator
 from numeric.sweeps.workers import in_processes
@@ -59,5 +54,4 @@ def test_every_child_process_is_started_by_the_one_command():
             if "get_context" in text or "ProcessPoolExecutor" in text or "os.fork" in text:
                 assert path.name == "workers.py"
 
-    work = "verification/measure/work"
-    assert starting == {"verification/app/cli.py", f"{work}/plain.py", f"{work}/question.py"}
+    assert starting == {"verification/app/cli.py", "verification/measure/work/plain.py"}

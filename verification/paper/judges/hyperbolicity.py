@@ -119,13 +119,13 @@ def hyperbolic(claim: Claim) -> Judgement:
     return Judgement(finding, "nu_+ > 0 > nu_- = -nu_+ for almost every start at lam = 1")
 
 
-def averages(table: str) -> tuple[Array, Array, Array]:
-    """Averages of three functions along elastic orbits, their errors, and the correlations after `LAG` bounces.
+def averages(table: str, contraction: str = "1") -> tuple[Array, Array, Array]:
+    """Averages of three functions along orbits, their errors, and the correlations after `LAG` bounces.
 
     The functions are `sin(phi)^2 - 1/3`, `cos(2*pi*s/S)` and `sin(phi)*sin(2*pi*s/S)`, where `S` is the perimeter;
     their means in the elastic measure `cos(phi) ds dphi` are 0.
     """
-    map = PinballMap(table, lam="1")
+    map = PinballMap(table, lam=contraction)
     start = phase_starts(map, BALLS, SEED)
     orbit = map.orbit(start.theta, start.phi, BOUNCES, start.component)
     turn = 2 * np.pi * map.arclength.s(orbit.theta, orbit.component) / map.arclength.perimeter

@@ -97,8 +97,7 @@ class Count:
         growth, heard = self.growth, min(HEARD // self.growth.theta.size, bounces // STEPS)
         while (left := (bounces - self.bounces) // self.length) > 0:
             some = min(left, self.most - self.blocks, max(1, heard // self.length))
-            before = np.array([[growth.stretch], [growth.volume]])
-            reached = np.concatenate([before, growth.advance_blocks([self.length] * some)], axis=1)
+            reached = growth.advance_blocks([self.length] * some)
             self._rows[:, self.blocks : self.blocks + some] = np.diff(reached, axis=1) / self.length
             self.blocks += some
             if self.blocks == self.most:

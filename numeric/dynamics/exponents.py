@@ -193,7 +193,7 @@ def _remembering(map: PinballMap, count: Count, members: Labels, found: Exponent
     watched = Growth(map.at(end.lam[few]), end.theta[few], end.phi[few], end.component[few])
     watched.settle(ALIGNED)
     track = watched.advance_blocks([1] * SINGLE)[0]
-    steps = np.diff(track, axis=0, prepend=0.0)[:, watched.code == 0]
+    steps = np.diff(track, axis=0)[:, watched.code == 0]
     if steps.size == 0:
         return found
     naive = float(np.std(steps) / np.sqrt(count.bounces * members.size))

@@ -328,8 +328,7 @@ class PinballMap:
         growth, count = Growth(self, *at), min(blocks, bounces)
         growth.settle(transient, threads)
         sizes = np.diff(np.arange(count + 1) * bounces // count)
-        reached = np.zeros((2, count + 1, growth.theta.size))
-        reached[:, 1:] = growth.advance_blocks(sizes.tolist(), threads)
+        reached = growth.advance_blocks(sizes.tolist(), threads)
         with np.errstate(divide="ignore", invalid="ignore"):
             plus, volume = np.diff(reached, axis=1) / sizes[:, None]
             rates = np.array([plus, volume - plus])

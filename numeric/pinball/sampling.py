@@ -358,16 +358,17 @@ class Growth:
         self.advance_blocks([bounces] if bounces else [], threads)
 
     def advance_blocks(self, sizes: Sequence[int], threads: int | None = None) -> Array:
-        """Moves particles and vectors by blocks of bounces; returns `stretch` and `volume` after each of the blocks.
+        """Moves particles and vectors by blocks of bounces; returns `stretch` and `volume` before and after each block.
 
-        The shape is `(2, blocks, particles)`. The kernel runs once for each block; what follows from its rows is
+        The shape is `(2, blocks + 1, particles)`. The kernel runs once for each block; what follows from its rows is
         computed for many blocks together.
         """
-        reached = np.empty((2, len(sizes), self.theta.size))
+        reached = np.empty((2, len(sizes) + 1, self.theta.size))
+        reached[:, 0] = self.stretch, self.volume
         if self.theta.size:
             most = max(1, TOGETHER // self.theta.size)
             for first in range(0, len(sizes), most):
-                reached[:, first : first + most] = self._some_blocks(sizes[first : first + most], threads)
+                reached[:, first + 1 : first + most + 1] = self._some_blocks(sizes[first : first + most], threads)
         return reached
 
     def _some_blocks(self, sizes: Sequence[int], threads: int | None) -> Array:

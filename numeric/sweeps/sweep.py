@@ -326,8 +326,7 @@ def counted(growth: Growth, bounces: int, threads: int | None = None) -> OrbitEx
     block = bounces // BLOCKS
     if block < 2:
         raise ValueError(f"bounces = {bounces} is too few for {BLOCKS} blocks; give at least {2 * BLOCKS}")
-    map, before = growth.map, np.array([[growth.stretch], [growth.volume]])
-    reached = np.concatenate([before, growth.advance_blocks([block] * BLOCKS, threads)], axis=1)
+    map, reached = growth.map, growth.advance_blocks([block] * BLOCKS, threads)
     with np.errstate(divide="ignore", invalid="ignore"):  # at lam = 0 areas vanish
         plus, volume = np.diff(reached, axis=1) / block
         minus = volume + growth.contraction - plus

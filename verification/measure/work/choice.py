@@ -291,7 +291,6 @@ def digits_lost(map: PinballMap, start: tuple[float, float, int], bounces: int) 
     growth = Growth(map, *start)
     block = max(1, bounces // LOOKS)
     sizes = growth.advance_blocks([min(block, bounces - done) for done in range(0, bounces, block)])[0, :, 0]
-    sizes = np.concatenate([[0.0], sizes])
     if int(growth.code[0]) != 0 or not np.all(np.isfinite(sizes)):
         return math.inf
     lost = float(np.max(sizes - np.minimum.accumulate(sizes))) / math.log(10)

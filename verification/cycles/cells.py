@@ -17,6 +17,7 @@ with the search.
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from math import pi
 from typing import Any
 
@@ -198,6 +199,18 @@ def null_vectors(matrix: Any) -> tuple[Array, Array]:
     return right[-1] * scale, left[:, -1] * scale
 
 
+@cache
+def radians(table: Table) -> float:
+    """Radians per unit of the parameter: a single component runs one whole turn, and none of several more than one.
+
+    >>> from symbolic.tables import circle
+    >>> radians(circle)
+    1.0
+    """
+    longest = max(float(part.end - part.start) for part in table.components)
+    return 2 * pi / longest if len(table.components) == 1 else min(1.0, 2 * pi / longest)
+
+
 NEWTON = Stop(enough=1e-11, steps=14, reach=0.5)
 
 
@@ -222,7 +235,9 @@ class Corrector:
 
         def correction(x: Array) -> Array:
             step = self._correction(components, x)
-            return step if known is None or not len(known) else step * deflation(x, step, known)[:, None]
+            if known is None or not len(known):
+                return step
+            return step * deflation(*(radians(self.table) * rows for rows in (x, step, known)))[:, None]
 
         x, settled = in_rows(correction, seeds, NEWTON)
         kept: Array = x[settled]

@@ -31,7 +31,7 @@ from symbolic.tables.table import eta as angle
 from symbolic.tables.table import lam as contraction
 from symbolic.tables.table import theta as place
 from verification.arithmetic.balls import FLOAT64, multiprecision
-from verification.cycles.cells import Corrector, CycleType, MonodromyDeterminants, spectrum
+from verification.cycles.cells import Corrector, CycleType, MonodromyDeterminants, radians, spectrum
 from verification.cycles.chain import trace_and_determinant
 from verification.cycles.chords import Chords
 from verification.cycles.newton import refined
@@ -102,7 +102,7 @@ class Catalogue:
     @property
     def scale(self) -> float:
         """Radians per unit of the boundary's parameter, where cycles are compared."""
-        return _scale(self.table)
+        return radians(self.table)
 
     def add(
         self, components: tuple[int, ...], x: Array, phi: Array, known: MonodromyDeterminants | None = None
@@ -212,15 +212,8 @@ class Catalogue:
 
 def _wrapped(table: Table, x: Array) -> Array:
     """Parameters; those of a single component less the whole turns by which they are outside of its range."""
-    low, turn = float(table.components[0].start), 2 * pi / _scale(table)
+    low, turn = float(table.components[0].start), 2 * pi / radians(table)
     return np.asarray(low + np.mod(x - low, turn)) if len(table.components) == 1 else x
-
-
-@cache
-def _scale(table: Table) -> float:
-    """Radians per unit of the parameter: a single component runs one whole turn, and none of several more than one."""
-    longest = max(float(part.end - part.start) for part in table.components)
-    return 2 * pi / longest if len(table.components) == 1 else min(1.0, 2 * pi / longest)
 
 
 def _least_periods(components: tuple[int, ...], x: Array, phi: Array) -> NDArray[np.int64]:
@@ -421,7 +414,7 @@ def _admitted(map: PinballMap, itinerary: tuple[int, ...], closed: Array, correc
         return closed, closed
     out = corrector.exits(itinerary, closed)
     ends = np.array(map.states.ends)[list(itinerary)]
-    one, half = len(map.states.ends) == 1, _scale(corrector.table) / 2
+    one, half = len(map.states.ends) == 1, radians(corrector.table) / 2
     x = _wrapped(corrector.table, closed)
     fine = np.all(np.abs(out) < pi / 2 - 1e-9, axis=1) & np.all((x >= ends[:, 0]) & (x <= ends[:, 1]), axis=1)
     apart = np.abs(np.sin((np.roll(x, -1, axis=1) - x) * half))

@@ -233,14 +233,12 @@ def boundary_of(said: Mapping[str, Any], parameters: tuple[str, ...]) -> dict[st
         if len(_list("component", said)) > MOST:
             raise ValueError(f"scene: {len(said['component'])} components are given; accepted: up to {MOST}")
         found["component"] = [_component(n, entry, parameters) for n, entry in enumerate(_list("component", said), 1)]
+    count = len(found["component"]) if "component" in found else 1
     if "undefined" in said:
-        found["undefined"] = [_mark(entry) for entry in _list("undefined", said)]
+        found["undefined"] = [_mark(entry, count) for entry in _list("undefined", said)]
     if "origin" in said:
         known_entries("scene: origin", said["origin"], ("component", "theta"))
-        found["origin"] = _place("origin", said["origin"])
-    for place in (*found.get("undefined", ()), *([found["origin"]] if "origin" in found else ())):
-        if place["component"] >= (count := len(found.get("component", "1"))):
-            raise ValueError(f"scene: component = {place['component']} does not exist; accepted: 0 to {count - 1}")
+        found["origin"] = _place("origin", said["origin"], count)
     return found
 
 
@@ -260,17 +258,17 @@ def _component(n: int, entry: Any, parameters: tuple[str, ...]) -> dict[str, Any
     )
 
 
-def _mark(entry: Any) -> dict[str, Any]:
+def _mark(entry: Any, count: int) -> dict[str, Any]:
     """The checked entry of a boundary point where the map is undefined."""
     known_entries("scene: undefined", entry, ("name", "component", "theta"))
-    return {"name": word_entry("undefined: name", entry.get("name"))} | _place("undefined", entry)
+    return {"name": word_entry("undefined: name", entry.get("name"))} | _place("undefined", entry, count)
 
 
-def _place(label: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """The checked index of a component, and a parameter `theta` on it; errors begin with `label`."""
+def _place(label: str, entry: Mapping[str, Any], count: int) -> dict[str, Any]:
+    """The checked index of one of `count` components, and a parameter `theta` on it; errors begin with `label`."""
     index = entry.get("component", 0)
-    if isinstance(index, bool) or not isinstance(index, int) or index < 0:
-        raise ValueError(f"scene: {label}: component = {index!r} is no index, counted from 0")
+    if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < count:
+        raise ValueError(f"scene: {label}: component = {index!r} is no index, counted from 0 to {count - 1}")
     return {"component": index, "theta": _formula(f"{label}: theta", entry.get("theta", "0"), ())}
 
 

@@ -144,7 +144,7 @@ def arc_length(component: Component) -> Expr:
     if c is not None and len(c) <= 3 and all(c[-k] == c[k] for k in c):
         p, n = c.get(0, S.Zero), max(c)
         q = 2 * c[n] if n else S.Zero
-        closed = simplify(squared - p - q * cos(n * theta)) == 0 if n else True
+        closed = not n or simplify(squared - p - q * cos(n * theta)) == 0
         if closed and (found := _elliptic(p, q, max(n, 1), component)) is not None:
             return found
     dummy = Dummy("theta", real=True)
@@ -177,9 +177,11 @@ def positions(table: Table) -> tuple[Expr, ...]:
     (4*sin(theta/2) + 9*sqrt(3)/4, theta)
     """
     (first, start), count = table.origin, len(table.components)
-    low, high = table.components[first].start, table.components[first].end
-    if (low - start).is_positive or (start - high).is_positive:  # the default 0, which lies beyond an end
-        start = low if (low - start).is_positive else high
+    part = table.components[first]
+    if (part.start - start).is_positive:  # the default 0, before the component begins
+        start = part.start
+    elif (start - part.end).is_positive:  # or after its end
+        start = part.end
     found: dict[int, Expr] = {}
     reached = -arc_length(table.components[first]).subs(theta, start)
     for step in range(count):

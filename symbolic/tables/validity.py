@@ -285,7 +285,7 @@ def _prove(table: Table, ends: Ranges) -> None:
     whole = table.components[0]
     if len(table.components) == 1 and not table.undefined and whole.end - whole.start == 2 * pi:
         x, y = whole.point
-        if _is_polar(x, y) and all_angles(whole, _radius(x, y)) and _positive_radius(_radius(x, y), ends):
+        if _is_polar(x, y) and all_angles(whole, rho := _radius(x, y)) and _positive_radius(rho, ends):
             return
     rings = [[as_bezier(component) for component in ring] for ring in curves(table)]
     known = [[piece for piece in ring if piece is not None] for ring in rings]
